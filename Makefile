@@ -1,0 +1,54 @@
+# Needs Python 3.11, 3.12 or 3.13 and make; everything else goes into .venv, from the lock, with hashes.
+
+SUPPORTED := import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 13))
+PYTHON ?= $(shell for p in python3 python3.12 python3.11 python3.13; do \
+	$$p -c '$(SUPPORTED)' 2>/dev/null && { echo $$p; break; }; done)
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install --no-compile
+LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
+	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
+
+.PHONY: demo test serve lint bench validate lock clean
+
+demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
+	$(BIN)/hockle demo
+
+serve: .venv/.runtime  ## API, worker and broker, until Ctrl-C
+	$(BIN)/hockle serve
+
+test: .venv/.dev  ## the whole test suite
+	$(BIN)/python -m pytest
+
+lint: .venv/.dev  ## style, types, and who may import whom
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+
+bench: .venv/.runtime  ## cost per Newton iteration and per scene
+	$(BIN)/python -m benchmarks
+
+validate: .venv/.runtime  ## published scenes, and what they must show
+	$(BIN)/python -m validation
+
+lock:  ## after a change of a requirements*.in (needs uv)
+	$(LOCK) requirements.in requirements-build.in -o requirements.txt
+	$(LOCK) requirements-dev.in -o requirements-dev.txt
+
+clean:  ## the environment and all that was made
+	rm -rf .venv var demo *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+.venv/bin/python:
+	@test -n "$(PYTHON)" || { echo "hockle needs Python 3.11, 3.12 or 3.13: name one with make PYTHON=..." >&2; exit 1; }
+	@echo "making .venv with $(PYTHON)"
+	$(PYTHON) -m venv .venv
+
+.venv/.runtime: requirements.txt pyproject.toml | .venv/bin/python
+	@echo "installing what hockle needs to run"
+	$(PIP) --require-hashes -r requirements.txt
+	$(PIP) --no-deps --no-build-isolation -e .
+	@touch $@
+
+.venv/.dev: requirements-dev.txt .venv/.runtime
+	@echo "installing what the tests and checks need"
+	$(PIP) --require-hashes -r requirements-dev.txt
+	@touch $@

@@ -1,0 +1,7 @@
+"""`python -m hockle` is the `hockle` command."""
+
+import sys
+
+from hockle.cli import main
+
+sys.exit(main())

@@ -1,0 +1,1 @@
+"""hockle as a service: cases, jobs, results, and the HTTP interface."""

@@ -1,0 +1,18 @@
+"""Cases: what a simulation is told, read and checked, and built into the solver's scene."""
+
+from service.cases.build import build_scene
+from service.cases.case import CaseSpec
+from service.cases.errors import CaseError, FieldError
+from service.cases.library import apply_settings, case_schema, load_case, parse_case, shipped_cases
+
+__all__ = [
+    "CaseError",
+    "CaseSpec",
+    "FieldError",
+    "apply_settings",
+    "build_scene",
+    "case_schema",
+    "load_case",
+    "parse_case",
+    "shipped_cases",
+]

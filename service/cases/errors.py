@@ -1,0 +1,80 @@
+"""What is wrong with a case: each fault as a JSON pointer, the value and the rule."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+_RULES = {
+    "missing": "is required",
+    "extra_forbidden": "is not a field of a case",
+    "finite_number": "must be a finite number",
+    "greater_than": "must be > {gt:g}",
+    "greater_than_equal": "must be >= {ge:g}",
+    "less_than": "must be < {lt:g}",
+    "less_than_equal": "must be <= {le:g}",
+    "float_type": "must be a number",
+    "int_from_float": "must be an integer",
+    "int_type": "must be an integer",
+    "string_pattern_mismatch": "must match {pattern}",
+    "string_too_long": "must have at most {max_length} characters",
+    "too_short": "must have at least {min_length} entries",
+    "too_long": "must have at most {max_length} entries",
+    "tuple_type": "must be a list",
+    "model_type": "must be an object",
+}
+_LONGEST_VALUE = 60
+
+
+@dataclass(frozen=True)
+class FieldError:
+    """One fault: where (RFC 6901 pointer, "" is the whole case), what stands there, what the rule is."""
+
+    pointer: str
+    value: Any
+    rule: str
+
+    def __str__(self) -> str:
+        fault = f"{self.pointer or 'the case'} {self.rule}"
+        return fault if self.value is None else f"{fault}, got {_short(self.value)}"
+
+
+class CaseError(ValueError):
+    """A case that cannot be run, with every fault that was found."""
+
+    def __init__(self, errors: Sequence[FieldError]) -> None:
+        self.errors = list(errors)
+        super().__init__("\n".join(str(error) for error in self.errors))
+
+    @classmethod
+    def of(cls, error: ValidationError) -> CaseError:
+        """The same faults as pydantic found them, in the words of this package."""
+        return cls([_field_error(detail) for detail in error.errors(include_url=False)])
+
+
+def refusal(at: str, value: object, rule: str) -> PydanticCustomError:
+    """The error that a model's validator raises about a field `at` (a relative pointer) within it."""
+    return PydanticCustomError("refused", "refused", {"at": at, "value": value, "rule": rule})
+
+
+def _field_error(detail: ErrorDetails) -> FieldError:
+    context = detail.get("ctx", {})
+    parts = [str(part) for part in detail["loc"] if not str(part).startswith("<")]
+    pointer = "".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts)
+    kind, value = detail["type"], detail["input"]
+    if kind == "refused":
+        at = context["at"]
+        there = value.get(at) if isinstance(value, dict) else value
+        return FieldError(pointer + (f"/{at}" if at else ""), context.get("value", there), context["rule"])
+    if kind in _RULES:
+        return FieldError(pointer, None if kind == "missing" else value, _RULES[kind].format(**context))
+    return FieldError(pointer, value, detail["msg"].replace("Input should", "must"))
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."

@@ -1,0 +1,93 @@
+"""The rod of a case at t = 0."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal, Self
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+
+from service.cases.errors import refusal
+from service.cases.quantities import LONGEST_TABLE, Profile, Spec, Triple, curve
+from solver import Initial
+
+ORIGIN: Triple = (0.0, 0.0, 0.0)
+
+
+class _Motion(Spec):
+    """What both shapes have.
+
+    `a1`: lab direction of the first principal axis at s = 0, made normal to the tangent there; the frame
+    follows along s by parallel transport, turned about the tangent by `twist` (rad). `velocity` (m/s)
+    and `angular_velocity` (rad/s, about the centre of mass): a rigid motion in the lab frame.
+    """
+
+    a1: Triple = (1.0, 0.0, 0.0)
+    twist: Profile = 0.0
+    velocity: Triple = ORIGIN
+    angular_velocity: Triple = ORIGIN
+
+    def _common(self) -> dict[str, Any]:
+        return {
+            "a1": self.a1,
+            "twist": curve(self.twist),
+            "velocity": self.velocity,
+            "angular_velocity": self.angular_velocity,
+        }
+
+
+class Straight(_Motion):
+    """A straight rod from `origin` (m) along `direction`, both in the lab frame."""
+
+    shape: Literal["straight"]
+    origin: Triple = ORIGIN
+    direction: Triple = (0.0, 0.0, 1.0)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if not any(self.direction):
+            raise refusal("direction", self.direction, "must not be zero")
+        across = np.linalg.norm(np.cross(self.a1, self.direction))
+        if across <= 1e-6 * np.linalg.norm(self.a1) * np.linalg.norm(self.direction):
+            raise refusal("a1", self.a1, f"must not be zero or along direction {self.direction}")
+        return self
+
+    def build(self, length: float) -> Initial:
+        """The solver's initial state of a rod of any length."""
+        return Initial.straight(self.origin, self.direction, **self._common())
+
+
+class Centreline(_Motion):
+    """A smooth curve through `points` (m, lab frame), as long as the rod to 0.1 %."""
+
+    shape: Literal["centreline"]
+    points: Annotated[tuple[Triple, ...], Field(min_length=4, max_length=LONGEST_TABLE)]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for i in range(1, len(self.points)):
+            if self.points[i] == self.points[i - 1]:
+                raise refusal(f"points/{i}", self.points[i], "must differ from the point before it")
+        if not any(self.a1):
+            raise refusal("a1", self.a1, "must not be zero")
+        return self
+
+    def build(self, length: float) -> Initial:
+        """The solver's initial state. Raises ValueError if the curve is not `length` (m) long."""
+        return Initial.through(np.array(self.points), length, **self._common())
+
+
+def _shape(value: Any) -> str | None:
+    shape = value.get("shape") if isinstance(value, dict) else getattr(value, "shape", None)
+    return f"<{shape}>" if shape in ("straight", "centreline") else None
+
+
+InitialSpec = Annotated[
+    Annotated[Straight, Tag("<straight>")] | Annotated[Centreline, Tag("<centreline>")],
+    Discriminator(
+        _shape,
+        custom_error_type="refused",
+        custom_error_message="refused",
+        custom_error_context={"at": "shape", "rule": "must be straight or centreline"},
+    ),
+]

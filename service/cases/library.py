@@ -1,0 +1,110 @@
+"""Reading cases: the shipped ones and files, single settings, validation."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from copy import deepcopy
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from service.cases.build import build_scene
+from service.cases.case import CaseSpec
+from service.cases.errors import CaseError, FieldError
+
+_SHIPPED = files("service.cases") / "shipped"
+
+
+def shipped_cases() -> dict[str, str]:
+    """Name and title of every case that comes with hockle, by name."""
+    names = (file.name.removesuffix(".json") for file in _SHIPPED.iterdir())
+    return {name: load_case(name)["title"] for name in sorted(names)}
+
+
+def load_case(name_or_path: str | Path) -> dict[str, Any]:
+    """The raw case of a shipped name or of a JSON file.
+
+    Raises CaseError where there is neither, or where the text is not one JSON object without
+    repeated names; OSError where the file cannot be read.
+    """
+    shipped = _SHIPPED / f"{name_or_path}.json"
+    if "/" not in str(name_or_path) and shipped.is_file():
+        return _read(shipped.read_text(encoding="utf-8"), str(name_or_path))
+    path = Path(name_or_path)
+    if not path.is_file():
+        names = ", ".join(shipped_cases())
+        raise CaseError([FieldError("", str(name_or_path), f"must be a file or one of {names}")])
+    return _read(path.read_text(encoding="utf-8"), str(path))
+
+
+def apply_settings(raw: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
+    """A copy of the raw case with some values set by dotted keys: `numerics.intervals`, `loads.point.0.s`.
+
+    Raises CaseError where a key leads into something that has no such place.
+    """
+    changed = deepcopy(dict(raw))
+    for key, value in settings.items():
+        _set(changed, key.split("."), value)
+    return changed
+
+
+def parse_case(raw: Mapping[str, Any]) -> CaseSpec:
+    """The case that raw JSON data describes; raises CaseError with every fault that was found."""
+    try:
+        spec = CaseSpec.model_validate_json(json.dumps(raw))
+    except ValidationError as error:
+        raise CaseError.of(error) from None
+    except (TypeError, ValueError) as error:
+        raise CaseError([FieldError("", None, f"must be plain JSON data: {error}")]) from None
+    build_scene(spec)
+    return spec
+
+
+def case_schema() -> dict[str, Any]:
+    """The JSON schema of a case."""
+    return CaseSpec.model_json_schema()
+
+
+def _read(text: str, name: str) -> dict[str, Any]:
+    try:
+        raw = json.loads(text, object_pairs_hook=_without_repeats)
+    except json.JSONDecodeError as error:
+        fault = f"is not JSON in {name}, line {error.lineno}, column {error.colno}: {error.msg}"
+        raise CaseError([FieldError("", None, fault)]) from None
+    if not isinstance(raw, dict):
+        raise CaseError([FieldError("", None, f"must be a JSON object in {name}")])
+    return raw
+
+
+def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in found:
+            raise CaseError([FieldError("", name, "must not hold a name twice in one object")])
+        found[name] = value
+    return found
+
+
+def _set(node: Any, path: list[str], value: Any) -> None:
+    """Set the value at a path below a dict or list, making the objects on the way."""
+    for depth, part in enumerate(path):
+        place: Any = part
+        if isinstance(node, list):
+            if not (part.isdigit() and int(part) < len(node)):
+                raise _no_place(path[:depth], f"has no entry {part!r} ({len(node)} entries)")
+            place = int(part)
+        elif not isinstance(node, dict):
+            raise _no_place(path[:depth], f"is {node!r} and has no field {part!r} to set")
+        if depth == len(path) - 1:
+            node[place] = value
+        elif isinstance(node, dict):
+            node = node.setdefault(place, {})
+        else:
+            node = node[place]
+
+
+def _no_place(path: list[str], rule: str) -> CaseError:
+    return CaseError([FieldError("".join("/" + part for part in path), None, rule)])

@@ -1,0 +1,233 @@
+"""Cases: what is accepted, and how everything else is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from service.cases import (
+    CaseError,
+    apply_settings,
+    case_schema,
+    load_case,
+    parse_case,
+    shipped_cases,
+)
+
+
+def small_case() -> dict[str, Any]:
+    """A short case with every part in it."""
+    return {
+        "schema_version": 1,
+        "name": "small",
+        "rod": {
+            "length": 1.0,
+            "diameter": {"s": [0.0, 0.5, 1.0], "value": [0.01, 0.009, 0.01], "interpolation": "cubic"},
+            "youngs_modulus": 1.25e7,
+            "shear_modulus": 5e6,
+            "density": 1500,
+        },
+        "initial": {"shape": "straight"},
+        "ends": {
+            "start": {
+                "preset": "clamp",
+                "omega3": {"t": [0.0, 0.5], "value": [0.0, 2.0], "interpolation": "smoothstep"},
+            },
+            "end": {"preset": "slider", "switches": [{"at": 3.0, "v3": {"stop_within": 0.1}}]},
+        },
+        "fluid": {"density": 1000.0, "current": [0.0, 0.1, 0.0]},
+        "loads": {
+            "gravity": [0.0, 0.0, -9.81],
+            "distributed": [{"force": [1e-4, 0, 0]}],
+            "point": [{"s": 0.5, "force": [0, {"t": [0, 1], "value": [0, 1], "interpolation": "linear"}, 0]}],
+        },
+        "contact": {"k1": 1e-7, "k2": 3, "aperture_deg": 70, "cutoff": 0.02, "skip": 0.04, "spacing": 0.001},
+        "numerics": {"intervals": 20},
+        "t_end": 2.0,
+        "output": {"interval": 0.1},
+    }
+
+
+CURVED = {
+    "shape": "centreline",
+    "points": [[0, 0, 0], [0, 0, 0.3], [0, 0, 0.6], [0, 0, 1.0]],
+}
+
+REFUSED: list[tuple[str, Any, str]] = [
+    # (setting, value, pointer of the fault); the value `...` removes the field
+    ("schema_version", 2, "/schema_version"),
+    ("schema_version", ..., "/schema_version"),
+    ("name", "Two Words", "/name"),
+    ("colour", "red", "/colour"),
+    ("rod", ..., "/rod"),
+    ("rod", 3.0, "/rod"),
+    ("rod.length", 0.0, "/rod/length"),
+    ("rod.length", "1 m", "/rod/length"),
+    ("rod.length", True, "/rod/length"),
+    ("rod.length", float("nan"), "/rod/length"),
+    ("rod.length", 10**400, "/rod/length"),
+    ("rod.radius", 0.1, "/rod/radius"),
+    ("rod.diameter", ..., "/rod/diameter"),
+    ("rod.diameter", -0.01, "/rod/diameter"),
+    ("rod.diameter.value", [0.01, 0.009], "/rod/diameter/value"),
+    ("rod.diameter.value.1", -0.009, "/rod/diameter/value/1"),
+    ("rod.diameter.value.1", float("inf"), "/rod/diameter/value/1"),
+    ("rod.diameter.s", [0.0, 0.5, 0.5], "/rod/diameter/s/2"),
+    ("rod.diameter.s", [0.0], "/rod/diameter/s"),
+    ("rod.diameter.s", [i * 1e-5 for i in range(10_001)], "/rod/diameter/s"),
+    ("rod.diameter.interpolation", "quintic", "/rod/diameter/interpolation"),
+    ("rod.diameter.interpolation", ..., "/rod/diameter/interpolation"),
+    ("rod.diameter", {"t": [0, 1], "value": [1, 1], "interpolation": "linear"}, "/rod/diameter/s"),
+    ("rod.diameter.value", [0.01, 1e-5, 0.04], "/rod"),  # the spline through these is negative somewhere
+    ("rod.youngs_modulus", ..., "/rod/youngs_modulus"),
+    ("rod.bending_stiffness", 1.0, "/rod/youngs_modulus"),
+    ("rod.bending_stiffness", [1.0, 1.0, 1.0], "/rod/bending_stiffness"),
+    ("rod.torsional_stiffness", 1.0, "/rod/shear_modulus"),
+    ("rod.density", ..., "/rod/density"),
+    ("rod.inertia_per_length", [1.0, 0.0, 1.0], "/rod/inertia_per_length/1"),
+    ("rod.kappa0", "straight", "/rod/kappa0"),
+    ("rod.kappa0", [0.0, 0.0], "/rod/kappa0/2"),
+    ("initial.shape", "circle", "/initial/shape"),
+    ("initial.shape", ..., "/initial/shape"),
+    ("initial.direction", [0, 0, 0], "/initial/direction"),
+    ("initial.a1", [0, 0, 2], "/initial/a1"),
+    ("initial.points", [[0, 0, 0]], "/initial/points"),
+    ("initial", CURVED | {"points": CURVED["points"][:3]}, "/initial/points"),
+    ("initial", CURVED | {"points": [*CURVED["points"], [0, 0, 1.0]]}, "/initial/points/4"),
+    ("initial", CURVED | {"points": [*CURVED["points"], [0, 0, 1.2]]}, "/initial"),
+    ("initial", CURVED | {"a1": [0, 0, 1]}, "/initial"),
+    ("initial.velocity", [1.0, 2.0], "/initial/velocity/2"),
+    ("ends.start", "glued", "/ends/start"),
+    ("ends.start", {"v1": 0, "v2": 0, "v3": 0, "omega1": 0, "omega2": 0}, "/ends/start"),
+    ("ends.start.theta3", 1.0, "/ends/start/theta3"),
+    ("ends.start.omega3.t", [0.5, 0.0], "/ends/start/omega3/t/1"),
+    ("ends.start.omega3", {"stop_within": 0.1}, "/ends/start/omega3/stop_within"),
+    ("ends.start.frame", "global", "/ends/start/frame"),
+    ("ends.end.switches.0.at", 0.0, "/ends/end/switches/0/at"),
+    ("ends.end.switches", [{"at": 1.0}], "/ends/end/switches/0"),
+    ("ends.end.switches", [{"at": 2.0, "v3": 0}, {"at": 1.0, "f3": 0}], "/ends/end/switches/1/at"),
+    ("ends.end.switches.0.v3.stop_within", -0.1, "/ends/end/switches/0/v3/stop_within"),
+    ("ends.end.switches.0.f3", 0.0, "/ends/end/switches/0/f3"),
+    ("ends.middle", "clamp", "/ends/middle"),
+    ("fluid.density", 0.0, "/fluid/density"),
+    ("fluid.current", [0.1, 0.0, None], "/fluid/current/2"),
+    ("fluid.drag", 1.0, "/fluid/drag"),
+    ("loads.gravity", -9.81, "/loads/gravity"),
+    ("loads.damping", -1.0, "/loads/damping"),
+    ("loads.point.0.s", 1.5, "/loads/point/0/s"),
+    ("loads.point.0.force.1.t.1", 0.0, "/loads/point/0/force/1/t/1"),
+    ("loads.distributed.0.frame", "body", "/loads/distributed/0/frame"),
+    ("contact.aperture_deg", 200.0, "/contact/aperture_deg"),
+    ("contact.aperture", 1.2, "/contact/aperture"),
+    ("contact.sum", "integral", "/contact/sum"),
+    ("contact.skip", ..., "/contact/skip"),
+    ("numerics.method", "finite_elements", "/numerics/method"),
+    ("numerics.intervals", 100.5, "/numerics/intervals"),
+    ("numerics.intervals", 1, "/numerics/intervals"),
+    ("numerics.intervals", 10**9, "/numerics/intervals"),
+    ("numerics.rho_inf", 1.1, "/numerics/rho_inf"),
+    ("numerics.dt_max", 1e-9, "/numerics/dt_max"),
+    ("t_end", 0.0, "/t_end"),
+    ("output.interval", 3.0, "/output/interval"),
+    ("output.interval", 1e-7, "/output/interval"),
+    ("output.fields", ["r", "w"], "/output/fields/1"),
+    ("output.fields", ["r", "r"], "/output/fields/1"),
+    ("output.fields", [], "/output/fields"),
+]
+
+
+def changed(key: str, value: Any) -> dict[str, Any]:
+    if value is not ...:
+        return apply_settings(small_case(), {key: value})
+    raw = small_case()
+    *parents, last = key.split(".")
+    node = raw
+    for parent in parents:
+        node = node[parent]
+    del node[last]
+    return raw
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "pointer"), REFUSED, ids=[f"{k}={str(v)[:20]}" for k, v, _ in REFUSED]
+)
+def test_a_malformed_case_is_refused_with_the_field_and_the_rule(key: str, value: Any, pointer: str):
+    with pytest.raises(CaseError) as refused:
+        parse_case(changed(key, value))
+    assert pointer in [error.pointer for error in refused.value.errors]
+    assert all(error.rule and "<" not in error.pointer for error in refused.value.errors)
+    assert pointer in str(refused.value)
+
+
+def test_every_fault_is_told_at_once_with_its_value():
+    raw = apply_settings(small_case(), {"rod.length": -1.0, "t_end": 0.0})
+    with pytest.raises(CaseError) as refused:
+        parse_case(raw)
+    assert str(refused.value) == "/rod/length must be > 0, got -1.0\n/t_end must be > 0, got 0.0"
+
+
+def test_a_case_is_the_same_after_a_round_through_its_document():
+    spec = parse_case(small_case())
+    assert parse_case(json.loads(json.dumps(spec.document()))) == spec
+
+
+def test_settings_change_a_copy_only():
+    raw = small_case()
+    changed = apply_settings(raw, {"numerics.dt_max": 0.01, "loads.point.0.s": 0.25, "fluid.added_mass": 1})
+    assert changed["numerics"] == {"intervals": 20, "dt_max": 0.01}
+    assert changed["loads"]["point"][0]["s"] == 0.25
+    assert raw == small_case()
+
+
+@pytest.mark.parametrize("key", ["loads.point.7.s", "loads.point.first.s", "t_end.value"])
+def test_a_setting_that_leads_nowhere_is_refused(key: str):
+    with pytest.raises(CaseError, match="has no"):
+        apply_settings(small_case(), {key: 1.0})
+
+
+def test_data_that_json_cannot_hold_is_refused():
+    with pytest.raises(CaseError, match="plain JSON"):
+        parse_case(small_case() | {"t_end": {1.0}})
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ('{"t_end": 1,', "line 1, column 13"),
+        ("[1, 2]", "must be a JSON object"),
+        ('{"t_end": 1, "t_end": 2}', "name twice"),
+    ],
+)
+def test_a_file_that_is_no_case_is_refused(tmp_path: Path, text: str, told: str):
+    path = tmp_path / "case.json"
+    path.write_text(text)
+    with pytest.raises(CaseError, match=told):
+        load_case(path)
+
+
+def test_an_unknown_name_tells_the_known_ones():
+    with pytest.raises(CaseError, match="goyal-2003"):
+        load_case("goyal-2030")
+
+
+def test_a_case_file_is_read_by_its_path(tmp_path: Path):
+    path = tmp_path / "mine.json"
+    path.write_text(json.dumps(small_case()))
+    assert parse_case(load_case(path)).name == "small"
+
+
+@pytest.mark.parametrize("name", shipped_cases())
+def test_a_shipped_case_is_valid_and_named_as_its_file(name: str):
+    spec = parse_case(load_case(name))
+    assert spec.name == name
+    assert spec.title
+    assert spec.description
+
+
+def test_the_schema_tells_every_field_of_a_case():
+    schema = case_schema()
+    assert set(small_case()) <= set(schema["properties"])
+    assert schema["additionalProperties"] is False

@@ -1,0 +1,26 @@
+"""The rod solver: numbers only. `for frame in simulate(scene): ...`."""
+
+from solver.curve import Curve, Vector, constant_vector
+from solver.frame import Frame, Statistics
+from solver.outcome import REMEDY, Outcome, RunFailed
+from solver.rod import Rod
+from solver.scene import (
+    FIXED,
+    FREE,
+    Condition,
+    Contact,
+    DistributedLoad,
+    End,
+    Fluid,
+    Initial,
+    Numerics,
+    PointLoad,
+    Scene,
+)
+from solver.simulate import Simulation, simulate
+
+__all__ = [
+    "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
+    "Initial", "Numerics", "Outcome", "PointLoad", "Rod", "RunFailed", "Scene", "Simulation", "Statistics",
+    "Vector", "constant_vector", "simulate",
+]

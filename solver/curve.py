@@ -1,0 +1,148 @@
+"""A scalar function of one variable: a profile along s or a schedule in time."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator, PPoly
+
+Interpolation = Literal["linear", "smoothstep", "pchip", "cubic"]
+
+
+class Curve:
+    """Piecewise cubic function of one variable, held constant beyond its table.
+
+    A `Curve` is `Curve.constant(value)` or `Curve.table(x, y, interpolation)`; it knows its
+    derivative, its exact integral and its corners (the knots where a derivative may jump, to
+    which the step control aligns the steps).
+    """
+
+    def __init__(self, knots: NDArray[np.float64], coefficients: NDArray[np.float64]) -> None:
+        """Polynomial of degree 3 on each piece; `coefficients[k]` multiplies (x - knot)^(3-k)."""
+        self._knots: list[float] = [float(x) for x in knots]
+        self._pieces: list[tuple[float, float, float, float]] = [
+            (float(a), float(b), float(c), float(d)) for a, b, c, d in coefficients.T
+        ]
+        self._integral_at_knots: list[float] = [0.0]
+        for i, piece in enumerate(self._pieces):
+            width = self._knots[i + 1] - self._knots[i]
+            self._integral_at_knots.append(self._integral_at_knots[-1] + _primitive(piece, width))
+        self.corners: tuple[float, ...] = tuple(self._knots) if len(self._pieces) > 0 else ()
+        self._first: float = 0.0
+        self._last: float = 0.0
+        if self._pieces:
+            self._first = self._pieces[0][3]
+            self._last = _cubic(self._pieces[-1], self._knots[-1] - self._knots[-2])
+
+    @classmethod
+    def constant(cls, value: float) -> Curve:
+        """The function that is `value` everywhere."""
+        if not np.isfinite(value):
+            raise ValueError(f"value must be finite, got {value}")
+        curve = cls(np.array([0.0]), np.zeros((4, 0)))
+        curve._first = curve._last = float(value)
+        return curve
+
+    @classmethod
+    def table(cls, x: ArrayLike, y: ArrayLike, interpolation: Interpolation = "linear") -> Curve:
+        """The function through the points (x, y).
+
+        `linear`; `smoothstep` (x^2 (3 - 2 x) from each value to the next, flat at every point);
+        `pchip` (monotone, C1); `cubic` (natural-ended not-a-knot spline, C2).
+
+        Raises ValueError unless x increases strictly, both are finite and of one length >= 2.
+        """
+        xs, ys = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+        if xs.ndim != 1 or xs.shape != ys.shape or len(xs) < 2:
+            raise ValueError(f"a table needs x and y of one length >= 2, got {xs.shape} and {ys.shape}")
+        if not (np.isfinite(xs).all() and np.isfinite(ys).all()):
+            raise ValueError("a table must hold finite numbers only")
+        if not (np.diff(xs) > 0).all():
+            raise ValueError("the x of a table must increase strictly")
+        return cls(xs, _power_coefficients(xs, ys, interpolation))
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the curve was made by `Curve.constant`."""
+        return not self._pieces
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether the curve is zero everywhere."""
+        return not any(any(piece) for piece in self._pieces) and self._first == 0.0 and self._last == 0.0
+
+    def value(self, x: float) -> float:
+        """The value at one x."""
+        if not self._pieces or x <= self._knots[0]:
+            return self._first
+        if x >= self._knots[-1]:
+            return self._last
+        i = bisect_right(self._knots, x) - 1
+        return _cubic(self._pieces[i], x - self._knots[i])
+
+    def derivative(self, x: float) -> float:
+        """The derivative at one x (the right-hand one at a corner; zero beyond the table)."""
+        if not self._pieces or x < self._knots[0] or x >= self._knots[-1]:
+            return 0.0
+        i = bisect_right(self._knots, x) - 1
+        a, b, c, _ = self._pieces[i]
+        u = x - self._knots[i]
+        return (3.0 * a * u + 2.0 * b) * u + c
+
+    def integral(self, x: float) -> float:
+        """The exact integral from the first knot (from 0 for a constant) to x."""
+        if not self._pieces:
+            return self._first * x
+        if x <= self._knots[0]:
+            return self._first * (x - self._knots[0])
+        if x >= self._knots[-1]:
+            return self._integral_at_knots[-1] + self._last * (x - self._knots[-1])
+        i = bisect_right(self._knots, x) - 1
+        return self._integral_at_knots[i] + _primitive(self._pieces[i], x - self._knots[i])
+
+    def __call__(self, x: ArrayLike) -> NDArray[np.float64]:
+        """The values at an array of x, of the same shape."""
+        xs = np.asarray(x, dtype=float)
+        return np.array([self.value(float(u)) for u in xs.ravel()]).reshape(xs.shape)
+
+
+def _cubic(piece: tuple[float, float, float, float], u: float) -> float:
+    a, b, c, d = piece
+    return ((a * u + b) * u + c) * u + d
+
+
+def _primitive(piece: tuple[float, float, float, float], u: float) -> float:
+    a, b, c, d = piece
+    return (((a / 4 * u + b / 3) * u + c / 2) * u + d) * u
+
+
+def _power_coefficients(
+    x: NDArray[np.float64], y: NDArray[np.float64], interpolation: Interpolation
+) -> NDArray[np.float64]:
+    if interpolation == "linear":
+        flat = np.zeros(len(x) - 1)
+        return np.array([flat, flat, np.diff(y) / np.diff(x), y[:-1]])
+    spline: PPoly
+    if interpolation == "smoothstep":
+        spline = CubicHermiteSpline(x, y, np.zeros_like(y))
+    elif interpolation == "pchip":
+        spline = PchipInterpolator(x, y)
+    elif interpolation == "cubic":
+        spline = CubicSpline(x, y)
+    else:
+        raise ValueError(f"interpolation must be linear, smoothstep, pchip or cubic, got {interpolation!r}")
+    coefficients = np.asarray(spline.c, dtype=float)
+    return np.vstack([np.zeros((4 - len(coefficients), len(x) - 1)), coefficients])
+
+
+Vector = tuple[Curve, Curve, Curve]
+
+
+def constant_vector(values: Sequence[float]) -> Vector:
+    """Three constant curves, one a component."""
+    first, second, third = (Curve.constant(float(v)) for v in values)
+    return first, second, third

@@ -1,0 +1,77 @@
+"""The rod at t = 0: centreline, frames and curvature at the nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from solver.rod import Array
+from solver.rotation import quaternion_of
+from solver.scene import Initial
+
+
+def arclength_spline(points: Array, length: float) -> Callable[[Array], Array]:
+    """The C2 curve through `points` (n >= 4, 3) as a function of arclength in [0, length].
+
+    Raises ValueError if the curve's own length differs from `length` by more than 0.1 %.
+    """
+    path = np.asarray(points, dtype=float)
+    if path.ndim != 2 or path.shape[0] < 4 or path.shape[1] != 3 or not np.isfinite(path).all():
+        raise ValueError(f"a centreline needs at least 4 finite points of 3 coordinates, got shape {path.shape}")
+    parameter = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    if not (np.diff(parameter) > 0).all():
+        raise ValueError("successive points of a centreline must differ")
+    raw = CubicSpline(parameter, path)
+    fine = np.linspace(0.0, parameter[-1], 40 * len(path) + 1)
+    speed = np.linalg.norm(raw(fine, 1), axis=1)
+    arclength = CubicSpline(fine, speed).antiderivative()(fine)
+    if abs(arclength[-1] / length - 1.0) > 1e-3:
+        raise ValueError(f"the centreline is {arclength[-1]:.6g} m long, the rod {length:.6g} m: they must agree to 0.1 %")
+    by_arclength = CubicSpline(arclength * (length / arclength[-1]), fine)
+
+    def centreline(s: Array) -> Array:
+        return np.asarray(path[0] + (raw(by_arclength(s)) - path[0]) * (length / arclength[-1]), dtype=float)
+
+    return centreline
+
+
+def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
+    """Positions (n, 3), orientations (n, 4) and curvature-twist (n, 3) at the nodes `s` (n,) at t = 0.
+
+    The frame follows the centreline by parallel transport (sampled eight times finer), turned by `twist`.
+    """
+    refined = np.linspace(s[0], s[-1], 8 * (len(s) - 1) + 1)
+    curve = CubicSpline(refined, initial.centreline(refined))
+    tangent = curve(refined, 1)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    first = _transport(tangent, np.array(initial.a1, dtype=float))
+    R = np.stack([first, np.cross(tangent, first), tangent], axis=2)
+    angle = np.asarray(initial.twist(refined), dtype=float)
+    c, o, i = np.cos(angle), np.zeros_like(angle), np.ones_like(angle)
+    spin = np.stack([np.stack([c, -np.sin(angle), o], 1), np.stack([np.sin(angle), c, o], 1), np.stack([o, o, i], 1)], 1)
+    R = R @ spin
+    bend = curve(refined, 2)
+    bend -= np.sum(bend * tangent, axis=1)[:, None] * tangent
+    kappa_lab = np.cross(tangent, bend)
+    kappa = np.einsum("nij,ni->nj", R, kappa_lab)
+    kappa[:, 2] = CubicSpline(refined, angle)(refined, 1)
+    return initial.centreline(s), quaternion_of(R[::8]), kappa[::8]
+
+
+def _transport(tangent: Array, first: Array) -> Array:
+    """Parallel transport of `first`, made normal to tangent[0], along unit tangents (n, 3): double reflection."""
+    carried = np.empty_like(tangent)
+    normal = first - np.dot(first, tangent[0]) * tangent[0]
+    if np.linalg.norm(normal) < 1e-6 * np.linalg.norm(first):
+        raise ValueError(f"a1 must not be parallel to the tangent at s = 0, got {first.tolist()}")
+    carried[0] = normal / np.linalg.norm(normal)
+    for i in range(1, len(tangent)):
+        # the shortest rotation from one tangent to the next
+        axis = np.cross(tangent[i - 1], tangent[i])
+        old = carried[i - 1]
+        new = old + np.cross(axis, old) + np.cross(axis, np.cross(axis, old)) / (1.0 + tangent[i - 1] @ tangent[i])
+        new -= (new @ tangent[i]) * tangent[i]
+        carried[i] = new / np.linalg.norm(new)
+    return carried

@@ -1,0 +1,108 @@
+"""Loads that are given: weight and buoyancy, distributed and point loads, as densities at the nodes."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from solver.methods.box.fields import Loads, Section
+from solver.rod import Array
+from solver.scene import DistributedLoad, PointLoad, Scene
+
+
+class AppliedLoads:
+    """The loads of a scene at the nodes `s` (n,), at any time."""
+
+    def __init__(self, scene: Scene, section: Section, s: Array) -> None:
+        n, fluid = len(s), scene.fluid
+        self.weight = effective_weight(scene, section)
+        """(rho_c - rho_w) A g at the nodes (n, 3), N/m, lab."""
+        self._distributed = [(load, _profiles(load, s)) for load in scene.distributed]
+        at_ends = tuple(load for load in scene.points if load.s in (s[0], s[-1]))
+        inside = tuple(load for load in scene.points if load not in at_ends)
+        self._points = [(load, point_weights(load.s, s)) for load in inside]
+        self._at_ends = at_ends
+        self._given = scene.distributed + inside
+        area = 0.25 * pi * section.diameter**2
+        density = fluid.density if fluid else 0.0
+        self._loads = Loads(
+            lab=np.zeros((n, 6)),
+            material=np.zeros((n, 6)),
+            follows=any(load.frame == "material" for load in self._given),
+            damping=scene.damping,
+            added_mass=density * area * (fluid.added_mass if fluid else 0.0),
+            drag_normal=0.5 * density * section.diameter * (fluid.drag_normal if fluid else 0.0),
+            drag_tangential=0.5 * density * pi * section.diameter * (fluid.drag_tangential if fluid else 0.0),
+            current=np.array(fluid.current if fluid else (0.0, 0.0, 0.0), dtype=float),
+            wet=fluid is not None,
+        )
+        self._steady = all(_is_steady(load) for load in self._given)
+        self._fill(0.0)
+
+    def corners(self) -> list[float]:
+        """Times to which steps must be aligned."""
+        curves = [load.schedule for load, _ in self._distributed]
+        for point in (*self._at_ends, *(point for point, _ in self._points)):
+            curves += [*point.force, *point.moment]
+        return [corner for curve in curves for corner in curve.corners]
+
+    def at_end(self, t: float, s: float, frame: str) -> Array:
+        """Point loads (6,) at an end in a frame, as what they add to the internal f and q there."""
+        total = np.zeros(6)
+        for load in self._at_ends:
+            if load.s == s and load.frame == frame:
+                total += [c.value(t) for c in (*load.force, *load.moment)]
+        return total if s > 0.0 else -total
+
+    def at(self, t: float) -> Loads:
+        """The loads at time t; the arrays are the same ones at every call."""
+        if not self._steady:
+            self._fill(t)
+        return self._loads
+
+    def _fill(self, t: float) -> None:
+        self._loads.lab[:] = 0.0
+        self._loads.material[:] = 0.0
+        self._loads.lab[:, :3] = self.weight
+        for load, density in self._distributed:
+            target = self._loads.material if load.frame == "material" else self._loads.lab
+            target += load.schedule.value(t) * density
+        for point, weights in self._points:
+            target = self._loads.material if point.frame == "material" else self._loads.lab
+            target += np.outer(weights, [c.value(t) for c in (*point.force, *point.moment)])
+
+
+def effective_weight(scene: Scene, section: Section) -> Array:
+    """Weight less buoyancy per length, (rho_c A - rho_w A) g, at the nodes (n, 3)."""
+    mass = section.mass.copy()
+    if scene.fluid:
+        mass -= scene.fluid.density * 0.25 * pi * section.diameter**2
+    return np.outer(mass, np.array(scene.gravity, dtype=float))
+
+
+def point_weights(at: float, s: Array) -> Array:
+    """Densities at the nodes (n,) in 1/m that act like a unit point load at arclength `at`.
+
+    A density at a node acts, through the means over its intervals, at the node's centre of action: the node itself,
+    or the middle of the first or last interval for an end node. Two neighbouring nodes are weighted so that force
+    and moment are those of the point.
+    """
+    centres, lengths = s.copy(), np.gradient(s)
+    centres[0], centres[-1] = 0.5 * (s[0] + s[1]), 0.5 * (s[-2] + s[-1])
+    lengths[0], lengths[-1] = 0.5 * (s[1] - s[0]), 0.5 * (s[-1] - s[-2])
+    i = int(np.clip(np.searchsorted(centres, at) - 1, 0, len(s) - 2))
+    share = (at - centres[i]) / (centres[i + 1] - centres[i])
+    weights = np.zeros_like(s)
+    weights[i], weights[i + 1] = (1.0 - share) / lengths[i], share / lengths[i + 1]
+    return weights
+
+
+def _profiles(load: DistributedLoad, s: Array) -> Array:
+    return np.stack([p(s) for p in (*load.force, *load.moment)], axis=1)
+
+
+def _is_steady(load: DistributedLoad | PointLoad) -> bool:
+    if isinstance(load, DistributedLoad):
+        return load.schedule.is_constant
+    return all(c.is_constant for c in (*load.force, *load.moment))

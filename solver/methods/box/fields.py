@@ -1,0 +1,143 @@
+"""The arrays of the box method, each named once.
+
+Unknowns at a node, in this order: V = R v (lab), omega (material), kappa (material), F = R f (lab).
+Translation is balanced in the lab frame: there its inertia is rho_c A dV/dt without a gyroscopic term and
+linear momentum is conserved to rounding (docs/decisions/0002-lab-frame-balances.md).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.rod import Array, Rod
+
+V, OMEGA, KAPPA, F = 0, 3, 6, 9
+"""First column of each unknown in Y (n, 12)."""
+UNKNOWNS = 12
+
+
+class Section(NamedTuple):
+    """Section properties at the nodes: stiffness (n, 3), mass (n,), inertia (n, 3), diameter (n,), kappa0 (n, 3)."""
+
+    stiffness: Array
+    mass: Array
+    inertia: Array
+    diameter: Array
+    kappa0: Array
+
+
+def sample(rod: Rod, s: Array) -> Section:
+    """The rod's section properties at arclengths s (n,)."""
+
+    def columns(profiles: tuple) -> Array:  # type: ignore[type-arg]
+        return np.ascontiguousarray(np.stack([p(s) for p in profiles], axis=1))
+
+    return Section(columns(rod.stiffness), np.array(rod.mass(s)), columns(rod.inertia),
+                   np.array(rod.diameter(s)), columns(rod.kappa0))  # fmt: skip
+
+
+class State(NamedTuple):
+    """The rod at one time, at n nodes. What a step reads and writes, and all that a restart needs.
+
+    `Y` (n, 12); `rate` (n, 9): time derivatives of V, omega, kappa; `aux` (n, 15): generalized-alpha's own
+    rates of r, theta, V, omega, kappa; `r` (n, 3) lab positions; `quaternion` (n, 4).
+    """
+
+    Y: Array
+    rate: Array
+    aux: Array
+    r: Array
+    quaternion: Array
+
+    @classmethod
+    def empty(cls, n: int) -> State:
+        """A state of zeros with n nodes."""
+        return cls(np.zeros((n, 12)), np.zeros((n, 9)), np.zeros((n, 15)), np.zeros((n, 3)), np.zeros((n, 4)))
+
+    def copy_to(self, other: State) -> None:
+        """Overwrite `other` with this state."""
+        for mine, theirs in zip(self, other, strict=True):
+            theirs[...] = mine
+
+
+class Nodes(NamedTuple):
+    """What the nodes bring to the balances, at the current iterate, and its tangents.
+
+    (n, 3), lab: `T` = R a3; `U` = dT/dt; `P` = rho_c A dV/dt - B; `M` = R q; `W` = dH/dt - Q with H = R I omega.
+    (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V, omega (`w`) or kappa (`k`)).
+    """
+
+    R: Array
+    J: Array
+    T: Array
+    U: Array
+    P: Array
+    M: Array
+    W: Array
+    T_w: Array
+    U_w: Array
+    M_k: Array
+    M_w: Array
+    P_V: Array
+    P_w: Array
+    W_w: Array
+
+    @classmethod
+    def empty(cls, n: int) -> Nodes:
+        """Zeros for n nodes."""
+        vectors = {"T", "U", "P", "M", "W"}
+        return cls(*(np.zeros((n, 3) if name in vectors else (n, 3, 3)) for name in cls._fields))
+
+
+class Loads(NamedTuple):
+    """Loads at the nodes at the end of the step, per length.
+
+    `lab` and `material` (n, 6): force and moment; `follows`: whether `material` is not zero;
+    `damping` c (1/s); `added_mass`, `drag_normal`, `drag_tangential` (n,): Ca rho_w A, 0.5 rho_w D Cdn,
+    0.5 rho_w pi D Cdt; `current` (3,); `wet`: whether there is a fluid.
+    """
+
+    lab: Array
+    material: Array
+    follows: bool
+    damping: float
+    added_mass: Array
+    drag_normal: Array
+    drag_tangential: Array
+    current: Array
+    wet: bool
+
+
+class Linear(NamedTuple):
+    """The almost block diagonal system and its factors.
+
+    `panels` (N, 18, 24): six rows carried from the left over an interval's twelve; `start`, `end` (6, 12)
+    rows of the ends; residuals `b` (N, 12), `b_start`, `b_end` (6,); `swaps` (N, 12); `last` (12, 12) with
+    `last_swaps` (12,); `x` (n, 12) solution; `rhs` (N, 18) scratch; `columns`, `rows` (12,) scales.
+    """
+
+    panels: Array
+    start: Array
+    end: Array
+    b: Array
+    b_start: Array
+    b_end: Array
+    swaps: Array
+    last: Array
+    last_swaps: Array
+    x: Array
+    rhs: Array
+    columns: Array
+    rows: Array
+
+    @classmethod
+    def empty(cls, intervals: int) -> Linear:
+        """Zeros for a rod of `intervals` intervals."""
+        N = intervals
+        return cls(
+            np.zeros((N, 18, 24)), np.zeros((6, 12)), np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6),
+            np.zeros(6), np.zeros((N, 12), np.int64), np.zeros((12, 12)), np.zeros(12, np.int64),
+            np.zeros((N + 1, 12)), np.zeros((N, 18)), np.ones(12), np.ones(12),
+        )  # fmt: skip

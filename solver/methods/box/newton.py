@@ -1,0 +1,147 @@
+"""One time step of the box method: Newton's iteration on all nodes at once."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.kernel import kernel
+from solver.methods.box.elimination import factor, solve
+from solver.methods.box.ends import end_conditions
+from solver.methods.box.fields import KAPPA, F, Linear, Loads, Nodes, Section, State
+from solver.methods.box.generalized_alpha import Scheme, finish, history
+from solver.methods.box.intervals import interval_residuals, interval_tangents, measure_drift
+from solver.methods.box.nodes import balance_rotation, balance_translation, place_nodes
+from solver.methods.box.shooting import LARGEST_GROWTH, shoot
+from solver.rod import Array
+
+CONVERGED, STALLED, SINGULAR, LOST_DIGITS = 0, 1, 2, 3
+"""How an iteration ended."""
+
+LARGEST_ITERATIONS = 12
+LARGEST_INCREMENT = 1e3
+"""Scaled increment beyond which an iteration is given up."""
+TOLERANCE = 1e-9
+"""Scaled increment at which an iteration has converged: far below a buckling seed."""
+
+
+class EndValues(NamedTuple):
+    """Conditions at both ends, at the end of the step: kinds, values, and dead lab loads, (6,) each."""
+
+    start_kinds: Array
+    start: Array
+    start_dead: Array
+    end_kinds: Array
+    end: Array
+    end_dead: Array
+
+
+class Scales(NamedTuple):
+    """Natural units: length L (m), stiffness EJ (N m^2); and the largest growth that shooting may have."""
+
+    length: float
+    stiffness: float
+    shooting: bool
+
+
+@kernel
+def set_scales(scales: Scales, c0: float, system: Linear) -> None:
+    """Scale unknowns to displacements / L, rotations, L kappa and F L^2/EJ, and the equations to match."""
+    force = scales.stiffness / scales.length**2
+    for i in range(3):
+        system.columns[i] = c0 * scales.length
+        system.columns[3 + i] = c0
+        system.columns[6 + i] = 1.0 / scales.length
+        system.columns[9 + i] = force
+        system.rows[i] = 1.0 / c0
+        system.rows[3 + i] = 1.0 / (c0 * scales.length)
+        system.rows[6 + i] = 1.0 / force
+        system.rows[9 + i] = 1.0 / (force * scales.length)
+
+
+@kernel
+def assemble(old: State, new: State, past: Array, c0: float, h: float, section: Section, loads: Loads,
+             ends: EndValues, nodes: Nodes, drift: Array, system: Linear) -> None:  # fmt: skip
+    """Residuals and tangents of every equation at the iterate `new`."""
+    place_nodes(old, new, past, c0, nodes)
+    balance_rotation(new, section, loads, past, c0, nodes)
+    balance_translation(new, section, loads, past, c0, nodes)
+    interval_residuals(new.Y, past, c0, h, nodes, drift, system)
+    interval_tangents(new.Y, c0, h, nodes, system)
+    end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
+                   nodes, section, system.b_start, system.start)  # fmt: skip
+    end_conditions(new.Y, len(new.Y) - 1, ends.end_kinds, ends.end, ends.end_dead, system.rows, system.columns,
+                   nodes, section, system.b_end, system.end)  # fmt: skip
+
+
+@kernel
+def increment_size(new: State, system: Linear, scales: Scales) -> float:
+    """The largest scaled increment, kappa and F relative to their own size where that exceeds 1."""
+    kappa, force, size = 1.0, 1.0, 0.0
+    for j in range(len(new.Y)):
+        for i in range(3):
+            kappa = max(kappa, scales.length * abs(new.Y[j, KAPPA + i]))
+            force = max(force, abs(new.Y[j, F + i]) * scales.length**2 / scales.stiffness)
+    for j in range(len(new.Y)):
+        for i in range(3):
+            size = max(size, abs(system.x[j, i]), abs(system.x[j, 3 + i]))
+            size = max(size, abs(system.x[j, 6 + i]) / kappa, abs(system.x[j, 9 + i]) / force)
+        if not np.isfinite(system.x[j, 0]):
+            return np.inf
+    return size
+
+
+class Work(NamedTuple):
+    """Arrays that a step writes and nobody keeps."""
+
+    past: Array
+    drift: Array
+    nodes: Nodes
+    system: Linear
+    marched: Array
+
+    @classmethod
+    def empty(cls, intervals: int, shooting: bool) -> Work:
+        """Zeros for a rod of `intervals` intervals."""
+        n = intervals + 1
+        marched = np.zeros((n if shooting else 1, 12, 7))
+        return cls(np.zeros((n, 15)), np.zeros((intervals, 6)), Nodes.empty(n), Linear.empty(intervals), marched)
+
+
+@kernel
+def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: Section, loads: Loads,
+         ends: EndValues, scales: Scales, gain: float, work: Work) -> tuple[int, int]:  # fmt: skip
+    """Advance `old` by dt into `new`; `new.Y` is the first guess. Returns how it ended and the iterations.
+
+    `gain` (1/s) feeds back the drift of the constraints. Convergence: the increment, or its extrapolation for a
+    quadratically converging iteration, is below 1e-9 of the natural units.
+    """
+    c0 = scheme.alpha_m / (scheme.alpha_f * scheme.gamma * dt)
+    system = work.system
+    history(old, scheme, dt, work.past)
+    measure_drift(old, h, gain, work.drift)
+    set_scales(scales, c0, system)
+    before = 0.0
+    for iteration in range(1, LARGEST_ITERATIONS + 1):
+        assemble(old, new, work.past, c0, h, section, loads, ends, work.nodes, work.drift, system)
+        if scales.shooting:
+            growth = shoot(system, work.marched, system.x)
+            if not growth < LARGEST_GROWTH:
+                return LOST_DIGITS, iteration
+        else:
+            if not factor(system):
+                return SINGULAR, iteration
+            solve(system, system.b_start, system.b, system.b_end, system.x)
+        size = increment_size(new, system, scales)
+        if not size < LARGEST_INCREMENT:
+            return STALLED, iteration
+        for j in range(len(new.Y)):
+            for k in range(12):
+                new.Y[j, k] -= system.columns[k] * system.x[j, k]
+        if size < TOLERANCE or (before > 0.0 and size < 1e-4 and size * size / before < TOLERANCE):
+            place_nodes(old, new, work.past, c0, work.nodes)
+            finish(old, new, scheme, dt, work.past)
+            return CONVERGED, iteration
+        before = size
+    return STALLED, LARGEST_ITERATIONS

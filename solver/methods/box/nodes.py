@@ -1,0 +1,103 @@
+"""The physics at a node: frames, inertia, moments and loads at the current iterate, with their tangents."""
+
+from __future__ import annotations
+
+from solver.kernel import kernel
+from solver.loads.fluid import add_added_mass, add_drag
+from solver.methods.box.fields import KAPPA, OMEGA, Loads, Nodes, Section, State, V
+from solver.rod import Array
+from solver.rotation import matrix_of, right_jacobian, turn
+
+
+@kernel
+def rotation_tangent(R: Array, x: Array, J: Array, out: Array) -> None:
+    """Write d(R x)/d omega = -R [x] J into `out` (3, 3), for a material vector x held fixed."""
+    for i in range(3):
+        a = x[1] * R[i, 2] - x[2] * R[i, 1]
+        b = x[2] * R[i, 0] - x[0] * R[i, 2]
+        c = x[0] * R[i, 1] - x[1] * R[i, 0]
+        for k in range(3):
+            out[i, k] = a * J[0, k] + b * J[1, k] + c * J[2, k]
+
+
+@kernel
+def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) -> None:
+    """Write positions and orientations of `new` and the nodes' R, J, T, U with their tangents."""
+    theta, x = past[0, :3].copy(), past[0, :3].copy()
+    for j in range(len(past)):
+        R, J = nodes.R[j], nodes.J[j]
+        for i in range(3):
+            new.r[j, i] = past[j, i] + new.Y[j, V + i] / c0
+            theta[i] = past[j, 3 + i] + new.Y[j, OMEGA + i] / c0
+        turn(old.quaternion[j], theta, new.quaternion[j])
+        matrix_of(new.quaternion[j], R)
+        right_jacobian(theta, 1.0 / c0, J)
+        x[0], x[1], x[2] = 0.0, 0.0, 1.0
+        rotation_tangent(R, x, J, nodes.T_w[j])
+        x[0], x[1], x[2] = new.Y[j, OMEGA + 1], -new.Y[j, OMEGA], 0.0
+        rotation_tangent(R, x, J, nodes.U_w[j])
+        for i in range(3):
+            nodes.T[j, i] = R[i, 2]
+            nodes.U[j, i] = R[i, 0] * x[0] + R[i, 1] * x[1]
+            nodes.U_w[j, i, 0] -= R[i, 1]
+            nodes.U_w[j, i, 1] += R[i, 0]
+
+
+@kernel
+def balance_rotation(new: State, section: Section, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
+    """Write M = R K (kappa - kappa0) and W = R (I omega_t + omega x I omega + c I omega) - Q with tangents."""
+    q, m = past[0, :3].copy(), past[0, :3].copy()
+    D = nodes.R[0].copy()
+    for j in range(len(past)):
+        R, J = nodes.R[j], nodes.J[j]
+        I0, I1, I2 = section.inertia[j, 0], section.inertia[j, 1], section.inertia[j, 2]
+        w0, w1, w2 = new.Y[j, OMEGA], new.Y[j, OMEGA + 1], new.Y[j, OMEGA + 2]
+        for i in range(3):
+            q[i] = section.stiffness[j, i] * (new.Y[j, KAPPA + i] - section.kappa0[j, i])
+            rate = c0 * new.Y[j, OMEGA + i] + past[j, 9 + i] + loads.damping * new.Y[j, OMEGA + i]
+            m[i] = section.inertia[j, i] * rate
+            D[i, i] = section.inertia[j, i] * (c0 + loads.damping)
+        m[0] += (I2 - I1) * w1 * w2
+        m[1] += (I0 - I2) * w2 * w0
+        m[2] += (I1 - I0) * w0 * w1
+        D[0, 1], D[0, 2] = (I2 - I1) * w2, (I2 - I1) * w1
+        D[1, 0], D[1, 2] = (I0 - I2) * w2, (I0 - I2) * w0
+        D[2, 0], D[2, 1] = (I1 - I0) * w1, (I1 - I0) * w0
+        if loads.follows:
+            for i in range(3):
+                m[i] -= loads.material[j, 3 + i]
+        rotation_tangent(R, q, J, nodes.M_w[j])
+        rotation_tangent(R, m, J, nodes.W_w[j])
+        for i in range(3):
+            nodes.M[j, i] = R[i, 0] * q[0] + R[i, 1] * q[1] + R[i, 2] * q[2]
+            nodes.W[j, i] = R[i, 0] * m[0] + R[i, 1] * m[1] + R[i, 2] * m[2] - loads.lab[j, 3 + i]
+            for k in range(3):
+                nodes.M_k[j, i, k] = R[i, k] * section.stiffness[j, k]
+                nodes.W_w[j, i, k] += R[i, 0] * D[0, k] + R[i, 1] * D[1, k] + R[i, 2] * D[2, k]
+
+
+@kernel
+def balance_translation(new: State, section: Section, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
+    """Write P = rho_c A (dV/dt + c V) - B with its tangents by V and omega."""
+    acceleration, u, b = past[0, :3].copy(), past[0, :3].copy(), past[0, :3].copy()
+    for j in range(len(past)):
+        mass = section.mass[j]
+        P, P_V, P_w = nodes.P[j], nodes.P_V[j], nodes.P_w[j]
+        for i in range(3):
+            velocity = new.Y[j, V + i]
+            acceleration[i] = c0 * velocity + past[j, 6 + i]
+            u[i] = velocity - loads.current[i]
+            P[i] = mass * (acceleration[i] + loads.damping * velocity) - loads.lab[j, i]
+            for k in range(3):
+                P_V[i, k] = 0.0
+                P_w[i, k] = 0.0
+            P_V[i, i] = mass * (c0 + loads.damping)
+        if loads.follows:
+            for i in range(3):
+                b[i] = -loads.material[j, i]
+            rotation_tangent(nodes.R[j], b, nodes.J[j], P_w)
+            for i in range(3):
+                P[i] += nodes.R[j, i, 0] * b[0] + nodes.R[j, i, 1] * b[1] + nodes.R[j, i, 2] * b[2]
+        if loads.wet:
+            add_added_mass(loads.added_mass[j], c0, acceleration, nodes.T[j], nodes.T_w[j], P, P_V, P_w)
+            add_drag(loads.drag_normal[j], loads.drag_tangential[j], u, nodes.T[j], nodes.T_w[j], P, P_V, P_w)

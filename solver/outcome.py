@@ -1,0 +1,48 @@
+"""How a run ended: one name, and the sentence that the user reads."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Outcome(StrEnum):
+    """Every way in which a run can end."""
+
+    COMPLETED = "completed"
+    CANCELLED = "cancelled"
+    STEP_TOO_SMALL = "step_too_small"
+    ROD_CROSSED_ITSELF = "rod_crossed_itself"
+    SHOOTING_LOST_DIGITS = "shooting_lost_digits"
+    SINGULAR_SYSTEM = "singular_system"
+
+
+REMEDY: dict[Outcome, str] = {
+    Outcome.COMPLETED: "",
+    Outcome.CANCELLED: "submit the case again to run it to its end",
+    Outcome.STEP_TOO_SMALL: (
+        "Newton's iteration did not converge even at the smallest step: look for a load or an end that "
+        "jumps, soften the contact law, or use more intervals"
+    ),
+    Outcome.ROD_CROSSED_ITSELF: (
+        "the rod passed through itself: use more intervals, a finer contact spacing, a stiffer contact law, "
+        "or a smaller dt_max"
+    ),
+    Outcome.SHOOTING_LOST_DIGITS: (
+        "shooting cannot resolve this rod at this step: use linear_solver block_elimination, or a larger dt_max"
+    ),
+    Outcome.SINGULAR_SYSTEM: (
+        "the linear system is singular: check that the end conditions leave no motion undetermined"
+    ),
+}
+
+
+class RunFailed(Exception):
+    """A run that could not go on: its outcome, where it stopped, and what to do about it."""
+
+    def __init__(self, outcome: Outcome, t: float, step: int, detail: str = "") -> None:
+        super().__init__(outcome, t, step, detail)
+        self.outcome, self.t, self.step, self.detail = outcome, t, step, detail
+
+    def __str__(self) -> str:
+        told = f" ({self.detail})" if self.detail else ""
+        return f"{self.outcome.value} at t = {self.t:.6g} s, step {self.step}{told}: {REMEDY[self.outcome]}"

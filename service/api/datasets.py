@@ -1,0 +1,70 @@
+"""/v1/jobs/{id}/dataset is the file, /v1/jobs/{id}/data a part of it as JSON."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from threading import Lock
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+from fastapi.responses import FileResponse
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api.parts import InParts, Parts, matches
+from service.api.problems import Problem
+from service.jobs import ENDED, Dataset
+from service.results import SubsetTooLarge, UnknownVariable, subset
+
+NETCDF = "application/x-netcdf"
+router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
+one_at_a_time = Lock()  # HDF5 is not safe for threads
+
+
+class Part(BaseModel):
+    """Which part of a dataset: names with commas between, ranges in s and m, every n-th in time and s."""
+
+    model_config = ConfigDict(extra="forbid")
+    variables: str = Field(min_length=1, max_length=1000, examples=["Tw,Wr,Lk"])
+    t_min: float | None = Field(None, allow_inf_nan=False)
+    t_max: float | None = Field(None, allow_inf_nan=False)
+    t_stride: int = Field(1, ge=1)
+    s_min: float | None = Field(None, allow_inf_nan=False)
+    s_max: float | None = Field(None, allow_inf_nan=False)
+    s_stride: int = Field(1, ge=1)
+
+
+@router.api_route("/dataset", methods=["GET", "HEAD"], response_class=FileResponse)
+def dataset(job_id: str, request: Request, parts: InParts) -> Response:
+    """The NetCDF file, whole or by byte ranges; xarray opens it by this address with #mode=bytes."""
+    path, published = _published(job_id, parts)
+    headers = {"ETag": f'"{published.sha256}"', "Cache-Control": "private, immutable"}
+    if matches(request, headers["ETag"]):
+        return Response(status_code=304, headers=headers)
+    return FileResponse(path, headers=headers, media_type=NETCDF, filename=f"{job_id}.nc")
+
+
+@router.get("/data")
+def data(job_id: str, part: Annotated[Part, Query()], parts: InParts) -> dict[str, Any]:
+    """Some variables over a range of time and arclength, as JSON."""
+    path, _ = _published(job_id, parts)
+    names = [name.strip() for name in part.variables.split(",")]
+    try:
+        with one_at_a_time:
+            return subset(path, names, (part.t_min, part.t_max), (part.s_min, part.s_max),
+                          (part.t_stride, part.s_stride))
+    except SubsetTooLarge as error:
+        raise Problem(422, "subset_too_large", str(error)) from None
+    except UnknownVariable as error:
+        raise Problem(422, "unknown_variable", str(error)) from None
+
+
+def _published(job_id: str, parts: Parts) -> tuple[Path, Dataset]:
+    """The job's file. Raises Problem 404 or 409, UnknownJob."""
+    job = parts.registry.get(job_id)
+    if job.dataset is None and job.status not in ENDED:
+        raise Problem(409, "not_finished", f"job {job.id} is {job.status}: its dataset comes at its end",
+                      {"Retry-After": "1"})
+    path = parts.settings.datasets / job.dataset.file if job.dataset else None
+    if job.dataset is None or path is None or not path.is_file():
+        raise Problem(404, "no_dataset", f"job {job.id} is {job.status} and has no dataset: {job.message}")
+    return path, job.dataset

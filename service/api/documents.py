@@ -1,0 +1,70 @@
+"""What the interface says of a job."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+
+from pydantic import BaseModel
+
+from service.jobs import Job, Status
+
+
+class DatasetDocument(BaseModel):
+    """A dataset that can be fetched."""
+
+    href: str
+    sha256: str
+    bytes: int
+
+
+class JobDocument(BaseModel):
+    """A job. `progress` goes from 0 to 1, `t` is simulated seconds; `message` says what to do next."""
+
+    id: str
+    status: Status
+    title: str
+    progress: float
+    t: float
+    outcome: str
+    message: str
+    cancel_requested: bool
+    attempts: int
+    created: datetime
+    started: datetime | None
+    finished: datetime | None
+    case_sha256: str
+    dataset: DatasetDocument | None
+    links: dict[str, str]
+
+
+class JobsDocument(BaseModel):
+    """A page of jobs, newest first; `next` is the address of the following page."""
+
+    jobs: list[JobDocument]
+    next: str | None
+
+
+def document(job: Job) -> JobDocument:
+    """A job as its readers see it."""
+    here = address(job.id)
+    links = {"self": here}
+    dataset = None
+    if job.dataset is not None:
+        links |= {"dataset": f"{here}/dataset", "data": f"{here}/data"}
+        dataset = DatasetDocument(href=links["dataset"], sha256=job.dataset.sha256, bytes=job.dataset.bytes)
+    return JobDocument(
+        id=job.id, status=job.status, title=job.title, progress=job.progress, t=job.t, outcome=job.outcome,
+        message=job.message, cancel_requested=job.cancel_requested, attempts=job.attempts,
+        created=_instant(job.created), started=job.started and _instant(job.started),
+        finished=job.finished and _instant(job.finished), case_sha256=job.case_sha256,
+        dataset=dataset, links=links,
+    )
+
+
+def address(job_id: str) -> str:
+    """Where a job is found."""
+    return f"/v1/jobs/{job_id}"
+
+
+def _instant(seconds: float) -> datetime:
+    return datetime.fromtimestamp(seconds, UTC)

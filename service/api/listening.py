@@ -1,0 +1,28 @@
+"""The socket on which the API listens, and the rule which addresses it may have."""
+
+from __future__ import annotations
+
+import ipaddress
+import socket
+
+
+def listen(host: str, port: int) -> socket.socket:
+    """A listening socket on loopback. Raises ValueError for any other host, OSError if the port is taken."""
+    if not is_loopback(host):
+        raise ValueError(f"host must be a loopback address, as there are no API keys yet, got {host!r}")
+    family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    listening = socket.socket(family, socket.SOCK_STREAM)
+    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    listening.bind(address)
+    listening.listen(2048)
+    return listening
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a host name or address is this machine's own."""
+    if host == "localhost":
+        return True
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False

@@ -1,0 +1,91 @@
+"""Every error of the interface as application/problem+json (RFC 9457)."""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from starlette.exceptions import HTTPException
+
+from service.cases import CaseError
+from service.jobs import UnknownJob
+
+LONGEST_VALUE = 200
+log = logging.getLogger(__name__)
+
+
+class Problem(Exception):
+    """An answer that is not the one that was hoped for."""
+
+    def __init__(self, status: int, name: str, detail: str, headers: Mapping[str, str] | None = None,
+                 **extensions: Any) -> None:
+        super().__init__(detail)
+        self.status, self.name, self.detail = status, name, detail
+        self.headers, self.extensions = headers, extensions
+
+    def response(self) -> JSONResponse:
+        """The problem as its client reads it."""
+        body = {"type": f"urn:hockle:problem:{self.name}", "title": HTTPStatus(self.status).phrase,
+                "status": self.status, "detail": self.detail}
+        return JSONResponse(body | self.extensions, self.status, self.headers, "application/problem+json")
+
+
+def install(app: FastAPI) -> None:
+    """Have `app` answer every exception with a problem."""
+    app.exception_handler(Problem)(_problem)
+    app.exception_handler(HTTPException)(_http)
+    app.exception_handler(RequestValidationError)(_parameters)
+    app.exception_handler(CaseError)(_case)
+    app.exception_handler(UnknownJob)(_unknown_job)
+    app.exception_handler(Exception)(_bug)
+
+
+def shown(value: Any) -> Any:
+    """A refused value as a problem quotes it: itself if it is short JSON, else the start of its text."""
+    try:
+        text = json.dumps(value, allow_nan=False)
+        text.encode()
+    except (TypeError, ValueError):
+        return ascii(value)[:LONGEST_VALUE]
+    return value if len(text) <= LONGEST_VALUE else text[:LONGEST_VALUE] + "..."
+
+
+async def _problem(_: Request, error: Problem) -> JSONResponse:
+    return error.response()
+
+
+async def _http(request: Request, error: HTTPException) -> JSONResponse:
+    name = HTTPStatus(error.status_code).name.lower()
+    detail = f"{error.detail}: {request.method} {request.url.path}"
+    return Problem(error.status_code, name, detail, error.headers).response()
+
+
+async def _parameters(_: Request, error: RequestValidationError) -> JSONResponse:
+    errors = [{"parameter": ".".join(map(str, fault["loc"][1:])), "value": shown(fault.get("input")),
+               "rule": fault["msg"]} for fault in error.errors()]
+    return Problem(422, "invalid_parameters", _told("parameter", errors), errors=errors).response()
+
+
+async def _case(_: Request, error: CaseError) -> JSONResponse:
+    errors = [{"pointer": e.pointer, "value": shown(e.value), "rule": e.rule} for e in error.errors]
+    return Problem(422, "invalid_case", _told("pointer", errors), errors=errors).response()
+
+
+async def _unknown_job(_: Request, error: Exception) -> JSONResponse:
+    return Problem(404, "unknown_job", f"there is no job {str(error)[:40]!r}").response()
+
+
+async def _bug(request: Request, error: Exception) -> JSONResponse:
+    log.error("%s %s failed", request.method, request.url.path, exc_info=error)
+    return Problem(500, "internal_error", "hockle itself failed; its log says where").response()
+
+
+def _told(where: str, errors: list[dict[str, Any]]) -> str:
+    first = "; ".join(f"{e[where] or 'the whole'}: {e['rule']}" for e in errors[:3])
+    return first if len(errors) <= 3 else f"{first}; and {len(errors) - 3} more"

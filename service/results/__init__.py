@@ -1,0 +1,16 @@
+"""Results: the dataset of a run, its contents, how it is written and read."""
+
+from service.results.query import SubsetTooLarge, UnknownVariable, open_dataset, subset
+from service.results.schema import VARIABLES, Variable
+from service.results.writer import DatasetWriter, Published
+
+__all__ = [
+    "VARIABLES",
+    "DatasetWriter",
+    "Published",
+    "SubsetTooLarge",
+    "UnknownVariable",
+    "Variable",
+    "open_dataset",
+    "subset",
+]

@@ -1,0 +1,118 @@
+"""One NetCDF-4 file from the segments of a run: written, and read back to be sure."""
+
+from __future__ import annotations
+
+import errno
+import platform
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+from numpy.typing import NDArray
+
+from service.results.schema import COORDINATES, LABEL_NAMES, LABELS, Variable
+from service.results.segments import Block
+
+CHUNK_BYTES = 1_000_000
+Blocks = Callable[[], Iterator[Block]]
+
+
+def versions() -> dict[str, str]:
+    """The versions of what computed the dataset, as its attributes."""
+    told = {"python_version": platform.python_version()}
+    for package in ("hockle", "numpy", "numba", "netCDF4"):
+        try:
+            told[f"{package.lower()}_version"] = version(package)
+        except PackageNotFoundError:
+            told[f"{package.lower()}_version"] = "not installed"
+    return told
+
+
+def write(
+    path: Path,
+    variables: tuple[Variable, ...],
+    s: NDArray[np.float64],
+    frames: int,
+    blocks: Blocks,
+    attributes: Mapping[str, Any],
+) -> None:
+    """Write a dataset of `frames` frames at arclengths `s` (n,) with its global attributes.
+
+    Raises OSError where the file cannot be written.
+    """
+    with _library_errors(path), netCDF4.Dataset(path, "w", format="NETCDF4") as dataset:
+        dataset.setncatts(attributes)
+        _define_coordinates(dataset, s, frames)
+        for variable in variables:
+            _define(dataset, variable, frames)
+        at = 0
+        for block in blocks():
+            upto = at + len(block["time"])
+            for name, values in block.items():
+                dataset[name][at:upto] = values
+            at = upto
+
+
+def verify(path: Path, blocks: Blocks) -> None:
+    """Read the file back and compare it with the blocks. Raises OSError where they differ."""
+    with _library_errors(path), netCDF4.Dataset(path) as dataset:
+        dataset.set_auto_mask(False)
+        at = 0
+        for block in blocks():
+            upto = at + len(block["time"])
+            for name, values in block.items():
+                if not np.array_equal(dataset[name][at:upto], values, equal_nan=True):
+                    raise OSError(errno.EIO, f"{name} was not read back as it was written", str(path))
+            at = upto
+        if len(dataset.dimensions["time"]) != at:
+            raise OSError(errno.EIO, "the number of frames was not read back as it was written", str(path))
+
+
+@contextmanager
+def _library_errors(path: Path) -> Iterator[None]:
+    """The library tells of a full disk by RuntimeError, without its cause."""
+    try:
+        yield
+    except RuntimeError as error:
+        raise OSError(
+            errno.EIO, f"no dataset could be written, is the disk full? ({error})", str(path)
+        ) from error
+
+
+def _define_coordinates(dataset: netCDF4.Dataset, s: NDArray[np.float64], frames: int) -> None:
+    dataset.createDimension("time", frames)
+    dataset.createDimension("s", len(s))
+    dataset.createDimension("label", max(len(name) for names in LABELS.values() for name in names))
+    for name, attributes in COORDINATES.items():
+        dataset.createVariable(name, "f8", (name,), fletcher32=True).setncatts(attributes)
+    dataset["s"][:] = s
+    for name, labels in LABELS.items():
+        dataset.createDimension(name, len(labels))
+        variable = dataset.createVariable(name, "S1", (name, "label"))
+        variable.setncatts({"long_name": LABEL_NAMES[name], "_Encoding": "ascii"})
+        variable[:] = np.array(labels, f"S{len(dataset.dimensions['label'])}")
+
+
+def _define(dataset: netCDF4.Dataset, variable: Variable, frames: int) -> None:
+    rest = [len(dataset.dimensions[name]) for name in variable.dimensions[1:]]
+    in_chunk = CHUNK_BYTES // (8 * int(np.prod(rest)))
+    created = dataset.createVariable(
+        variable.name,
+        variable.type,
+        variable.dimensions,
+        compression="zlib",
+        complevel=1,
+        shuffle=True,
+        fletcher32=True,
+        chunksizes=(max(1, min(frames, in_chunk)), *rest),
+        fill_value=np.nan if variable.type == "f8" else False,
+    )
+    created.setncatts(
+        {"units": variable.units, "long_name": variable.long_name, "coverage_content_type": "modelResult"}
+    )
+    if variable.frame:
+        created.setncattr("frame", variable.frame)

@@ -1,0 +1,110 @@
+"""A dataset on its way: frames come in while the simulation runs, one file comes out at its end."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from service.cases import CaseSpec
+from service.results import netcdf
+from service.results.schema import stored_variables
+from service.results.segments import Segments, sync
+from solver import Frame, Statistics
+
+
+@dataclass(frozen=True)
+class Published:
+    """A dataset under its final name: its checksum (hexadecimal) and its size."""
+
+    sha256: str
+    bytes: int
+
+
+class DatasetWriter:
+    """Writes one dataset; under `path` there is nothing, or what was there, until it is complete.
+
+    `with DatasetWriter(path, spec, s) as writer:` append the frames, then publish. Whatever way the
+    block is left, what is not published is discarded.
+    """
+
+    def __init__(self, path: Path, spec: CaseSpec, s: NDArray[np.float64]) -> None:
+        self._path, self._spec, self._s = path.absolute(), spec, s
+        self._variables = stored_variables(spec)
+        self._segments = Segments(self._path, self._variables)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.discard()
+
+    def append(self, frame: Frame) -> None:
+        """Take one frame. Raises OSError where it cannot be kept."""
+        self._segments.append(frame)
+
+    def publish(self, outcome: str, message: str, statistics: Statistics) -> Published:
+        """Write the dataset beside its place, read it back, and give it its name.
+
+        `outcome` and `message` say how the run ended. Raises OSError where that cannot be done; then
+        nothing is left under the name that was not there before.
+        """
+        self._segments.flush()
+        beside = self._segments.directory / "dataset.nc"
+        attributes = self._attributes(outcome, message, statistics)
+        blocks = self._segments.blocks
+        netcdf.write(beside, self._variables, self._s, self._segments.frames, blocks, attributes)
+        netcdf.verify(beside, blocks)
+        sync(beside)
+        published = Published(_sha256(beside), beside.stat().st_size)
+        beside.replace(self._path)
+        sync(self._path.parent)
+        self.discard()
+        return published
+
+    def discard(self) -> None:
+        """Remove what is not published; nothing happens the second time."""
+        self._segments.remove()
+
+    def _attributes(self, outcome: str, message: str, statistics: Statistics) -> dict[str, Any]:
+        """The global attributes: CF, ACDD, and what a reader needs to run the case again."""
+        now = datetime.now(UTC).isoformat(timespec="seconds")
+        spec = self._spec
+        return {
+            "Conventions": "CF-1.11, ACDD-1.3",
+            "title": spec.title or spec.name,
+            "summary": spec.description or f"Dynamics of an elastic rod: case {spec.name}.",
+            "keywords": "Kirchhoff rod, elastic rod dynamics, self-contact, twist, writhe",
+            "source": "hockle, a simulator of Kirchhoff rod dynamics",
+            "institution": "hockle",
+            "references": "Goyal, Perkins & Lee (2003), Writhing dynamics of cables with self-contact",
+            "history": f"{now} simulated by hockle",
+            "date_created": now,
+            "cdm_data_type": "Other",
+            "case_name": spec.name,
+            "case": json.dumps(spec.document()),
+            "outcome": outcome,
+            "message": message,
+            "cpu_time": statistics.cpu_time,
+            "steps": statistics.steps,
+            "failed_steps": statistics.failed_steps,
+            "newton_iterations": statistics.newton_iterations,
+            **netcdf.versions(),
+        }
+
+
+def _sha256(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

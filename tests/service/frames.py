@@ -1,0 +1,37 @@
+"""Frames without a simulation: every value tells its time, node and component."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from service.cases import CaseSpec, apply_settings, load_case, parse_case
+from solver import Frame
+
+
+def small_spec(**settings: Any) -> CaseSpec:
+    """A shipped case with 10 intervals."""
+    return parse_case(apply_settings(load_case("elastica"), {"numerics.intervals": 10, **settings}))
+
+
+def nodes(spec: CaseSpec) -> np.ndarray:
+    """The arclengths of a case's nodes."""
+    return np.linspace(0.0, spec.rod.length, spec.numerics.intervals + 1)
+
+
+def frames(spec: CaseSpec, count: int) -> Iterator[Frame]:
+    """Frames at t = 0, 0.5, 1, ...; field k (of seven) is 100 k + t + s + component / 10."""
+    s = nodes(spec)
+    for i in range(count):
+        t = 0.5 * i
+        fields = [100.0 * k + t + s[:, None] + np.arange(3) / 10 for k in range(6)]
+        orientation = 600.0 + t + s[:, None] + np.arange(4) / 10
+        yield Frame(
+            t, *fields, orientation,
+            energy_bending=t + 1, energy_torsion=t + 2, energy_kinetic=t + 3, energy_added_mass=t + 4,
+            energy_potential=t + 5, energy_contact=t + 6, work_ends=t + 7, work_loads=t + 8,
+            dissipation=t + 9, energy_balance=t + 10, Tw=t + 11, Wr=np.nan, Lk=t + 13, min_gap=np.nan,
+            contacts=i, dt=0.5, newton_iterations=2 * i,
+        )  # fmt: skip

@@ -1,0 +1,276 @@
+"""Datasets: what they hold, and that there is never half of one."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, get_args
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+
+from service.cases import CaseSpec, parse_case
+from service.cases.case import FieldName
+from service.results import VARIABLES, DatasetWriter, Published, netcdf, open_dataset, segments
+from solver import Statistics
+from tests.service.frames import frames, nodes, small_spec
+
+ROOT = Path(__file__).parents[2]
+STATISTICS = Statistics(steps=12, newton_iterations=34, failed_steps=1, cpu_time=5.5)
+
+
+def write(path: Path, spec: CaseSpec, count: int) -> Published:
+    with DatasetWriter(path, spec, nodes(spec)) as writer:
+        for frame in frames(spec, count):
+            writer.append(frame)
+        return writer.publish("completed", "", STATISTICS)
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "out.nc"
+
+
+def test_a_dataset_gives_back_every_frame(path: Path):
+    spec = small_spec()
+    write(path, spec, 7)
+    with open_dataset(path) as dataset:
+        assert dict(dataset.sizes) == {"time": 7, "s": 11, "body": 3, "lab": 3, "quaternion": 4}
+        assert dataset.time.values.tolist() == [0.5 * i for i in range(7)]
+        assert dataset.s.values == pytest.approx(nodes(spec))
+        for i, frame in enumerate(frames(spec, 7)):
+            for variable in VARIABLES:
+                assert np.array_equal(dataset[variable.name][i], variable.of(frame), equal_nan=True), (
+                    variable.name
+                )
+
+
+def test_components_are_chosen_by_their_names(path: Path):
+    write(path, small_spec(), 2)
+    with open_dataset(path) as dataset:
+        assert float(dataset.f.sel(body="a2", s=0.0)[0]) == pytest.approx(200.1)
+        assert float(dataset.r.sel(lab="e3", s=1.0)[1]) == pytest.approx(501.7)
+        assert dataset["quaternion"].values.tolist() == ["w", "x", "y", "z"]
+
+
+def test_a_plain_xarray_opens_it(path: Path):
+    write(path, small_spec(), 2)
+    with xr.open_dataset(path, decode_times=False) as dataset:
+        assert dataset.Tw.values.tolist() == [11.0, 11.5]
+
+
+def test_every_variable_tells_its_unit_and_meaning(path: Path):
+    write(path, small_spec(), 2)
+    with open_dataset(path) as dataset:
+        for name in [v.name for v in VARIABLES] + ["time", "s"]:
+            assert dataset[name].attrs["units"], name
+            assert dataset[name].attrs["long_name"], name
+        assert dataset.kappa.attrs["frame"] == "material"
+        assert dataset.r.attrs["frame"] == "lab"
+
+
+def test_a_dataset_explains_itself(path: Path):
+    spec = small_spec()
+    write(path, spec, 2)
+    with open_dataset(path) as dataset:
+        told = dataset.attrs
+    assert parse_case(json.loads(told["case"])) == spec
+    assert told["outcome"] == "completed"
+    assert (told["steps"], told["failed_steps"], told["newton_iterations"]) == (12, 1, 34)
+    assert told["cpu_time"] == 5.5
+    assert told["numpy_version"] == np.__version__
+    assert {"python_version", "numba_version", "hockle_version", "title", "summary"} <= set(told)
+
+
+def test_it_passes_the_cf_checker(path: Path):
+    checker = pytest.importorskip("compliance_checker.runner")
+    write(path, small_spec(), 3)
+    checker.CheckSuite.load_all_available_checkers()
+    report = path.with_suffix(".json")
+    passed, exceptions = checker.ComplianceChecker.run_checker(
+        str(path),
+        ["cf:1.11"],
+        verbose=0,
+        criteria="lenient",
+        output_filename=str(report),
+        output_format="json",
+    )
+    assert passed
+    assert not exceptions
+    told = json.loads(report.read_text())["cf:1.11"]
+    faults = [m for level in ("high", "medium") for p in told[f"{level}_priorities"] for m in p["msgs"]]
+    # The checker would have s and the components stand before the time.
+    assert [m for m in faults if "recommended order T, Z, Y, X" not in m] == []
+
+
+def test_only_the_asked_fields_are_stored(path: Path):
+    write(path, small_spec(**{"output.fields": ["r"]}), 2)
+    with open_dataset(path) as dataset:
+        assert "r" in dataset
+        assert "kappa" not in dataset
+        assert "Tw" in dataset
+
+
+def test_the_fields_that_a_case_may_ask_for_are_those_along_the_rod():
+    assert set(get_args(FieldName)) == {v.name for v in VARIABLES if v.along_rod}
+
+
+def test_the_checksum_and_size_are_those_of_the_file(path: Path):
+    published = write(path, small_spec(), 3)
+    content = path.read_bytes()
+    assert published == Published(hashlib.sha256(content).hexdigest(), len(content))
+
+
+def test_many_segments_make_the_same_dataset_as_one(path: Path, monkeypatch: pytest.MonkeyPatch):
+    spec = small_spec()
+    write(path, spec, 9)
+    monkeypatch.setattr(segments, "SEGMENT_BYTES", 10_000)  # four frames of 11 nodes with 22 numbers each
+    other = path.with_name("other.nc")
+    with DatasetWriter(other, spec, nodes(spec)) as writer:
+        for i, frame in enumerate(frames(spec, 9)):
+            writer.append(frame)
+            assert len(list(path.parent.glob(".other.nc.work-*/segment-*.npz"))) == (i + 1) // 5
+        writer.publish("completed", "", STATISTICS)
+    with open_dataset(path) as one, open_dataset(other) as many:
+        xr.testing.assert_equal(one, many)
+
+
+def test_a_run_that_fails_before_its_first_frame_leaves_an_empty_dataset(path: Path):
+    write(path, small_spec(), 0)
+    with open_dataset(path) as dataset:
+        assert dataset.sizes["time"] == 0
+
+
+def test_nothing_but_the_dataset_is_left(path: Path):
+    write(path, small_spec(), 3)
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_new_dataset_takes_the_place_of_the_old_one(path: Path):
+    write(path, small_spec(), 3)
+    write(path, small_spec(), 5)
+    with open_dataset(path) as dataset:
+        assert dataset.sizes["time"] == 5
+
+
+def test_an_interrupted_run_leaves_nothing(path: Path):
+    spec = small_spec()
+    with pytest.raises(KeyboardInterrupt), DatasetWriter(path, spec, nodes(spec)) as writer:
+        for frame in frames(spec, 3):
+            writer.append(frame)
+        raise KeyboardInterrupt
+    assert list(path.parent.iterdir()) == []
+
+
+def no_space(*args: Any, **kwargs: Any) -> None:
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def hdf_error(*args: Any, **kwargs: Any) -> None:
+    raise RuntimeError("NetCDF: HDF error")
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "fault"),
+    [
+        (np, "savez", no_space),
+        (netCDF4, "Dataset", hdf_error),
+        (netcdf, "verify", no_space),
+        (segments.os, "fsync", no_space),
+        (Path, "replace", no_space),
+    ],
+)
+def test_a_full_disk_leaves_the_old_dataset_and_nothing_else(
+    path: Path, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, fault: Any
+):
+    path.write_bytes(b"the old one")
+    with monkeypatch.context() as full:
+        full.setattr(module, name, fault)
+        with pytest.raises(OSError):
+            write(path, small_spec(), 3)
+    assert path.read_bytes() == b"the old one"
+    assert list(path.parent.iterdir()) == [path]
+
+
+LIMITED = """
+import resource, signal, sys
+from pathlib import Path
+from service.results import DatasetWriter, segments
+from solver import Statistics
+from tests.service.frames import frames, nodes, small_spec
+spec = small_spec(**{"numerics.intervals": 200})
+segments.SEGMENT_BYTES = int(sys.argv[2])
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000))
+with DatasetWriter(Path(sys.argv[1]), spec, nodes(spec)) as writer:
+    try:
+        for frame in frames(spec, 300):
+            writer.append(frame)
+        writer.publish("completed", "", Statistics())
+    except OSError as error:
+        sys.exit(f"OSError: {error}")
+"""
+
+
+@pytest.mark.parametrize("segment", [1_000_000, 70_000], ids=["segment", "dataset"])
+def test_a_file_that_may_not_grow_is_a_clear_error(path: Path, segment: int):
+    # No file may exceed 150 kB: first a segment does, then the dataset of many small segments.
+    run = subprocess.run(
+        [sys.executable, "-c", LIMITED, str(path), str(segment)], capture_output=True, text=True, cwd=ROOT
+    )
+    assert run.returncode == 1
+    assert run.stderr.startswith("OSError: ")
+    assert list(path.parent.iterdir()) == []
+
+
+def test_a_damaged_file_is_not_published(path: Path, monkeypatch: pytest.MonkeyPatch):
+    whole = netcdf.write
+
+    def damage(beside: Path, *args: Any) -> None:
+        whole(beside, *args)
+        with netCDF4.Dataset(beside, "a") as dataset:
+            dataset["Tw"][1] = 0.0
+
+    monkeypatch.setattr(netcdf, "write", damage)
+    with pytest.raises(OSError, match="Tw was not read back"):
+        write(path, small_spec(), 3)
+    assert list(path.parent.iterdir()) == []
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from tests.service.frames import frames, nodes, small_spec
+from service.results import DatasetWriter
+spec = small_spec()
+writer = DatasetWriter(Path(sys.argv[1]), spec, nodes(spec))
+for frame in frames(spec, 3):
+    writer.append(frame)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_what_a_killed_run_leaves_is_removed_by_the_next_one(path: Path):
+    run = subprocess.run([sys.executable, "-c", KILLED, str(path)], cwd=ROOT)
+    assert run.returncode == -9
+    assert [left.name.startswith(".out.nc.work-") for left in path.parent.iterdir()] == [True]
+    write(path, small_spec(), 2)
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_run_that_lives_is_left_alone_by_the_next_one(path: Path):
+    spec = small_spec()
+    with DatasetWriter(path, spec, nodes(spec)) as first:
+        for frame in frames(spec, 2):
+            first.append(frame)
+        write(path, spec, 5)
+        first.publish("completed", "", STATISTICS)
+    with open_dataset(path) as dataset:
+        assert dataset.sizes["time"] == 2

@@ -28,6 +28,7 @@ COORDINATES: dict[str, dict[str, str]] = {
     "time": {
         "units": "seconds since 1970-01-01",
         "calendar": "standard",
+        "units_metadata": "leap_seconds: none",
         "standard_name": "time",
         "axis": "T",
         "long_name": "time since the start of the simulation",

@@ -28,6 +28,16 @@ def matrix_of(quaternion: Array, R: Array) -> None:
 
 
 @kernel
+def tangents_of(quaternion: Array, T: Array) -> None:
+    """Write the tangents R a3 of unit quaternions (n, 4) into `T` (n, 3)."""
+    for j in range(len(T)):
+        w, x, y, z = quaternion[j, 0], quaternion[j, 1], quaternion[j, 2], quaternion[j, 3]
+        T[j, 0] = 2.0 * (x * z + w * y)
+        T[j, 1] = 2.0 * (y * z - w * x)
+        T[j, 2] = 1.0 - 2.0 * (x * x + y * y)
+
+
+@kernel
 def turn(quaternion: Array, theta: Array, turned: Array) -> None:
     """Write quaternion * exp(theta), normalised, into `turned` (4,)."""
     square = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]

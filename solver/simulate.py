@@ -52,7 +52,7 @@ class Simulation:
         yield self._frame(0.0)
         for output in self._outputs:
             while t < output:
-                t = self._advance(t, *self._control.step_from(t, self._accounts.step_limit(self._method)))
+                t = self._advance(t, *self._control.step_from(t, self._method.contact.step_limit))
             self.statistics.cpu_time += process_time() - started
             yield self._frame(output)
             started = process_time()
@@ -66,9 +66,10 @@ class Simulation:
             refusal = _refusal(status)
             if status == CONVERGED:
                 increment = 0.0 if consistent else method.relative_increment(dt)
-                if not control.too_coarse(increment):
+                refusal = "the motion is faster than the step" if control.too_coarse(increment) else ""
+                refusal = refusal or method.contact.refusal(method.trial)
+                if not refusal:
                     break
-                refusal = "the motion is faster than the step"
             self.statistics.failed_steps += 1
             outcome = _fatal(status)
             if outcome is None and 0.5 * dt < control.smallest:

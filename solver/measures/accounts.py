@@ -22,20 +22,18 @@ class Accounts:
 
     def __init__(self, scene: Scene, method: BoxMethod) -> None:
         self._scene, self._method = scene, method
-        self._power, self._power_before = np.zeros(3), np.zeros(3)
-        self._totals = np.zeros(3)
+        self._power, self._power_before = np.zeros(4), np.zeros(4)
+        self._totals = np.zeros(4)
         self._dt, self._iterations = 0.0, 0
         self._energy_at_start: float | None = None
         self._Lk_at_start = 0.0
 
-    def step_limit(self, method: BoxMethod) -> float:
-        """The longest step (s) that contact allows."""
-        return np.inf
-
     def after_step(self, t: float, dt: float, iterations: int) -> None:
         """Enter a step that ended at t."""
         self._power, self._power_before = self._power_before, self._power
-        self._method.power(self._power)
+        self._method.power(self._power[:3])
+        self._power[3], rubbed = self._method.contact.power()
+        self._power[2] += rubbed
         self._totals += 0.5 * dt * (self._power + self._power_before)
         self._dt, self._iterations = dt, iterations
 
@@ -46,11 +44,10 @@ class Accounts:
         Y, quaternion = state.Y, state.quaternion
         tangent = rotate(quaternion, np.repeat(E3, len(Y), axis=0))
         energy = energies(state, section, method.loads, method.applied.weight, tangent, method.h)
-        contact = 0.0
+        work_ends, work_loads, dissipation, contact = (float(total) for total in self._totals)
         total = sum(energy) + contact
         if self._energy_at_start is None:
             self._energy_at_start = total
-        work_ends, work_loads, dissipation = self._totals
         kappa = Y[:, KAPPA : KAPPA + 3].copy()
         Tw = float(np.sum(0.5 * (kappa[1:, 2] + kappa[:-1, 2])) * method.h / (2 * pi))
         Wr = float(writhe(state.r, tangent[0], tangent[-1])) if self._scene.topology else nan
@@ -60,9 +57,10 @@ class Accounts:
             orientation=quaternion.copy(),
             energy_bending=energy.bending, energy_torsion=energy.torsion, energy_kinetic=energy.kinetic,
             energy_added_mass=energy.added_mass, energy_potential=energy.potential, energy_contact=contact,
-            work_ends=float(work_ends), work_loads=float(work_loads), dissipation=float(dissipation),
-            energy_balance=float(total - self._energy_at_start - work_ends - work_loads + dissipation),
-            Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr), min_gap=nan, contacts=0,
+            work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
+            energy_balance=total - self._energy_at_start - work_ends - work_loads + dissipation,
+            Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr), min_gap=method.contact.smallest_gap(state),
+            contacts=method.contact.pressing,
             dt=self._dt, newton_iterations=self._iterations,
         )  # fmt: skip
 

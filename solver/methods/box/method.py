@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.contact.self_contact import SelfContact
 from solver.ends import DrivenEnd
 from solver.initial import nodes_at_rest
 from solver.loads.applied import AppliedLoads
@@ -30,6 +31,7 @@ class BoxMethod:
         self.applied = AppliedLoads(scene, self.section, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self.state = _initial_state(scene.initial, self.s, self.section)
+        self.contact = SelfContact(scene.contact, self.section, self.s)
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)
         self._scales = Scales(scene.rod.length, float(self.section.stiffness[:, :2].mean()),
@@ -51,9 +53,10 @@ class BoxMethod:
         gain = DRIFT_FEEDBACK / dt
         self.loads = self.applied.at(t + dt)
         self._guess(dt, consistent)
+        self.contact.prepare(self.state)
         status, iterations = step(
             self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt, gain),
-            self._scales, gain, self.work,
+            self._scales, gain, self.contact.touch, self.work,
         )  # fmt: skip
         return int(status), int(iterations)
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.contact.coupling import Touch, add_contact, allowed_fraction, solve_with_contact
 from solver.kernel import kernel
 from solver.methods.box.elimination import factor, solve
 from solver.methods.box.ends import end_conditions
@@ -62,11 +63,13 @@ def set_scales(scales: Scales, c0: float, system: Linear) -> None:
 
 @kernel
 def assemble(old: State, new: State, past: Array, c0: float, h: float, section: Section, loads: Loads,
-             ends: EndValues, nodes: Nodes, drift: Array, system: Linear) -> None:  # fmt: skip
+             ends: EndValues, nodes: Nodes, drift: Array, system: Linear, touch: Touch) -> None:  # fmt: skip
     """Residuals and tangents of every equation at the iterate `new`."""
     place_nodes(old, new, past, c0, nodes)
     balance_rotation(new, section, loads, past, c0, nodes)
     balance_translation(new, section, loads, past, c0, nodes)
+    if touch.present and touch.pairs.count[0] > 0:
+        add_contact(new, nodes, h, touch)
     interval_residuals(new.Y, past, c0, h, nodes, drift, system)
     interval_tangents(new.Y, c0, h, nodes, system)
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
@@ -110,8 +113,24 @@ class Work(NamedTuple):
 
 
 @kernel
+def solve_linear(c0: float, h: float, scales: Scales, touch: Touch, work: Work) -> int:
+    """Solve for Newton's increment into the system's x; returns how that ended."""
+    system = work.system
+    if scales.shooting:
+        growth = shoot(system, work.marched, system.x)
+        return CONVERGED if growth < LARGEST_GROWTH else LOST_DIGITS
+    if not factor(system):
+        return SINGULAR
+    if touch.present and touch.pairs.count[0] > 0:
+        solve_with_contact(c0, h, work.nodes, system, touch)
+    else:
+        solve(system, system.b_start, system.b, system.b_end, system.x)
+    return CONVERGED
+
+
+@kernel
 def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: Section, loads: Loads,
-         ends: EndValues, scales: Scales, gain: float, work: Work) -> tuple[int, int]:  # fmt: skip
+         ends: EndValues, scales: Scales, gain: float, touch: Touch, work: Work) -> tuple[int, int]:  # fmt: skip
     """Advance `old` by dt into `new`; `new.Y` is the first guess. Returns how it ended and the iterations.
 
     `gain` (1/s) feeds back the drift of the constraints. Convergence: the increment, or its extrapolation for a
@@ -124,21 +143,19 @@ def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: S
     set_scales(scales, c0, system)
     before = 0.0
     for iteration in range(1, LARGEST_ITERATIONS + 1):
-        assemble(old, new, work.past, c0, h, section, loads, ends, work.nodes, work.drift, system)
-        if scales.shooting:
-            growth = shoot(system, work.marched, system.x)
-            if not growth < LARGEST_GROWTH:
-                return LOST_DIGITS, iteration
-        else:
-            if not factor(system):
-                return SINGULAR, iteration
-            solve(system, system.b_start, system.b, system.b_end, system.x)
+        assemble(old, new, work.past, c0, h, section, loads, ends, work.nodes, work.drift, system, touch)
+        status = solve_linear(c0, h, scales, touch, work)
+        if status != CONVERGED:
+            return status, iteration
         size = increment_size(new, system, scales)
         if not size < LARGEST_INCREMENT:
             return STALLED, iteration
+        fraction = 1.0
+        if touch.present and touch.pairs.count[0] > 0:
+            fraction = allowed_fraction(c0, system, work.nodes, touch)
         for j in range(len(new.Y)):
             for k in range(12):
-                new.Y[j, k] -= system.columns[k] * system.x[j, k]
+                new.Y[j, k] -= fraction * system.columns[k] * system.x[j, k]
         if size < TOLERANCE or (before > 0.0 and size < 1e-4 and size * size / before < TOLERANCE):
             place_nodes(old, new, work.past, c0, work.nodes)
             finish(old, new, scheme, dt, work.past)

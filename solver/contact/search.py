@@ -1,0 +1,141 @@
+"""Which pairs of points may touch, and when nobody need look.
+
+Three proofs, each cheaper than the next search: an arc of length l and total curvature K has a chord of at least
+l cos(K/2) (Schur), so while the rod's total curvature is small no pair can be near; neighbours on an inextensible rod
+are `spacing` apart, so a search marches by (d - radius) / spacing points; and a gap once measured holds until
+somebody has moved by half of it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.contact.law import Law
+from solver.contact.points import Points
+from solver.kernel import kernel
+from solver.methods.box.fields import KAPPA
+from solver.rod import Array
+
+
+class Pairs(NamedTuple):
+    """Pairs of points that may touch, until the next search.
+
+    `count` (4,): pairs, points and nodes that take part, and whether the list overflowed; `first`, `second`
+    (capacity,); `points` (M,) and `nodes` (n,) that take part, `slot` (n,) a node's place among them or -1.
+    At the current iterate: `n` (capacity, 3), `G` (capacity, 3, 3), `k` (capacity, 3), see `pair_force`;
+    `force` (capacity, 2): elastic and damping; `before` (capacity, 3): separations at the start of the step.
+    """
+
+    count: Array
+    first: Array
+    second: Array
+    points: Array
+    nodes: Array
+    slot: Array
+    n: Array
+    G: Array
+    k: Array
+    force: Array
+    before: Array
+
+    @classmethod
+    def empty(cls, capacity: int, points: int, nodes: int) -> Pairs:
+        """No pairs, with room for `capacity`."""
+        return cls(
+            np.zeros(4, np.int64), np.zeros(capacity, np.int64), np.zeros(capacity, np.int64),
+            np.zeros(points, np.int64), np.zeros(nodes, np.int64), np.full(nodes, -1),
+            np.zeros((capacity, 3)), np.zeros((capacity, 3, 3)), np.zeros((capacity, 3)),
+            np.zeros((capacity, 2)), np.zeros((capacity, 3)),
+        )  # fmt: skip
+
+
+@kernel
+def total_bending(Y: Array, h: float) -> float:
+    """K = int |kappa_bending| ds (rad)."""
+    total = 0.0
+    for j in range(len(Y) - 1):
+        one = 0.5 * (Y[j, KAPPA] + Y[j + 1, KAPPA])
+        two = 0.5 * (Y[j, KAPPA + 1] + Y[j + 1, KAPPA + 1])
+        total += np.sqrt(one * one + two * two)
+    return h * total
+
+
+@kernel
+def cannot_touch(bending: float, distance: float, law: Law) -> bool:
+    """Whether total curvature `bending` keeps all pairs more than law.skip of arc apart beyond `distance`."""
+    return bool(bending < np.pi and law.skip * np.cos(0.5 * bending) > distance)
+
+
+@kernel
+def smallest_distance(points: Points, skip: float) -> float:
+    """The smallest distance (m) of two points more than `skip` of arc apart; inf if there are none."""
+    M, spacing = len(points.p), points.spacing
+    apart = int(np.ceil(skip / spacing))
+    best = np.inf
+    for a in range(M):
+        b = a + apart
+        while b < M:
+            d = np.sqrt((points.p[a, 0] - points.p[b, 0]) ** 2 + (points.p[a, 1] - points.p[b, 1]) ** 2
+                        + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
+            if d < best:
+                best = d
+            b += max(1, int((d - best) / spacing))
+    return best
+
+
+@kernel
+def largest_displacement(points: Points) -> float:
+    """How far (m) some point has moved since the last search."""
+    largest = 0.0
+    for i in range(len(points.p)):
+        square = 0.0
+        for k in range(3):
+            square += (points.p[i, k] - points.checked[i, k]) ** 2
+        largest = max(largest, square)
+    return float(np.sqrt(largest))
+
+
+@kernel
+def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None:
+    """List the pairs nearer than `radius`; count[3] says how many did not fit."""
+    M, spacing = len(points.p), points.spacing
+    apart = int(np.ceil(skip / spacing))
+    found = 0
+    for a in range(M):
+        b = a + apart
+        while b < M:
+            d = np.sqrt((points.p[a, 0] - points.p[b, 0]) ** 2 + (points.p[a, 1] - points.p[b, 1]) ** 2
+                        + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
+            if d < radius:
+                if found < len(pairs.first):
+                    pairs.first[found] = a
+                    pairs.second[found] = b
+                found += 1
+                b += 1
+            else:
+                b += max(1, int((d - radius) / spacing))
+    pairs.count[0] = min(found, len(pairs.first))
+    pairs.count[3] = found - pairs.count[0]
+    _list_members(points, pairs)
+
+
+@kernel
+def _list_members(points: Points, pairs: Pairs) -> None:
+    taking_part = np.zeros(len(points.p), np.bool_)
+    for pair in range(pairs.count[0]):
+        taking_part[pairs.first[pair]] = True
+        taking_part[pairs.second[pair]] = True
+    pairs.slot[:] = -1
+    pairs.count[1] = 0
+    pairs.count[2] = 0
+    for i in range(len(taking_part)):
+        if taking_part[i]:
+            pairs.points[pairs.count[1]] = i
+            pairs.count[1] += 1
+            for node in range(points.interval[i], points.interval[i] + 2):
+                if pairs.slot[node] < 0:
+                    pairs.slot[node] = pairs.count[2]
+                    pairs.nodes[pairs.count[2]] = node
+                    pairs.count[2] += 1

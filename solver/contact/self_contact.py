@@ -1,0 +1,179 @@
+"""Self-contact as a step sees it: who may touch, whether somebody could have passed through, how long to step."""
+
+from __future__ import annotations
+
+from math import inf
+
+import numpy as np
+
+from solver.contact.coupling import KRYLOV, Touch
+from solver.contact.law import Law
+from solver.contact.points import Points, contact_points, place_point
+from solver.contact.search import (
+    Pairs,
+    cannot_touch,
+    find_pairs,
+    largest_displacement,
+    smallest_distance,
+    total_bending,
+)
+from solver.kernel import kernel
+from solver.methods.box.fields import Section, State
+from solver.rod import Array
+from solver.rotation import tangents_of
+from solver.scene import Contact
+
+SKIN = 0.5
+"""In cutoffs: how much farther than the cutoff a search looks."""
+LARGEST_APPROACH = 0.7
+"""Part of its distance that a pair may move in a step: less than all of it, so nothing passes through."""
+TIME_TO_TOUCH = 0.5
+"""Part of the time to closure, gap / closing speed, that the next step may take."""
+
+
+class SelfContact:
+    """The contact of one rod through its run; without `contact` it proves itself absent and costs nothing."""
+
+    def __init__(self, contact: Contact | None, section: Section, s: Array) -> None:
+        self._present = contact is not None
+        self._h = float(s[1] - s[0])
+        self._T = np.zeros((len(s), 3))
+        settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
+        points = contact_points(settings, section, s)
+        self._law = Law.of(settings, points.spacing)
+        self._reach = (1.0 + SKIN) * self._law.cutoff
+        self._slack = 0.0
+        self._looked = False
+        self._make_room(points, 1024 if contact else 1)
+        self.step_limit = inf
+        """The longest next step (s)."""
+
+    @property
+    def pressing(self) -> int:
+        """Number of pairs that press on each other."""
+        pairs = self.touch.pairs
+        return int(np.count_nonzero(pairs.force[: pairs.count[0], 0])) if self._present else 0
+
+    def prepare(self, state: State) -> None:
+        """Before a step from `state`: make the list of pairs good for it."""
+        if not self._present:
+            return
+        points, pairs = self.touch.points, self.touch.pairs
+        if cannot_touch(total_bending(state.Y, self._h), self._reach, self._law):
+            pairs.count[:] = 0
+            self._looked = False
+            return
+        tangents_of(state.quaternion, self._T)
+        place_points(points, state.r, self._T, state.Y)
+        if not self._looked or largest_displacement(points) > 0.25 * self._slack:
+            self._search()
+        keep_separations(self.touch.points, self.touch.pairs)
+
+    def refusal(self, trial: State) -> str:
+        """After a step to `trial`: why it cannot be trusted, or nothing."""
+        self.step_limit = inf
+        if not self._present or cannot_touch(total_bending(trial.Y, self._h), self._law.cutoff, self._law):
+            return ""
+        points, pairs = self.touch.points, self.touch.pairs
+        tangents_of(trial.quaternion, self._T)
+        place_points(points, trial.r, self._T, trial.Y)
+        if not self._looked:
+            near = smallest_distance(points, self._law.skip) <= self._law.cutoff
+            return "the rod came near itself within one step" if near else ""
+        if largest_displacement(points) > 0.5 * self._slack:
+            return "the rod moved farther than the contact search looked"
+        approach, time_to_touch = approaches(points, pairs)
+        self.step_limit = TIME_TO_TOUCH * time_to_touch
+        return "two parts of the rod could have passed through each other" if approach > LARGEST_APPROACH else ""
+
+    def smallest_gap(self, state: State) -> float:
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
+        if not self._present:
+            return float("nan")
+        tangents_of(state.quaternion, self._T)
+        points = self.touch.points
+        place_points(points, state.r, self._T, state.Y)
+        distance = smallest_distance(points, self._law.skip)
+        return float(distance - points.diameter.max()) if distance < inf else float("nan")
+
+    def power(self) -> tuple[float, float]:
+        """Power (W) stored in contact, and dissipated by it, at the end of the step."""
+        if not self._present or self.touch.pairs.count[0] == 0:
+            return 0.0, 0.0
+        stored, lost = contact_power(self.touch.points, self.touch.pairs)
+        return float(stored), float(lost)
+
+    def _search(self) -> None:
+        points = self.touch.points
+        points.checked[:] = points.p
+        self._looked = True
+        nearest = smallest_distance(points, self._law.skip)
+        if nearest > self._reach:
+            self.touch.pairs.count[:] = 0
+            self._slack = nearest - self._law.cutoff
+            return
+        self._slack = SKIN * self._law.cutoff
+        find_pairs(points, self._law.skip, self._reach, self.touch.pairs)
+        if self.touch.pairs.count[3] > 0:
+            self._make_room(points, 2 * int(self.touch.pairs.count[0] + self.touch.pairs.count[3]))
+            find_pairs(points, self._law.skip, self._reach, self.touch.pairs)
+
+    def _make_room(self, points: Points, capacity: int) -> None:
+        n, M = len(self._T), len(points.p)
+        room = n if self._present else 1
+        self.touch = Touch(
+            self._present, self._law, points, Pairs.empty(capacity, M, n), np.zeros((M, 9)),
+            np.zeros((KRYLOV + 1 if self._present else 1, 3 * room)), np.zeros(3 * room), np.zeros(3 * room),
+            np.zeros((room, 12))[: room - 1], np.zeros((room, 12)),
+        )  # fmt: skip
+
+
+@kernel
+def place_points(points: Points, r: Array, T: Array, velocity: Array) -> None:
+    """Place all points."""
+    for i in range(len(points.p)):
+        place_point(points, i, r, T, velocity)
+
+
+@kernel
+def keep_separations(points: Points, pairs: Pairs) -> None:
+    """Remember the pairs' separations at the start of a step."""
+    for pair in range(pairs.count[0]):
+        for k in range(3):
+            pairs.before[pair, k] = points.p[pairs.first[pair], k] - points.p[pairs.second[pair], k]
+
+
+@kernel
+def approaches(points: Points, pairs: Pairs) -> tuple[float, float]:
+    """The largest change of a separation relative to the distance before; the shortest time (s) to closure."""
+    largest, shortest = 0.0, np.inf
+    for pair in range(pairs.count[0]):
+        a, b = pairs.first[pair], pairs.second[pair]
+        change, before, square, closing = 0.0, 0.0, 0.0, 0.0
+        for k in range(3):
+            now = points.p[a, k] - points.p[b, k]
+            change += (now - pairs.before[pair, k]) ** 2
+            before += pairs.before[pair, k] ** 2
+            square += now * now
+            closing -= now * (points.w[a, k] - points.w[b, k])
+        largest = max(largest, change / before)
+        if closing > 0.0:
+            d = np.sqrt(square)
+            gap = max(d - 0.25 * (points.diameter[a] + points.diameter[b]), 0.1 * d)
+            shortest = min(shortest, gap * d / closing)
+    return np.sqrt(largest), shortest
+
+
+@kernel
+def contact_power(points: Points, pairs: Pairs) -> tuple[float, float]:
+    """Power (W) that goes into the elastic part of the contact, and that its damping takes."""
+    stored, lost = 0.0, 0.0
+    for pair in range(pairs.count[0]):
+        if pairs.force[pair, 0] != 0.0:
+            a, b = pairs.first[pair], pairs.second[pair]
+            opening = 0.0
+            for k in range(3):
+                opening += pairs.n[pair, k] * (points.w[a, k] - points.w[b, k])
+            stored -= pairs.force[pair, 0] * opening
+            lost -= pairs.force[pair, 1] * opening
+    return stored, lost

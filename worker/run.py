@@ -6,11 +6,12 @@ import errno
 import logging
 import os
 import platform
+import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
 from service.cases import CaseError, build_scene, parse_case
-from service.jobs import Dataset, Status
+from service.jobs import Dataset, Job, Status
 from service.jobs.registry import Claim, Registry
 from service.results import DatasetWriter
 from service.settings import Settings
@@ -19,6 +20,7 @@ from worker.lease import Cancelled, Lease, LeaseLost
 from worker.lock import job_lock
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
+LEAST_FREE = 1_000_000
 log = logging.getLogger(__name__)
 
 
@@ -54,13 +56,21 @@ def run_job(job_id: str, registry: Registry, settings: Settings) -> None:
             log.info("job %s: %s, %s", job_id, ending.status, ending.outcome)
         if not kept:
             log.warning("job %s was given to another worker; what was computed here is dropped", job_id)
-            clear(settings.datasets, job_id)
+            (settings.datasets / dataset_file(claim.job)).unlink(missing_ok=True)
 
 
 def clear(datasets: Path, job_id: str) -> None:
-    """Remove what a lost attempt at the job left behind."""
+    """Remove what lost attempts at the job left behind."""
     for path in datasets.glob(f"*{job_id}*"):
-        path.unlink(missing_ok=True)
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
+
+
+def dataset_file(job: Job) -> str:
+    """The name of what this attempt publishes: no attempt writes over another's file."""
+    return f"{job.id}.{job.epoch}.nc"
 
 
 def _claim(job_id: str, registry: Registry, settings: Settings) -> Claim | None:
@@ -80,14 +90,23 @@ def _end(claim: Claim, lease: Lease, datasets: Path) -> Ending:
     except MemoryError:
         return Ending(Status.FAILED, "out_of_memory",
                       "the worker has not enough memory: use fewer intervals or a longer output.interval")
+    except OSError as error:
+        log.exception("job %s could not be written", claim.job.id)
+        return _not_written(error, datasets)
     except Exception as error:
-        if isinstance(error, OSError) and error.errno in FULL:
-            return Ending(Status.FAILED, "disk_full",
-                          "the disk that holds the datasets is full: make room and submit the case again")
         log.exception("job %s failed", claim.job.id)
         return Ending(Status.FAILED, "internal_error",
                       f"hockle itself failed ({type(error).__name__}); the worker's log says where. "
                       f"Please report it with the case and the job id {claim.job.id}")
+
+
+def _not_written(error: OSError, datasets: Path) -> Ending:
+    """A full disk by its name; the NetCDF library tells of one without its cause."""
+    if error.errno in FULL or shutil.disk_usage(datasets).free < LEAST_FREE:
+        return Ending(Status.FAILED, "disk_full", "the disk that holds the datasets is full, and nothing of "
+                      "the run is kept: make room and submit the case again")
+    return Ending(Status.FAILED, "dataset_not_written",
+                  f"the dataset could not be written ({error.strerror or error}): see the worker's log")
 
 
 def _simulate(claim: Claim, lease: Lease, datasets: Path) -> Ending:
@@ -95,7 +114,7 @@ def _simulate(claim: Claim, lease: Lease, datasets: Path) -> Ending:
     scene = build_scene(spec)
     simulation = simulate(scene)
     status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED.value, ""
-    file = f"{claim.job.id}.{claim.job.epoch}.nc"
+    file = dataset_file(claim.job)
     with DatasetWriter(datasets / file, spec, simulation.s) as writer:
         try:
             for frame in simulation:

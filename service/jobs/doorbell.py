@@ -11,6 +11,7 @@ from kombu.exceptions import OperationalError
 from service.settings import Settings
 
 TASK = "hockle.run_job"
+ONCE_MORE = {"max_retries": 1, "interval_start": 0}  # a connection may have gone stale
 log = logging.getLogger(__name__)
 
 
@@ -30,7 +31,7 @@ def celery_settings(settings: Settings) -> dict[str, Any]:
     if not settings.broker:
         folder = str(settings.messages.absolute())
         return common | {
-            "broker_url": "filesystem://",
+            "broker_url": "filesystem://localhost",
             "broker_transport_options": {"data_folder_in": folder, "data_folder_out": folder,
                                          "control_folder": folder},
             "worker_enable_remote_control": False,
@@ -49,11 +50,12 @@ class Doorbell:
     def __init__(self, settings: Settings) -> None:
         self._celery = Celery("hockle", set_as_current=False)
         self._celery.conf.update(celery_settings(settings))
+        self._celery.conf.broker_transport_options |= ONCE_MORE
 
     def ring(self, job_id: str) -> bool:
         """Tell the workers of a job; False if the broker could not be reached."""
         try:
-            self._celery.send_task(TASK, args=[job_id], retry=False)
+            self._celery.send_task(TASK, args=[job_id], retry_policy=ONCE_MORE)
         except (OperationalError, OSError) as error:
             log.warning("the broker did not take job %s, it will be told again: %s", job_id, error)
             return False
@@ -63,7 +65,7 @@ class Doorbell:
         """Whether the broker answers."""
         try:
             with self._celery.connection_for_write() as connection:
-                connection.ensure_connection(max_retries=1, timeout=2.0)
+                connection.ensure_connection(**ONCE_MORE)
                 connection.default_channel  # noqa: B018  # opening it asks the broker
         except (OperationalError, OSError):
             return False

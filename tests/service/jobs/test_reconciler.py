@@ -48,12 +48,11 @@ def test_without_a_broker_process_messages_lie_as_files(settings, registry):
     assert len(list(settings.messages.glob("*.msg"))) == 1
 
 
-def test_a_waiting_job_is_rung_for_until_it_is_claimed(settings, registry):
+def test_a_waiting_job_is_rung_for_until_it_is_claimed(settings, registry, until):
     bell = Bell()
     job = registry.submit(NewJob({}))
     with Reconciler(registry, bell, settings):
-        while len(bell.rung) < 2:
-            pass
+        until(lambda: len(bell.rung) >= 2)
     assert set(bell.rung) == {job.id}
 
 

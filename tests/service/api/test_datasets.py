@@ -1,0 +1,116 @@
+"""Reading results by job id: the file with ranges and validators, and a part as JSON."""
+
+from __future__ import annotations
+
+import hashlib
+
+import pytest
+
+
+@pytest.fixture
+def address(done: str) -> str:
+    return f"/v1/jobs/{done}/dataset"
+
+
+def test_the_file_comes_whole_with_its_hash_as_etag(client, address):
+    answer = client.get(address)
+    assert answer.status_code == 200
+    assert answer.headers["etag"] == f'"{hashlib.sha256(answer.content).hexdigest()}"'
+    assert answer.headers["content-type"] == "application/x-netcdf"
+    assert answer.content[:4] == b"\x89HDF"
+
+
+def test_head_tells_the_size_without_the_content(client, address):
+    answer = client.head(address)
+    assert (answer.status_code, answer.content) == (200, b"")
+    assert int(answer.headers["content-length"]) == len(client.get(address).content)
+    assert answer.headers["accept-ranges"] == "bytes"
+
+
+@pytest.mark.parametrize(("told", "part"), [
+    ("bytes=0-9", slice(0, 10)), ("bytes=100-", slice(100, None)), ("bytes=-50", slice(-50, None)),
+])
+def test_a_range_gives_exactly_those_bytes(client, address, told, part):
+    answer = client.get(address, headers={"Range": told})
+    assert answer.status_code == 206
+    assert answer.content == client.get(address).content[part]
+
+
+def test_a_range_that_begins_behind_the_end_is_a_problem(client, address):
+    answer = client.get(address, headers={"Range": "bytes=99999999-"})
+    assert answer.status_code == 416
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.headers["content-range"].startswith("bytes */")
+
+
+@pytest.mark.parametrize("told", ["lines=1-2", "bytes=", "bytes=b-a", "bytes=9-3"])
+def test_a_range_that_is_none_is_ignored(client, address, told):
+    assert client.get(address, headers={"Range": told}).status_code == 200
+
+
+def test_a_range_of_another_file_gives_the_whole(client, address):
+    etag = client.head(address).headers["etag"]
+    same = client.get(address, headers={"Range": "bytes=0-9", "If-Range": etag})
+    other = client.get(address, headers={"Range": "bytes=0-9", "If-Range": '"other"'})
+    assert (same.status_code, other.status_code) == (206, 200)
+
+
+@pytest.mark.parametrize("method", ["GET", "HEAD"])
+def test_a_client_that_has_the_file_is_not_sent_it_again(client, address, method):
+    etag = client.head(address).headers["etag"]
+    answer = client.request(method, address, headers={"If-None-Match": etag, "Range": "bytes=0-9"})
+    assert (answer.status_code, answer.content, answer.headers["etag"]) == (304, b"", etag)
+
+
+def test_a_part_is_given_as_json_with_units(client, done):
+    answer = client.get(f"/v1/jobs/{done}/data", params={"variables": "Tw, r", "t_min": 0.02, "s_stride": 4})
+    told = answer.json()
+    assert told["variables"]["Tw"]["units"] == "turn"
+    times = told["coordinates"]["time"]["values"]
+    assert times == pytest.approx([0.02, 0.03, 0.04, 0.05])
+    assert len(told["variables"]["r"]["values"]) == len(times)
+    assert len(told["variables"]["r"]["values"][0]) == 3
+
+
+@pytest.mark.parametrize(("query", "name"), [
+    ("variables=Q", "unknown_variable"),
+    ("variables=Tw&t_min=nan", "invalid_parameters"),
+    ("variables=Tw&s_stride=0", "invalid_parameters"),
+    ("variables=Tw&stride=2", "invalid_parameters"),
+    ("", "invalid_parameters"),
+])
+def test_a_part_that_cannot_be_given_is_refused_by_name(client, done, query, name):
+    answer = client.get(f"/v1/jobs/{done}/data?{query}")
+    assert answer.status_code == 422
+    assert answer.json()["type"].endswith(name)
+
+
+def test_a_part_too_large_is_refused_before_it_is_read(client, done, monkeypatch):
+    from service.api import datasets
+    from service.results import subset
+
+    monkeypatch.setattr(datasets, "subset", lambda *told, **more: subset(*told, **more, limit=3))
+    answer = client.get(f"/v1/jobs/{done}/data?variables=r")
+    assert (answer.status_code, answer.json()["type"]) == (422, "urn:hockle:problem:subset_too_large")
+    assert "stride" in answer.json()["detail"]
+
+
+@pytest.mark.parametrize("what", ["dataset", "data?variables=Tw"])
+def test_a_job_that_has_not_ended_has_no_results_yet(client, case, what):
+    address = client.post("/v1/jobs", json=case).headers["location"]
+    answer = client.get(f"{address}/{what}")
+    assert (answer.status_code, answer.json()["type"]) == (409, "urn:hockle:problem:not_finished")
+    assert "retry-after" in answer.headers
+
+
+@pytest.mark.parametrize("what", ["dataset", "data?variables=Tw"])
+def test_a_cancelled_job_has_no_results_ever(client, case, what):
+    address = client.post("/v1/jobs", json=case).headers["location"]
+    client.delete(address)
+    answer = client.get(f"{address}/{what}")
+    assert (answer.status_code, answer.json()["type"]) == (404, "urn:hockle:problem:no_dataset")
+
+
+def test_a_file_that_somebody_removed_is_a_problem_not_a_crash(client, registry, settings, done, address):
+    (settings.datasets / registry.get(done).dataset.file).unlink()
+    assert client.get(address).status_code == 404

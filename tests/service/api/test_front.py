@@ -1,0 +1,68 @@
+"""Cases to start from, the dashboard, the state of health, the interface's own description."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from sqlalchemy.exc import OperationalError
+
+from service.api.listening import listen
+from service.cases import parse_case, shipped_cases
+
+
+def test_every_shipped_case_is_listed_and_valid(client):
+    listed = client.get("/v1/cases").json()
+    assert listed == shipped_cases()
+    for name in listed:
+        parse_case(client.get(f"/v1/cases/{name}").json())
+
+
+def test_the_schema_describes_a_case(client):
+    schema = client.get("/v1/cases/schema").json()
+    assert {"rod", "initial", "ends", "t_end", "output"} <= set(schema["properties"])
+
+
+def test_validation_says_what_a_case_asks_for_and_makes_no_job(client, case):
+    told = client.post("/v1/validate", json=case).json()
+    assert (told["nodes"], told["frames"]) == (9, 6)
+    assert told["case"]["numerics"]["intervals"] == 8
+    assert client.get("/v1/jobs").json()["jobs"] == []
+
+
+def test_health_tells_of_database_and_broker(client):
+    assert client.get("/healthz").json() == {"status": "ok", "database": "ok", "broker": "ok"}
+
+
+def test_without_its_broker_the_service_is_degraded_but_there(client, monkeypatch):
+    monkeypatch.setattr("service.jobs.doorbell.Doorbell.reachable", lambda _: False)
+    answer = client.get("/healthz")
+    assert answer.status_code == 200
+    assert answer.json() == {"status": "degraded", "database": "ok", "broker": "unreachable"}
+
+
+def test_without_its_database_the_service_is_unavailable(client, monkeypatch):
+    def away(*_):
+        raise OperationalError("SELECT", {}, Exception("locked"))
+
+    monkeypatch.setattr("service.jobs.Registry.page", away)
+    answer = client.get("/healthz")
+    assert (answer.status_code, answer.json()["database"]) == (503, "unreachable")
+
+
+def test_the_dashboard_needs_nothing_from_elsewhere(client):
+    page = client.get("/")
+    assert page.headers["content-type"].startswith("text/html")
+    assert not re.search(r"""(src|href)=["'](https?:)?//""", page.text)
+    assert "default-src 'self'" in page.headers["content-security-policy"]
+
+
+def test_the_interface_describes_itself(client):
+    paths = client.get("/v1/openapi.json").json()["paths"]
+    assert {"/v1/jobs", "/v1/jobs/{job_id}", "/v1/jobs/{job_id}/dataset", "/v1/validate"} <= set(paths)
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "10.0.0.7", "example.org"])
+def test_without_keys_only_loopback_is_served(host):
+    with pytest.raises(ValueError, match="host must be a loopback address"):
+        listen(host, 0)

@@ -1,0 +1,170 @@
+"""Whatever a client sends, it is told what is wrong, as a problem, and no job comes of it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from service.api.bodies import LARGEST_BODY
+from service.cases import CaseError
+
+JSON = {"Content-Type": "application/json"}
+
+NOT_JSON: dict[str, bytes] = {
+    "empty": b"", "blank": b"  ", "word": b"hello", "half": b'{"rod": ', "tail": b"{} {}",
+    "comma": b'{"a": 1,}',
+    "single quotes": b"{'a': 1}", "nan": b'{"t_end": NaN}', "infinity": b'{"t_end": Infinity}',
+    "minus infinity": b'{"t_end": -Infinity}', "overflow": b'{"t_end": 1e999}', "latin": b'{"name": "\xe9"}',
+    "utf-16": '{"a": 1}'.encode("utf-16"), "bom": b"\xef\xbb\xbf{}", "control": b'{"name": "\x00"}',
+    "surrogate": rb'{"name": "\ud800"}', "twice": b'{"t_end": 1, "t_end": 2}', "comment": b"{} // x",
+    "deep": b'{"a":' * 50_000 + b"1" + b"}" * 50_000, "deep list": b"[" * 100_000,
+    "huge integer": b'{"t_end": ' + b"9" * 10_000 + b"}", "hex": b'{"t_end": 0x10}', "plus": b'{"t_end": +1}',
+    "list": b"[]", "string": b'"goyal-2003"', "number": b"1", "null": b"null", "true": b"true",
+}
+
+CHANGES: dict[str, tuple[str, Any]] = {
+    "negative end": ("t_end", -1), "zero end": ("t_end", 0), "text for a number": ("t_end", "34"),
+    "true for a number": ("t_end", True), "list for a number": ("t_end", [1]),
+    "null for a number": ("t_end", None),
+    "unknown field": ("colour", "red"), "unknown nested field": ("rod.colour", "red"),
+    "text for an object": ("rod", "long"), "list for an object": ("rod", []), "null rod": ("rod", None),
+    "negative length": ("rod.length", -1.0), "another schema": ("schema_version", 2),
+    "text schema": ("schema_version", "1"), "method": ("numerics.method", "magic"),
+    "solver": ("numerics.linear_solver", "guess"), "no intervals": ("numerics.intervals", 0),
+    "half an interval": ("numerics.intervals", 2.5), "too many intervals": ("numerics.intervals", 10**9),
+    "rho": ("numerics.rho_inf", 1.5), "dt": ("numerics.dt_max", 0), "tiny dt": ("numerics.dt_max", 1e-12),
+    "interval": ("output.interval", 0), "interval past the end": ("output.interval", 1e6),
+    "tiny interval": ("output.interval", 1e-9), "fields": ("output.fields", ["nonsense"]),
+    "no fields": ("output.fields", []), "fields twice": ("output.fields", ["v", "v"]),
+    "name": ("name", "../../etc/passwd"), "long name": ("name", "a" * 500),
+    "long title": ("title", "a" * 5000),
+    "ends": ("ends", {}), "end": ("ends.start", {"kind": "glued"}), "huge": ("rod.length", 10**400),
+    "fluid": ("fluid", {"density": -1}), "contact": ("contact", {"k1": -1}),
+    "loads": ("loads", {"wind": 3}),
+}
+
+
+def assert_problem(answer: Any, *statuses: int) -> dict[str, Any]:
+    assert answer.status_code in statuses, answer.text[:300]
+    assert answer.headers["content-type"] == "application/problem+json"
+    problem = answer.json()
+    assert problem["status"] == answer.status_code
+    assert problem["type"].startswith("urn:hockle:problem:") and problem["title"] and problem["detail"]
+    return problem
+
+
+@pytest.mark.parametrize("where", ["/v1/jobs", "/v1/validate"])
+@pytest.mark.parametrize("name", NOT_JSON)
+def test_what_is_not_a_json_object_is_refused(client, where, name):
+    assert_problem(client.post(where, content=NOT_JSON[name], headers=JSON), 400)
+    assert client.get("/v1/jobs").json()["jobs"] == []
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_faulty_case_is_refused_with_a_pointer_to_each_fault(client, case, name):
+    key, value = CHANGES[name]
+    *parents, last = key.split(".")
+    place = case
+    for parent in parents:
+        place = place[parent]
+    place[last] = value
+    problem = assert_problem(client.post("/v1/jobs", content=json.dumps(case), headers=JSON), 422)
+    assert problem["errors"]
+    for error in problem["errors"]:
+        assert set(error) == {"pointer", "value", "rule"}
+        assert error["pointer"].startswith("/" + key.split(".")[0]) or error["pointer"] == ""
+    assert client.get("/v1/jobs").json()["jobs"] == []
+
+
+@pytest.mark.parametrize(("body", "pointer"), [
+    ({"case": "goyal-2004"}, "/case"),
+    ({"case": "../service/cases/shipped/goyal-2003"}, "/case"),
+    ({"case": "/etc/passwd"}, "/case"),
+    ({"case": 1}, "/case"),
+    ({"case": {}}, "/case"),
+    ({"case": "goyal-2003", "set": []}, "/set"),
+    ({"case": "goyal-2003", "sets": {}}, "/sets"),
+    ({"case": "goyal-2003", "set": {"t_end": "x"}}, "/t_end"),
+    ({"case": "goyal-2003", "set": {"t_end.x": 1}}, "/t_end"),
+    ({"case": "goyal-2003", "set": {"": 1}}, "/"),
+])
+def test_a_faulty_reference_to_a_shipped_case_is_refused(client, body, pointer):
+    problem = assert_problem(client.post("/v1/jobs", json=body), 422)
+    assert pointer in [error["pointer"] for error in problem["errors"]]
+
+
+def test_several_faults_are_told_together(client, case):
+    case["t_end"], case["rod"]["length"], case["colour"] = -1, "x", 1
+    problem = assert_problem(client.post("/v1/validate", json=case), 422)
+    assert {"/t_end", "/colour"} <= {error["pointer"] for error in problem["errors"]}
+
+
+@pytest.mark.parametrize("content_type", ["text/plain", "application/x-www-form-urlencoded", "text/json", ""])
+def test_a_body_of_another_type_is_refused(client, content_type):
+    assert_problem(client.post("/v1/jobs", content=b"{}", headers={"Content-Type": content_type}), 415)
+
+
+def test_a_body_over_the_bound_is_refused_whether_its_length_is_told_or_not(client):
+    large = b'{"title": "' + b"x" * LARGEST_BODY + b'"}'
+    assert_problem(client.post("/v1/jobs", content=large, headers=JSON), 413)
+    chunks = (large[i : i + 65536] for i in range(0, len(large), 65536))
+    assert_problem(client.post("/v1/jobs", content=chunks, headers=JSON), 413)
+
+
+@pytest.mark.parametrize("job_id", ["nobody", "01jzzzzzzzzzzzzzzzzzzzzzzz", "%00", "..%2fetc", "x" * 999])
+@pytest.mark.parametrize("what", ["", "/dataset", "/data?variables=Tw"])
+def test_an_unknown_job_is_told_so(client, job_id, what):
+    assert_problem(client.get(f"/v1/jobs/{job_id}{what}"), 404)
+
+
+@pytest.mark.parametrize(("method", "path", "status"), [
+    ("DELETE", "/v1/jobs/nobody", 404), ("GET", "/v2/jobs", 404), ("GET", "/v1/jobs/", 404),
+    ("GET", "/v1/cases/nothing", 404), ("GET", "/v1/cases/..%2f..%2fx", 404), ("PUT", "/v1/jobs", 405),
+    ("POST", "/v1/jobs/nobody", 405), ("POST", "/healthz", 405), ("DELETE", "/v1/cases", 405),
+])
+def test_what_is_not_there_or_not_allowed_is_a_problem(client, method, path, status):
+    answer = client.request(method, path)
+    assert_problem(answer, status)
+    assert status != 405 or answer.headers["allow"]
+
+
+@pytest.mark.parametrize("query", ["limit=0", "limit=201", "limit=x", "status=done", "page=2"])
+def test_a_faulty_list_query_is_refused_by_the_name_of_its_parameter(client, query):
+    problem = assert_problem(client.get(f"/v1/jobs?{query}"), 422)
+    assert [error["parameter"] for error in problem["errors"]] == [query.partition("=")[0]]
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "10.0.0.7:80", "", "[::1"])
+def test_a_foreign_host_is_refused(client, host):
+    assert_problem(client.get("/v1/jobs", headers={"Host": host}), 421)
+
+
+@pytest.mark.parametrize("host", ["localhost:8000", "127.0.0.1", "[::1]:8000", "LOCALHOST"])
+def test_every_name_of_this_machine_is_welcome(client, host):
+    assert client.get("/healthz", headers={"Host": host}).status_code == 200
+
+
+@pytest.mark.parametrize("origin", ["https://evil.example", "null", "http://127.0.0.1:9999"])
+def test_a_page_from_elsewhere_may_not_write(client, case, origin):
+    assert_problem(client.post("/v1/jobs", json=case, headers={"Origin": origin}), 403)
+    assert_problem(client.delete("/v1/jobs/nobody", headers={"Origin": origin}), 403)
+
+
+def test_our_own_page_may_write(client, case):
+    own = {"Origin": "http://127.0.0.1:8000"}
+    assert client.post("/v1/jobs", json=case, headers=own).status_code == 202
+
+
+def test_a_bug_is_a_problem_without_its_details(client, monkeypatch):
+    monkeypatch.setattr("service.jobs.Registry.page", lambda *_: 1 / 0)
+    problem = assert_problem(client.get("/v1/jobs"), 500)
+    assert "division" not in json.dumps(problem)
+
+
+def test_faults_of_a_case_are_those_of_its_validation(case):
+    from service.cases import parse_case
+
+    with pytest.raises(CaseError):
+        parse_case(case | {"t_end": -1})

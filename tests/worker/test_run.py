@@ -1,0 +1,203 @@
+"""One job from claim to end: every way it can end leaves a row that says so, and no half dataset."""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import logging
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from service.cases import apply_settings, load_case
+from service.jobs import Job, NewJob, Registry, Status
+from service.results import DatasetWriter, open_dataset
+from service.settings import Settings
+from solver import Outcome, RunFailed, simulate
+from worker import run
+from worker.lock import job_lock
+
+SMALL = apply_settings(
+    load_case("cantilever-vibration"), {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8}
+)
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    made = Settings(data=tmp_path, lease=5.0)
+    made.make_directories()
+    return made
+
+
+@pytest.fixture
+def registry(settings: Settings) -> Registry:
+    return Registry(settings.database_url)
+
+
+@pytest.fixture
+def job(registry: Registry) -> Job:
+    return registry.submit(NewJob(SMALL))
+
+
+def ended(job: Job, registry: Registry, settings: Settings) -> Job:
+    run.run_job(job.id, registry, settings)
+    return registry.get(job.id)
+
+
+def left_over(settings: Settings) -> list[Path]:
+    return [*settings.datasets.iterdir(), *settings.locks.iterdir()]
+
+
+def simulation_that(does, at_frame: int = 2):
+    """The real simulation, to which something happens at one of its frames."""
+
+    def simulate_until(scene):
+        real = simulate(scene)
+
+        class Simulation:
+            s, statistics = real.s, real.statistics
+
+            def __iter__(self):
+                for i, frame in enumerate(real):
+                    if i == at_frame:
+                        does()
+                    yield frame
+
+        return Simulation()
+
+    return simulate_until
+
+
+def raising(error: BaseException):
+    def raise_it(*_, **__):
+        raise error
+
+    return raise_it
+
+
+def test_a_job_ends_with_a_dataset_whose_hash_its_row_tells(job, registry, settings):
+    done = ended(job, registry, settings)
+    assert (done.status, done.outcome, done.progress) == (Status.SUCCESSFUL, "completed", 1.0)
+    path = settings.datasets / done.dataset.file
+    assert hashlib.sha256(path.read_bytes()).hexdigest() == done.dataset.sha256
+    assert path.stat().st_size == done.dataset.bytes
+    with open_dataset(path) as dataset:
+        assert dataset.attrs["outcome"] == "completed"
+        assert float(dataset.time[-1]) == pytest.approx(0.05)
+    assert left_over(settings) == [path]
+
+
+def test_a_message_that_comes_twice_does_nothing(job, registry, settings):
+    assert ended(job, registry, settings) == ended(job, registry, settings)
+
+
+def test_a_message_for_an_unknown_job_does_nothing(registry, settings):
+    run.run_job("01jzzzzzzzzzzzzzzzzzzzzzzz", registry, settings)
+    assert left_over(settings) == []
+
+
+def test_a_job_whose_lock_another_process_holds_is_left_alone(job, registry, settings):
+    with job_lock(settings.locks / f"{job.id}.lock") as mine:
+        assert mine
+        assert ended(job, registry, settings).status is Status.ACCEPTED
+
+
+def test_a_run_that_fails_keeps_its_frames_and_tells_the_remedy(job, registry, settings, monkeypatch):
+    failure = RunFailed(Outcome.STEP_TOO_SMALL, 0.02, 7, "stuck")
+    monkeypatch.setattr(run, "simulate", simulation_that(raising(failure)))
+    done = ended(job, registry, settings)
+    assert (done.status, done.outcome, done.message) == (Status.FAILED, "step_too_small", str(failure))
+    with open_dataset(settings.datasets / done.dataset.file) as dataset:
+        assert dataset.sizes["time"] == 2
+        assert dataset.attrs["outcome"] == "step_too_small"
+
+
+def test_a_job_cancelled_while_it_runs_leaves_nothing(job, registry, settings, monkeypatch, until):
+    seen: list[bool] = []
+    renew = Registry.renew
+
+    def watched(self, *told):
+        renewed = renew(self, *told)
+        seen.append(renewed.cancel_requested)
+        return renewed
+
+    def cancel():
+        registry.cancel(job.id)
+        until(lambda: seen.count(True) > 0, "the lease brings the owner's wish")
+        time.sleep(0.05)  # the lease judges after its renewal returns
+
+    monkeypatch.setattr(Registry, "renew", watched)
+    monkeypatch.setattr(run, "simulate", simulation_that(cancel))
+    done = ended(job, registry, replace(settings, lease=0.2))
+    assert (done.status, done.outcome, done.dataset) == (Status.DISMISSED, "cancelled", None)
+    assert left_over(settings) == []
+
+
+@pytest.mark.parametrize("method", ["append", "publish"])
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])
+def test_a_full_disk_has_a_name_and_leaves_nothing(job, registry, settings, monkeypatch, method, number):
+    monkeypatch.setattr(DatasetWriter, method, raising(OSError(number, "No space left on device")))
+    done = ended(job, registry, settings)
+    assert (done.status, done.outcome, done.dataset) == (Status.FAILED, "disk_full", None)
+    assert "make room" in done.message
+    assert left_over(settings) == []
+
+
+def test_another_fault_of_the_disk_is_not_called_full(job, registry, settings, monkeypatch):
+    monkeypatch.setattr(DatasetWriter, "publish", raising(OSError(errno.EIO, "Input/output error")))
+    done = ended(job, registry, settings)
+    assert (done.status, done.outcome) == (Status.FAILED, "dataset_not_written")
+    assert "Input/output error" in done.message
+
+
+def test_a_bug_is_told_without_its_traceback_which_is_logged(job, registry, settings, monkeypatch, caplog):
+    monkeypatch.setattr(run, "simulate", raising(ZeroDivisionError("secret detail")))
+    with caplog.at_level(logging.ERROR):
+        done = ended(job, registry, settings)
+    assert (done.status, done.outcome) == (Status.FAILED, "internal_error")
+    assert "ZeroDivisionError" in done.message and "secret detail" not in done.message
+    assert "secret detail" in caplog.text
+
+
+def test_too_little_memory_has_a_name(job, registry, settings, monkeypatch):
+    monkeypatch.setattr(run, "simulate", raising(MemoryError()))
+    assert ended(job, registry, settings).outcome == "out_of_memory"
+
+
+def test_a_case_that_this_version_refuses_fails_with_its_faults(registry, settings):
+    done = ended(registry.submit(NewJob(SMALL | {"t_end": -1})), registry, settings)
+    assert (done.status, done.outcome) == (Status.FAILED, "invalid_case")
+    assert "t_end" in done.message
+
+
+def test_a_worker_told_to_stop_hands_its_job_back(job, registry, settings, monkeypatch):
+    monkeypatch.setattr(run, "simulate", simulation_that(raising(SystemExit(0))))
+    with pytest.raises(SystemExit):
+        run.run_job(job.id, registry, settings)
+    waiting = registry.get(job.id)
+    assert (waiting.status, waiting.attempts) == (Status.ACCEPTED, 0)
+    assert left_over(settings) == []
+
+
+def test_a_worker_that_lost_its_job_writes_nothing_for_it(job, registry, settings, monkeypatch):
+    def give_away():
+        registry._clock = lambda: 1e12
+        assert registry.claim(job.id, 1e6, 3, "elsewhere") is not None
+
+    monkeypatch.setattr(run, "simulate", simulation_that(give_away))
+    run.run_job(job.id, registry, settings)
+    held = registry.get(job.id)
+    assert (held.status, held.worker, held.epoch, held.dataset) == (Status.RUNNING, "elsewhere", 2, None)
+    assert left_over(settings) == []
+
+
+def test_what_a_killed_attempt_left_is_removed_by_the_next(job, registry, settings):
+    stale = settings.datasets / f"{job.id}.7.nc"
+    stale.write_bytes(b"half")
+    work = settings.datasets / f".{job.id}.7.nc.work-abc"
+    work.mkdir()
+    (work / "segment").write_bytes(b"x")
+    done = ended(job, registry, settings)
+    assert left_over(settings) == [settings.datasets / done.dataset.file]

@@ -34,8 +34,9 @@ def submit(told: argparse.Namespace) -> int:
     """Hand in a case and print the job's id."""
     from hockle.client import Client
     from hockle.progress import show
+    from hockle.settings import read_case
 
-    case = _case(told.case, told.settings)
+    case = read_case(told.case, told.settings)
     with Client(told.server) as client:
         job = client.submit(case)
         print(job["id"], flush=True)
@@ -65,16 +66,6 @@ def fetch(told: argparse.Namespace) -> int:
         size = client.fetch(told.id, path)
     print(f"{path} ({size / 1e6:.1f} MB)")
     return 0
-
-
-def _case(name_or_path: str, settings: list[str]) -> dict[str, Any]:
-    from hockle.settings import parse_settings
-    from service.cases import CaseError, apply_settings, load_case
-
-    try:
-        return apply_settings(load_case(name_or_path), parse_settings(settings))
-    except (CaseError, OSError) as error:
-        raise Failure(str(error)) from None
 
 
 def _sentence(job: dict[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""--set KEY=VALUE on the command line."""
+"""A case as the command line names it: CASE, and --set KEY=VALUE."""
 
 from __future__ import annotations
 
@@ -21,3 +21,13 @@ def parse_settings(told: Iterable[str]) -> dict[str, Any]:
         except ValueError:
             settings[key] = text
     return settings
+
+
+def read_case(name_or_path: str, told: Iterable[str]) -> dict[str, Any]:
+    """The raw case of a shipped name or a file, with the settings made. Raises Failure."""
+    from service.cases import CaseError, apply_settings, load_case
+
+    try:
+        return apply_settings(load_case(name_or_path), parse_settings(told))
+    except (CaseError, OSError) as error:
+        raise Failure(str(error)) from None

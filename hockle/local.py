@@ -1,0 +1,144 @@
+"""hockle run, cases, validate: the commands that need no server."""
+
+from __future__ import annotations
+
+import argparse
+import errno
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hockle.failure import Failure
+
+if TYPE_CHECKING:
+    from service.cases import CaseSpec
+    from service.results import DatasetWriter
+    from solver import RunFailed, Simulation
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def register(subparsers: Any) -> None:
+    """Add `hockle run`, `hockle cases` and `hockle validate`."""
+    run_parser = subparsers.add_parser("run", help="simulate a case here and write its dataset")
+    run_parser.add_argument("-o", "--output", type=Path, help="the dataset (default NAME.nc)")
+    run_parser.set_defaults(run=run)
+    validate_parser = subparsers.add_parser("validate", help="check a case without running it")
+    validate_parser.set_defaults(run=validate)
+    for parser in (run_parser, validate_parser):
+        parser.add_argument("case", metavar="CASE", help="a shipped name or a file")
+        parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="settings",
+                            help="change a value of the case, as numerics.intervals=400")  # fmt: skip
+    subparsers.add_parser("cases", help="list the shipped cases").set_defaults(run=cases)
+
+
+def cases(_: argparse.Namespace) -> int:
+    """Print the shipped cases."""
+    from service.cases import shipped_cases
+
+    titles = shipped_cases()
+    width = max(map(len, titles))
+    for name, title in titles.items():
+        print(f"{name:{width}}  {title}")
+    return 0
+
+
+def validate(told: argparse.Namespace) -> int:
+    """Print what a case would cost, or everything that is wrong with it."""
+    spec = _spec(told)
+    nodes, steps = spec.numerics.intervals + 1, spec.t_end / spec.numerics.dt_max
+    print(f"{spec.name} is valid: {nodes} nodes, {spec.frames} frames, {steps:.0f} steps or more")
+    return 0
+
+
+def run(told: argparse.Namespace) -> int:
+    """Simulate a case, with a progress bar, and print a summary; 1 if the run failed, 130 if interrupted."""
+    spec = _spec(told)
+    path = told.output or Path(f"{spec.name}.nc")
+    if path.is_dir():
+        raise Failure(f"{path} is a directory: -o takes the name of a file")
+    try:
+        failure = _simulate(spec, path)
+    except OSError as error:
+        raise Failure(_not_written(path, error)) from None
+    except KeyboardInterrupt:
+        print(f"hockle: interrupted, nothing was written to {path}", file=sys.stderr)
+        return 130
+    print(summary(path))
+    if failure is None:
+        return 0
+    print(f"hockle: {failure}", file=sys.stderr)
+    return 1
+
+
+def summary(path: Path) -> str:
+    """How the run of a dataset ended, what it cost, and its last frame's balance."""
+    from service.results import open_dataset
+
+    with open_dataset(path) as dataset:
+        told = dataset.attrs
+        lines = [
+            f"{told['case_name']}: {told['outcome']}",
+            f"  steps {told['steps']} ({told['failed_steps']} repeated), "
+            f"Newton iterations {told['newton_iterations']}, CPU {told['cpu_time']:.2f} s",
+        ]
+        if dataset.sizes["time"]:
+            last = dataset.isel(time=-1)
+            energies = [name for name in dataset.data_vars if str(name).startswith("energy_")]
+            stored = sum(float(last[name]) for name in energies if name != "energy_balance")
+            lines += [
+                f"  at t = {float(last.time):g} s: Tw {float(last.Tw):.4f}, Wr {float(last.Wr):.4f}, "
+                f"Lk {float(last.Lk):.4f}",
+                f"  energy {stored:.4g} J, balance {float(last.energy_balance):.2g} J",
+            ]
+    return "\n".join(
+        [*lines, f"  {path} ({path.stat().st_size / 1e6:.1f} MB, {dataset.sizes['time']} frames)"]
+    )
+
+
+def _spec(told: argparse.Namespace) -> CaseSpec:
+    from hockle.settings import read_case
+    from service.cases import CaseError, parse_case
+
+    raw = read_case(told.case, told.settings)
+    try:
+        return parse_case(raw)
+    except CaseError as error:
+        raise Failure(str(error)) from None
+
+
+def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
+    """Run and write the dataset; of a run that failed, the frames so far and the failure."""
+    from hockle.progress import show
+    from service.cases import build_scene
+    from service.results import DatasetWriter
+    from solver import Outcome, RunFailed, simulate
+
+    simulation = simulate(build_scene(spec))
+    failure: RunFailed | None = None
+    with DatasetWriter(path, spec, simulation.s) as writer:
+        try:
+            show(_progress(spec, simulation, writer))
+        except RunFailed as failed:
+            failure = failed
+        outcome = failure.outcome if failure else Outcome.COMPLETED
+        writer.publish(outcome.value, str(failure or ""), simulation.statistics)
+    return failure
+
+
+def _progress(spec: CaseSpec, simulation: Simulation, writer: DatasetWriter) -> Iterator[dict[str, Any]]:
+    """Write the frames as they come, and tell of each what the progress bar shows."""
+    yield {"status": spec.name, "progress": 0.0, "t": 0.0}
+    for frame in simulation:
+        writer.append(frame)
+        yield {"status": spec.name, "progress": min(frame.t / spec.t_end, 1.0), "t": frame.t}
+
+
+def _not_written(path: Path, error: OSError) -> str:
+    if error.errno in FULL:
+        return (
+            f"the disk is full, nothing was written to {path}: make room, or store less "
+            "(--set output.interval=..., --set 'output.fields=[\"r\"]')"
+        )
+    return f"nothing was written to {path}: {error.strerror or error}"

@@ -7,8 +7,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-from hockle.failure import Failure
-
 
 def register(subparsers: Any) -> None:
     """Add `hockle submit`, `hockle status` and `hockle fetch`."""

@@ -21,11 +21,14 @@ class LeaseLost(Exception):
 
 
 class Lease:
-    """Renews the lease of `job` from a thread of its own, so that a long step does not lose it."""
+    """Renews the lease of `job` from a thread of its own, so that a long step does not lose it.
+
+    `told` is the progress (0 to 1) and the simulated time (s) that it was told last.
+    """
 
     def __init__(self, registry: Registry, job: Job, seconds: float) -> None:
         self._registry, self._job, self._seconds = registry, job, seconds
-        self._told = (0.0, 0.0)
+        self.told = (0.0, 0.0)
         self._verdict: Exception | None = None
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._keep, name=f"lease {job.id}", daemon=True)
@@ -40,7 +43,7 @@ class Lease:
 
     def tell(self, progress: float, t: float) -> None:
         """Say how far the run has come. Raises Cancelled or LeaseLost if it must stop."""
-        self._told = (progress, t)
+        self.told = (progress, t)
         if self._verdict is not None:
             raise self._verdict
 
@@ -52,7 +55,7 @@ class Lease:
                 log.exception("job %s: its lease could not be renewed, trying again", self._job.id)
 
     def _renew(self) -> None:
-        job = self._registry.renew(self._job, self._seconds, *self._told)
+        job = self._registry.renew(self._job, self._seconds, *self.told)
         if job is None:
             self._verdict = LeaseLost(self._job.id)
         elif job.cancel_requested:

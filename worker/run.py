@@ -52,7 +52,8 @@ def run_job(job_id: str, registry: Registry, settings: Settings) -> None:
             log.info("job %s is handed back: this worker was told to stop", job_id)
             raise
         else:
-            kept = registry.finish(claim.job, ending.status, ending.outcome, ending.message, ending.dataset)
+            kept = registry.finish(claim.job, ending.status, ending.outcome, ending.message, ending.dataset,
+                                   *lease.told)
             log.info("job %s: %s, %s", job_id, ending.status, ending.outcome)
         if not kept:
             log.warning("job %s was given to another worker; what was computed here is dropped", job_id)

@@ -115,11 +115,11 @@ class Registry:
                             version=jobs.c.version + moved)
         return self.get(held.id) if kept else None
 
-    def finish(self, held: Job, status: Status, outcome: str, message: str, dataset: Dataset | None) -> bool:
+    def finish(self, held: Job, status: Status, outcome: str, message: str, dataset: Dataset | None,
+               progress: float, t: float) -> bool:
         """Write how a job ended; False if it is another's now, and nothing was written."""
-        told: dict[str, Any] = {"status": status, "outcome": outcome, "message": message}
-        if status is Status.SUCCESSFUL:
-            told["progress"] = 1.0
+        told: dict[str, Any] = {"status": status, "outcome": outcome, "message": message,
+                                "progress": progress, "t": t}
         if dataset is not None:
             told |= {"dataset_file": dataset.file, "dataset_sha256": dataset.sha256,
                      "dataset_bytes": dataset.bytes}

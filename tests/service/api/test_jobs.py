@@ -96,7 +96,7 @@ def test_a_failed_job_says_why_and_still_gives_its_frames(client, registry, sett
     claim = registry.claim(job_id, 9.0, 3, "here")
     (settings.datasets / "part.nc").write_bytes(b"frames so far")
     part = Dataset("part.nc", "ab" * 32, 13)
-    registry.finish(claim.job, Status.FAILED, "step_too_small", "soften it", part)
+    registry.finish(claim.job, Status.FAILED, "step_too_small", "soften it", part, 1.0, 34.0)
     told = client.get(f"/v1/jobs/{job_id}").json()
     assert (told["outcome"], told["message"]) == ("step_too_small", "soften it")
     assert client.get(told["dataset"]["href"]).content == b"frames so far"

@@ -98,8 +98,8 @@ def test_a_lease_that_ran_out_gives_the_job_to_another_and_fences_the_first(regi
     second = claimed(registry, first.id)
     assert (second.epoch, second.attempts) == (2, 2)
     assert registry.renew(first, LEASE, 0.5, 1.0) is None
-    assert not registry.finish(first, Status.SUCCESSFUL, "completed", "", None)
-    assert registry.finish(second, Status.SUCCESSFUL, "completed", "", Dataset("x.nc", "ab", 3))
+    assert not registry.finish(first, Status.SUCCESSFUL, "completed", "", None, 1.0, 34.0)
+    assert registry.finish(second, Status.SUCCESSFUL, "completed", "", Dataset("x.nc", "ab", 3), 1.0, 34.0)
     ended = registry.get(first.id)
     assert (ended.status, ended.progress, ended.dataset) == (Status.SUCCESSFUL, 1.0, Dataset("x.nc", "ab", 3))
 
@@ -135,7 +135,7 @@ def test_a_running_job_is_told_of_its_cancelling_at_the_next_renewal(registry):
 
 def test_cancelling_an_ended_job_changes_nothing(registry):
     job = claimed(registry, submitted(registry).id)
-    registry.finish(job, Status.SUCCESSFUL, "completed", "", None)
+    registry.finish(job, Status.SUCCESSFUL, "completed", "", None, 1.0, 34.0)
     before = registry.get(job.id)
     assert registry.cancel(job.id) == before
 
@@ -169,7 +169,7 @@ def test_a_job_lost_three_times_fails_by_name(registry, clock):
     ended = registry.get(job.id)
     assert (ended.status, ended.outcome) == (Status.FAILED, "worker_lost")
     assert "3 times" in ended.message
-    assert not registry.finish(last, Status.SUCCESSFUL, "completed", "", None)
+    assert not registry.finish(last, Status.SUCCESSFUL, "completed", "", None, 1.0, 34.0)
 
 
 def test_a_cancelled_job_whose_worker_is_lost_is_dismissed(registry, clock):

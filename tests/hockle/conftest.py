@@ -1,0 +1,116 @@
+"""The whole service as real processes, with short leases, and ways to end some of them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from hockle.client import Client
+from service.cases import apply_settings, load_case
+
+QUICK = {"t_end": 0.5, "output.interval": 0.1, "numerics.intervals": 20}
+SLOW = {"t_end": 5.0, "output.interval": 0.1, "numerics.dt_max": 0.002}
+SHORT_LEASES = {"HOCKLE_LEASE": "1.5", "HOCKLE_RING_AGAIN": "1.0"}
+
+
+class Server:
+    """A running `hockle serve`."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        self.first_line = process.stdout.readline()
+        self.address = self.first_line.split()[3].rstrip(",") if "serves at" in self.first_line else ""
+
+    def below(self, pid: int | None = None) -> list[int]:
+        """The ids of all processes that this server, or one of its processes, has started."""
+        top = pid or self.process.pid
+        try:
+            children = [int(c) for c in Path(f"/proc/{top}/task/{top}/children").read_text().split()]
+        except FileNotFoundError:
+            return []
+        return children + [grandchild for child in children for grandchild in self.below(child)]
+
+    def service(self, words: str) -> int:
+        """The process directly below the server in whose command line these words stand."""
+        below = [int(c) for c in Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children")
+                 .read_text().split()]  # fmt: skip
+        return next(pid for pid in below if words in command_line(pid))
+
+    def kill(self, pid: int) -> None:
+        """End one of the server's own processes, without warning."""
+        assert pid in self.below()
+        os.kill(pid, signal.SIGKILL)
+
+
+def command_line(pid: int) -> str:
+    try:
+        return Path(f"/proc/{pid}/cmdline").read_text().replace("\0", " ")
+    except (FileNotFoundError, ProcessLookupError):
+        return ""
+
+
+def alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+@contextmanager
+def serving(data: Path) -> Iterator[Server]:
+    command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", str(data)]
+    environment = {**os.environ, **SHORT_LEASES, "REDIS_URL": ""}
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                               env=environment)  # fmt: skip
+    try:
+        yield Server(process)
+    finally:
+        process.terminate()
+        process.wait(60)
+        process.stdout.close()
+
+
+@pytest.fixture
+def start():
+    """`with start(directory) as server:` runs a server of one's own."""
+    return serving
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server that the tests of a module share."""
+    with serving(tmp_path_factory.mktemp("data")) as server:
+        assert server.address, server.first_line + server.process.stdout.read()
+        yield server
+
+
+@pytest.fixture
+def client(server: Server) -> Iterator[Client]:
+    with Client(server.address) as client:
+        yield client
+
+
+@pytest.fixture
+def quick() -> dict[str, Any]:
+    """A case of a moment."""
+    return apply_settings(load_case("goyal-2003"), QUICK)
+
+
+@pytest.fixture
+def slow() -> dict[str, Any]:
+    """A case of some seconds."""
+    return apply_settings(load_case("goyal-2003"), SLOW)
+
+
+@pytest.fixture
+def is_alive():
+    """Whether a process still runs."""
+    return alive

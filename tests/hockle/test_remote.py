@@ -1,0 +1,86 @@
+"""submit, status and fetch: what they print, and what they say when they cannot."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from hockle.cli import main
+
+NOWHERE = "http://127.0.0.1:9"
+
+
+@pytest.fixture(autouse=True)
+def _server(server, monkeypatch):
+    monkeypatch.setenv("HOCKLE_SERVER", server.address)
+
+
+@pytest.fixture
+def case_file(quick, tmp_path):
+    path = tmp_path / "case.json"
+    path.write_text(json.dumps(quick))
+    return str(path)
+
+
+def test_a_case_is_submitted_followed_and_fetched(case_file, tmp_path, capsys):
+    assert main(["submit", case_file, "--set", "t_end=0.3", "--wait"]) == 0
+    job_id, sentence = capsys.readouterr().out.splitlines()
+    assert sentence == f"{job_id}: successful"
+    assert main(["status", job_id]) == 0
+    assert capsys.readouterr().out.strip() == sentence
+    assert main(["status", job_id, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["t"] == pytest.approx(0.3)
+    assert main(["fetch", job_id, "-o", str(tmp_path / "out.nc")]) == 0
+    assert (tmp_path / "out.nc").read_bytes()[:4] == b"\x89HDF"
+
+
+def refusal(capsys, *arguments: str) -> str:
+    assert main(list(arguments)) == 1
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.startswith("hockle: ")
+    return told.err
+
+
+def test_an_unknown_job_is_told_so(capsys, tmp_path):
+    assert "there is no job 'nobody'" in refusal(capsys, "status", "nobody")
+    assert "there is no job 'nobody'" in refusal(capsys, "fetch", "nobody", "-o", str(tmp_path / "x.nc"))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_id_that_is_none_is_not_sent(capsys):
+    assert "letters and digits only" in refusal(capsys, "status", "../cases")
+
+
+def test_a_server_that_is_not_there_is_told_with_the_remedy(capsys, case_file):
+    for command in (["status", "x"], ["submit", case_file], ["fetch", "x"]):
+        told = refusal(capsys, *command, "--server", NOWHERE)
+        assert f"no hockle server answers at {NOWHERE}" in told and "hockle serve" in told
+
+
+def test_a_job_that_has_not_ended_cannot_be_fetched_yet(capsys, slow, tmp_path):
+    (tmp_path / "slow.json").write_text(json.dumps(slow))
+    assert main(["submit", str(tmp_path / "slow.json")]) == 0
+    job_id = capsys.readouterr().out.strip()
+    assert "its dataset comes at its end" in refusal(capsys, "fetch", job_id, "-o", str(tmp_path / "x.nc"))
+    assert not (tmp_path / "x.nc").exists()
+
+
+def test_a_faulty_case_is_refused_by_field_value_and_rule(capsys, case_file):
+    told = refusal(capsys, "submit", case_file, "--set", "t_end=-1")
+    assert "/t_end must be > 0" in told and "got -1" in told
+
+
+def test_a_case_that_is_not_there_is_told_so(capsys):
+    assert "goyal-2003" in refusal(capsys, "submit", "goyal-2004")
+
+
+def test_a_setting_without_a_value_is_told_so(capsys, case_file):
+    assert "--set takes KEY=VALUE" in refusal(capsys, "submit", case_file, "--set", "t_end")
+
+
+def test_a_dataset_that_cannot_be_written_is_told_so(capsys, case_file, tmp_path):
+    assert main(["submit", case_file, "--wait"]) == 0
+    job_id = capsys.readouterr().out.split()[0]
+    assert "cannot write" in refusal(capsys, "fetch", job_id, "-o", str(tmp_path / "none" / "x.nc"))

@@ -57,7 +57,7 @@ def test_angles_are_given_in_degrees_and_built_in_radians():
 def test_a_component_takes_the_place_of_the_presets_own():
     ends = scene("short-loop").end
     assert [c[0].kind for c in ends.translation] == ["rate", "rate", "position"]
-    assert ends.translation[2][0].curve.value(2.0) == -0.05
+    assert ends.translation[2][0].curve.value(2.0) == pytest.approx(-0.05)
     assert ends.frame == "lab"
 
 

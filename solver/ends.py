@@ -24,7 +24,8 @@ class DrivenEnd:
 
     def __init__(self, end: End) -> None:
         self._components = (*end.translation, *end.rotation)
-        self._lab = end.frame == "lab"
+        self.in_lab = end.frame == "lab"
+        """Whether the translation's components are along e1, e2, e3."""
         self._active = [0] * 6
         self._stopping_from = [0.0] * 6
         self.travel = np.zeros(6)
@@ -43,8 +44,13 @@ class DrivenEnd:
                     times.append(condition.since + condition.within)
         return times
 
+    def follow(self, shift: Array, turned: Array) -> None:
+        """Add a step's displacement along, and rotation about, the axes, (3,) each."""
+        self.travel[:3] += shift
+        self.travel[3:] += turned
+
     def switch(self, t: float, rates: Array) -> None:
-        """Put in force the conditions that hold from `t` on; `rates` (6,): the end's v_i and omega_i now."""
+        """Put in force the conditions that hold from `t` on; `rates` (6,): the end's velocity and omega now."""
         for i, component in enumerate(self._components):
             while self._active[i] + 1 < len(component) and component[self._active[i] + 1].since <= t + 1e-12:
                 self._active[i] += 1
@@ -72,7 +78,7 @@ class DrivenEnd:
     def _set_kinds(self) -> None:
         for i, component in enumerate(self._components):
             load = component[self._active[i]].kind == "load"
-            if i < 3 and self._lab:
+            if i < 3 and self.in_lab:
                 self.kinds[i] = LOAD_LAB if load else RATE_LAB
             else:
                 self.kinds[i] = LOAD if load else RATE

@@ -35,3 +35,8 @@ if "NUMBA_CACHE_DIR" not in os.environ:
 def kernel(function: Function) -> Function:
     """Compile a function of plain arrays and numbers."""
     return numba.njit(**_OPTIONS)(function)  # type: ignore[no-any-return]
+
+
+def inlined(function: Function) -> Function:
+    """Compile a function that is to vanish into its callers: one that is called for every node or interval."""
+    return numba.njit(inline="always", **_OPTIONS)(function)  # type: ignore[no-any-return]

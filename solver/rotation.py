@@ -115,13 +115,23 @@ def quaternion_of(R: Array) -> Array:
     return quaternions
 
 
+@kernel
 def rotate(orientation: Array, vectors: Array) -> Array:
     """Material vectors (n, 3) in the lab frame, by unit quaternions (n, 4)."""
-    scalar, vector = orientation[:, :1], orientation[:, 1:]
-    twice = 2.0 * np.cross(vector, vectors)
-    return np.asarray(vectors + scalar * twice + np.cross(vector, twice), dtype=float)
+    rotated, R = np.empty_like(vectors), np.empty((3, 3))
+    for j in range(len(vectors)):
+        matrix_of(orientation[j], R)
+        for i in range(3):
+            rotated[j, i] = R[i, 0] * vectors[j, 0] + R[i, 1] * vectors[j, 1] + R[i, 2] * vectors[j, 2]
+    return rotated
 
 
+@kernel
 def rotate_back(orientation: Array, vectors: Array) -> Array:
     """Lab vectors (n, 3) in the material frame, by unit quaternions (n, 4)."""
-    return rotate(orientation * np.array([1.0, -1.0, -1.0, -1.0]), vectors)
+    rotated, R = np.empty_like(vectors), np.empty((3, 3))
+    for j in range(len(vectors)):
+        matrix_of(orientation[j], R)
+        for i in range(3):
+            rotated[j, i] = R[0, i] * vectors[j, 0] + R[1, i] * vectors[j, 1] + R[2, i] * vectors[j, 2]
+    return rotated

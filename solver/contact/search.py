@@ -69,11 +69,11 @@ def cannot_touch(bending: float, distance: float, law: Law) -> bool:
 
 
 @kernel
-def smallest_distance(points: Points, skip: float) -> float:
-    """The smallest distance (m) of two points more than `skip` of arc apart; inf if there are none."""
+def smallest_distance(points: Points, skip: float, enough: float) -> float:
+    """The smallest distance (m) of two points more than `skip` of arc apart, or `enough` if none are nearer."""
     M, spacing = len(points.p), points.spacing
     apart = int(np.ceil(skip / spacing))
-    best = np.inf
+    best = enough
     for a in range(M):
         b = a + apart
         while b < M:

@@ -78,7 +78,7 @@ class SelfContact:
         tangents_of(trial.quaternion, self._T)
         place_points(points, trial.r, self._T, trial.Y)
         if not self._looked:
-            near = smallest_distance(points, self._law.skip) <= self._law.cutoff
+            near = smallest_distance(points, self._law.skip, self._reach) <= self._law.cutoff
             return "the rod came near itself within one step" if near else ""
         if largest_displacement(points) > 0.5 * self._slack:
             return "the rod moved farther than the contact search looked"
@@ -93,7 +93,7 @@ class SelfContact:
         tangents_of(state.quaternion, self._T)
         points = self.touch.points
         place_points(points, state.r, self._T, state.Y)
-        distance = smallest_distance(points, self._law.skip)
+        distance = smallest_distance(points, self._law.skip, inf)
         return float(distance - points.diameter.max()) if distance < inf else float("nan")
 
     def power(self) -> tuple[float, float]:
@@ -107,7 +107,7 @@ class SelfContact:
         points = self.touch.points
         points.checked[:] = points.p
         self._looked = True
-        nearest = smallest_distance(points, self._law.skip)
+        nearest = smallest_distance(points, self._law.skip, 1.5 * self._reach)
         if nearest > self._reach:
             self.touch.pairs.count[:] = 0
             self._slack = nearest - self._law.cutoff

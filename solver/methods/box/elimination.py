@@ -7,27 +7,33 @@ de Boor & Weiss 1980 (SOLVEBLOK) and Diaz, Fairweather & Keast 1983 (COLROW). Ba
 
 from __future__ import annotations
 
+import numpy as np
+
 from solver.kernel import kernel
-from solver.methods.box.fields import Linear
+from solver.methods.box.fields import Linear, Nodes
+from solver.methods.box.intervals import interval_panel
 from solver.rod import Array
 
 
 @kernel
-def factor(system: Linear) -> bool:
-    """Factor the system in place; False if it is singular."""
+def factor(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear) -> bool:
+    """Factor the system of the iterate `Y` (n, 12), making each panel when its turn comes; False if it is singular."""
     N = len(system.panels)
+    W, mean = np.zeros((18, 24)), np.zeros((4, 3))
+    W[:6, :12] = system.start
     for j in range(N):
-        W = system.panels[j]
-        for i in range(6):
-            for k in range(12):
-                W[i, k] = system.start[i, k] if j == 0 else system.panels[j - 1, 12 + i, 12 + k]
-                W[i, 12 + k] = 0.0
+        interval_panel(j, Y, c0, h, nodes, system.rows, system.columns, mean, W)
         if not _eliminate(W, 18, system.swaps[j]):
             return False
-    for i in range(6):
-        for k in range(12):
-            system.last[i, k] = system.panels[N - 1, 12 + i, 12 + k]
-            system.last[6 + i, k] = system.end[i, k]
+        for i in range(18):
+            for k in range(24):
+                system.panels[j, i, k] = W[i, k]
+        for i in range(6):
+            for k in range(12):
+                W[i, k] = W[12 + i, 12 + k]
+                W[i, 12 + k] = 0.0
+    system.last[:6] = W[:6, :12]
+    system.last[6:] = system.end
     return bool(_eliminate_last(system.last, system.last_swaps))
 
 

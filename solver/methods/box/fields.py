@@ -113,7 +113,7 @@ class Loads(NamedTuple):
 class Linear(NamedTuple):
     """The almost block diagonal system and its factors.
 
-    `panels` (N, 18, 24): six rows carried from the left over an interval's twelve; `start`, `end` (6, 12)
+    `panels` (N, 18, 24): factors of six rows carried from the left over an interval's twelve; `start`, `end` (6, 12)
     rows of the ends; residuals `b` (N, 12), `b_start`, `b_end` (6,); `swaps` (N, 12); `last` (12, 12) with
     `last_swaps` (12,); `x` (n, 12) solution; `rhs` (N, 18) scratch; `columns`, `rows` (12,) scales.
     """

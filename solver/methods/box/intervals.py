@@ -14,7 +14,7 @@ the stretch. They vanish with the step and keep Tw + Wr = Lk and the ends where 
 
 from __future__ import annotations
 
-from solver.kernel import kernel
+from solver.kernel import inlined, kernel
 from solver.methods.box.fields import KAPPA, OMEGA, F, Linear, Nodes, State, V
 from solver.rod import Array
 from solver.rotation import matrix_of, relative_rotation
@@ -64,50 +64,61 @@ def interval_residuals(Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
             system.b[j, 9 + i] = rows[9 + i] * moment
 
 
-@kernel
-def interval_tangents(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear) -> None:
-    """Write the tangents of the residuals by the scaled unknowns into rows 6 to 17 of `system.panels`."""
-    half = 0.5 * h
-    for j in range(len(system.panels)):
-        panel = system.panels[j, 6:]
-        panel[:, :] = 0.0
-        for side in range(2):
-            node, sign, at = j + side, 2.0 * side - 1.0, 12 * side
-            _compatibility_tangent(panel, Y[j], Y[j + 1], sign, at, half, c0)
-            _lab_tangents(panel, Y[j], Y[j + 1], node, j, sign, at, half, nodes)
-        for i in range(12):
-            for k in range(12):
-                scale = system.rows[i] * system.columns[k]
-                panel[i, k] *= scale
-                panel[i, 12 + k] *= scale
+@inlined
+def interval_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, rows: Array, columns: Array, mean: Array,
+                   panel: Array) -> None:  # fmt: skip
+    """Write the tangents of interval j's residuals by the scaled unknowns into rows 6 to 17 of `panel` (18, 24).
+
+    Columns 0 to 11 belong to node j, 12 to 23 to node j + 1. `mean` (4, 3) is scratch.
+    """
+    for i in range(6, 18):
+        for k in range(24):
+            panel[i, k] = 0.0
+    for i in range(3):
+        mean[0, i] = 0.25 * h * (Y[j, KAPPA + i] + Y[j + 1, KAPPA + i])
+        mean[1, i] = 0.25 * h * (Y[j, OMEGA + i] + Y[j + 1, OMEGA + i])
+        mean[2, i] = 0.25 * h * (nodes.T[j, i] + nodes.T[j + 1, i])
+        mean[3, i] = 0.25 * h * (Y[j, F + i] + Y[j + 1, F + i])
+    for side in range(2):
+        _compatibility(panel, mean, 2.0 * side - 1.0, 12 * side, 0.5 * h * c0, rows, columns)
+        _lab_balances(panel, mean, j + side, 2.0 * side - 1.0, 12 * side, 0.5 * h, rows, columns, nodes.T_w,
+                      nodes.U_w, nodes.P_V, nodes.P_w, nodes.M_k, nodes.M_w, nodes.W_w)  # fmt: skip
 
 
-@kernel
-def _compatibility_tangent(panel: Array, L: Array, R: Array, sign: float, at: int, half: float, c0: float) -> None:
+@inlined
+def _compatibility(panel: Array, mean: Array, sign: float, at: int, inertia: float, rows: Array,
+                   columns: Array) -> None:  # fmt: skip
+    """Tangents of (2) by one node; `mean` (4, 3): means of kappa, omega, T and F times h/2."""
+    by_omega, by_kappa = rows[0] * columns[OMEGA], rows[0] * columns[KAPPA]
     for i in range(3):
         a, c = (i + 1) % 3, (i + 2) % 3
-        panel[i, at + OMEGA + i] = sign
-        panel[i, at + OMEGA + c] = half * 0.5 * (L[KAPPA + a] + R[KAPPA + a])
-        panel[i, at + OMEGA + a] = -half * 0.5 * (L[KAPPA + c] + R[KAPPA + c])
-        panel[i, at + KAPPA + i] = -half * c0
-        panel[i, at + KAPPA + a] = half * 0.5 * (L[OMEGA + c] + R[OMEGA + c])
-        panel[i, at + KAPPA + c] = -half * 0.5 * (L[OMEGA + a] + R[OMEGA + a])
+        panel[6 + i, at + OMEGA + i] = by_omega * sign
+        panel[6 + i, at + OMEGA + c] = by_omega * mean[0, a]
+        panel[6 + i, at + OMEGA + a] = -by_omega * mean[0, c]
+        panel[6 + i, at + KAPPA + i] = -by_kappa * inertia
+        panel[6 + i, at + KAPPA + a] = by_kappa * mean[1, c]
+        panel[6 + i, at + KAPPA + c] = -by_kappa * mean[1, a]
 
 
-@kernel
-def _lab_tangents(panel: Array, L: Array, R: Array, node: int, j: int, sign: float, at: int, half: float,
-                  nodes: Nodes) -> None:  # fmt: skip
+@inlined
+def _lab_balances(panel: Array, mean: Array, node: int, sign: float, at: int, half: float, rows: Array,
+                  columns: Array, T_w: Array, U_w: Array, P_V: Array, P_w: Array, M_k: Array, M_w: Array,
+                  W_w: Array) -> None:  # fmt: skip
+    """Tangents of (3), (4) and (5) by one node."""
+    velocity, force = sign * rows[3] * columns[V], sign * rows[6] * columns[F]
+    stretch = -half * rows[3] * columns[OMEGA]
+    load_V, load_w = -half * rows[6] * columns[V], -half * rows[6] * columns[OMEGA]
+    moment_k, moment_w, moment_F = sign * rows[9] * columns[KAPPA], rows[9] * columns[OMEGA], rows[9] * columns[F]
     for i in range(3):
         a, c = (i + 1) % 3, (i + 2) % 3
-        F_a, F_c = 0.5 * (L[F + a] + R[F + a]), 0.5 * (L[F + c] + R[F + c])
-        panel[3 + i, at + V + i] = sign
-        panel[6 + i, at + F + i] = sign
-        panel[9 + i, at + F + c] = half * 0.5 * (nodes.T[j, a] + nodes.T[j + 1, a])
-        panel[9 + i, at + F + a] = -half * 0.5 * (nodes.T[j, c] + nodes.T[j + 1, c])
+        panel[9 + i, at + V + i] = velocity
+        panel[12 + i, at + F + i] = force
+        panel[15 + i, at + F + c] = moment_F * mean[2, a]
+        panel[15 + i, at + F + a] = -moment_F * mean[2, c]
         for k in range(3):
-            panel[3 + i, at + OMEGA + k] = -half * nodes.U_w[node, i, k]
-            panel[6 + i, at + V + k] = -half * nodes.P_V[node, i, k]
-            panel[6 + i, at + OMEGA + k] = -half * nodes.P_w[node, i, k]
-            panel[9 + i, at + KAPPA + k] = sign * nodes.M_k[node, i, k]
-            thrust = nodes.T_w[node, a, k] * F_c - nodes.T_w[node, c, k] * F_a
-            panel[9 + i, at + OMEGA + k] = sign * nodes.M_w[node, i, k] + half * (thrust - nodes.W_w[node, i, k])
+            panel[9 + i, at + OMEGA + k] = stretch * U_w[node, i, k]
+            panel[12 + i, at + V + k] = load_V * P_V[node, i, k]
+            panel[12 + i, at + OMEGA + k] = load_w * P_w[node, i, k]
+            panel[15 + i, at + KAPPA + k] = moment_k * M_k[node, i, k]
+            thrust = T_w[node, a, k] * mean[3, c] - T_w[node, c, k] * mean[3, a]
+            panel[15 + i, at + OMEGA + k] = moment_w * (sign * M_w[node, i, k] - half * W_w[node, i, k] + thrust)

@@ -65,17 +65,17 @@ class BoxMethod:
         old, new = self.state, self.trial
         self._F_rate = (new.Y[:, F:] - old.Y[:, F:]) / dt
         c0 = (BACKWARD_EULER if self._consistent else self._scheme).c0(dt)
-        for end, node in ((self.start, 0), (self.end, -1)):
-            shift = (new.r[node] - old.r[node])[None, :]
-            lab = end.kinds[0] >= 2 or end.kinds[1] >= 2 or end.kinds[2] >= 2
-            end.travel[:3] += shift[0] if lab else rotate_back(old.quaternion[node][None, :], shift)[0]
-            end.travel[3:] += self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0
+        for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
+            shift = new.r[node : node + 1] - old.r[node : node + 1]
+            turned = self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0
+            end.follow(shift[0] if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift)[0], turned)
         self.state, self.trial = new, old
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
         for end, node in ((self.start, 0), (self.end, -1)):
-            end.switch(t, np.concatenate([self.velocity()[node], self.state.Y[node, OMEGA : OMEGA + 3]]))
+            velocity = self.state.Y[node, V : V + 3] if end.in_lab else self.velocity()[node]
+            end.switch(t, np.concatenate([velocity, self.state.Y[node, OMEGA : OMEGA + 3]]))
 
     def velocity(self) -> Array:
         """v (n, 3), material."""

@@ -12,7 +12,7 @@ from solver.methods.box.elimination import factor, solve
 from solver.methods.box.ends import end_conditions
 from solver.methods.box.fields import KAPPA, F, Linear, Loads, Nodes, Section, State
 from solver.methods.box.generalized_alpha import Scheme, finish, history
-from solver.methods.box.intervals import interval_residuals, interval_tangents, measure_drift
+from solver.methods.box.intervals import interval_residuals, measure_drift
 from solver.methods.box.nodes import balance_rotation, balance_translation, place_nodes
 from solver.methods.box.shooting import LARGEST_GROWTH, shoot
 from solver.rod import Array
@@ -64,14 +64,13 @@ def set_scales(scales: Scales, c0: float, system: Linear) -> None:
 @kernel
 def assemble(old: State, new: State, past: Array, c0: float, h: float, section: Section, loads: Loads,
              ends: EndValues, nodes: Nodes, drift: Array, system: Linear, touch: Touch) -> None:  # fmt: skip
-    """Residuals and tangents of every equation at the iterate `new`."""
+    """Residuals of every equation at the iterate `new`, the tangents at the nodes and those of the ends."""
     place_nodes(old, new, past, c0, nodes)
     balance_rotation(new, section, loads, past, c0, nodes)
     balance_translation(new, section, loads, past, c0, nodes)
     if touch.present and touch.pairs.count[0] > 0:
         add_contact(new, nodes, h, touch)
     interval_residuals(new.Y, past, c0, h, nodes, drift, system)
-    interval_tangents(new.Y, c0, h, nodes, system)
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
                    nodes, section, system.b_start, system.start)  # fmt: skip
     end_conditions(new.Y, len(new.Y) - 1, ends.end_kinds, ends.end, ends.end_dead, system.rows, system.columns,
@@ -113,16 +112,16 @@ class Work(NamedTuple):
 
 
 @kernel
-def solve_linear(c0: float, h: float, scales: Scales, touch: Touch, work: Work) -> int:
-    """Solve for Newton's increment into the system's x; returns how that ended."""
-    system = work.system
+def solve_linear(Y: Array, c0: float, h: float, scales: Scales, touch: Touch, work: Work) -> int:
+    """Solve for Newton's increment of the iterate `Y` into the system's x; returns how that ended."""
+    system, nodes = work.system, work.nodes
     if scales.shooting:
-        growth = shoot(system, work.marched, system.x)
+        growth = shoot(Y, c0, h, nodes, system, work.marched, system.x)
         return CONVERGED if growth < LARGEST_GROWTH else LOST_DIGITS
-    if not factor(system):
+    if not factor(Y, c0, h, nodes, system):
         return SINGULAR
     if touch.present and touch.pairs.count[0] > 0:
-        solve_with_contact(c0, h, work.nodes, system, touch)
+        solve_with_contact(c0, h, nodes, system, touch)
     else:
         solve(system, system.b_start, system.b, system.b_end, system.x)
     return CONVERGED
@@ -144,7 +143,7 @@ def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: S
     before = 0.0
     for iteration in range(1, LARGEST_ITERATIONS + 1):
         assemble(old, new, work.past, c0, h, section, loads, ends, work.nodes, work.drift, system, touch)
-        status = solve_linear(c0, h, scales, touch, work)
+        status = solve_linear(new.Y, c0, h, scales, touch, work)
         if status != CONVERGED:
             return status, iteration
         size = increment_size(new, system, scales)

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from solver.kernel import kernel
-from solver.methods.box.fields import Linear
+from solver.methods.box.fields import Linear, Nodes
+from solver.methods.box.intervals import interval_panel
 from solver.rod import Array
 
 LARGEST_GROWTH = 1e12
@@ -18,23 +19,24 @@ LARGEST_GROWTH = 1e12
 
 
 @kernel
-def shoot(system: Linear, marched: Array, x: Array) -> float:
-    """Solve the unfactored system for its residuals into `x` (n, 12); `marched` (n, 12, 7) is scratch.
+def shoot(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear, marched: Array, x: Array) -> float:
+    """Solve the system of the iterate `Y` (n, 12) for its residuals into `x` (n, 12); `marched` (n, 12, 7) is scratch.
 
     Returns the growth of the homogeneous solutions from s = 0 to s = L (inf if a block is singular).
     """
     N = len(system.panels)
     if not _start(system.start, system.b_start, marched[0]):
         return np.inf
-    A = np.empty((12, 12))
+    A, panel, mean = np.empty((12, 12)), np.empty((18, 24)), np.zeros((4, 3))
     for j in range(N):
+        interval_panel(j, Y, c0, h, nodes, system.rows, system.columns, mean, panel)
         for i in range(12):
             for k in range(12):
-                A[i, k] = system.panels[j, 6 + i, 12 + k]
+                A[i, k] = panel[6 + i, 12 + k]
             for m in range(7):
                 total = system.b[j, i] if m == 6 else 0.0
                 for k in range(12):
-                    total -= system.panels[j, 6 + i, k] * marched[j, k, m]
+                    total -= panel[6 + i, k] * marched[j, k, m]
                 marched[j + 1, i, m] = total
         if not _solve_dense(A, marched[j + 1]):
             return np.inf

@@ -1,0 +1,135 @@
+"""hockle run, cases, validate: what they print, leave behind, and return."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import service.cases
+import solver
+from hockle.cli import main
+from service.cases import load_case
+from service.results import open_dataset, segments
+from solver import Frame, Outcome, RunFailed, Scene, Simulation
+
+QUICK = ["--set", "t_end=0.5", "--set", "numerics.intervals=20", "--set", "output.interval=0.1"]
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "out.nc"
+
+
+def run(path: Path, *more: str) -> int:
+    return main(["run", "elastica", "-o", str(path), *QUICK, *more])
+
+
+def after_two_frames(monkeypatch: pytest.MonkeyPatch, happens: Callable[[], None]) -> None:
+    """Let something happen once a simulation has given two frames."""
+
+    class Interrupted(Simulation):
+        def __iter__(self) -> Iterator[Frame]:
+            for i, frame in enumerate(super().__iter__()):
+                if i == 2:
+                    happens()
+                yield frame
+
+    def simulate(scene: Scene) -> Simulation:
+        return Interrupted(scene)
+
+    monkeypatch.setattr(solver, "simulate", simulate)
+
+
+def test_a_run_writes_its_dataset_and_sums_it_up(path: Path, capsys: pytest.CaptureFixture[str]):
+    assert run(path) == 0
+    told = capsys.readouterr().out
+    for word in ("elastica: completed", "steps", "CPU", "Tw", "Wr", "Lk", "balance", str(path)):
+        assert word in told
+    with open_dataset(path) as dataset:
+        assert dataset.attrs["outcome"] == "completed"
+        assert dataset.sizes == {"time": 6, "s": 21, "body": 3, "lab": 3, "quaternion": 4}
+
+
+def test_the_dataset_is_named_after_the_case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "elastica", *QUICK]) == 0
+    assert [file.name for file in tmp_path.iterdir()] == ["elastica.nc"]
+
+
+def test_an_interrupted_run_says_so_and_leaves_nothing(
+    path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    after_two_frames(monkeypatch, interrupt)
+    assert run(path) == 130
+    assert f"interrupted, nothing was written to {path}" in capsys.readouterr().err
+    assert list(path.parent.iterdir()) == []
+
+
+def test_a_run_that_fails_keeps_its_frames_and_names_the_remedy(
+    path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    def fail() -> None:
+        raise RunFailed(Outcome.ROD_CROSSED_ITSELF, 0.15, 7)
+
+    after_two_frames(monkeypatch, fail)
+    assert run(path) == 1
+    assert "the rod passed through itself: use more intervals" in capsys.readouterr().err
+    with open_dataset(path) as dataset:
+        assert dataset.attrs["outcome"] == "rod_crossed_itself"
+        assert "t = 0.15 s, step 7" in dataset.attrs["message"]
+        assert dataset.sizes["time"] == 2
+
+
+def test_a_full_disk_is_told_and_leaves_nothing(
+    path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    def full(*_: Any) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as disk:
+        disk.setattr(segments.os, "fsync", full)
+        assert run(path) == 1
+    assert f"the disk is full, nothing was written to {path}" in capsys.readouterr().err
+    assert list(path.parent.iterdir()) == []
+
+
+@pytest.mark.parametrize("where", ["no/such/directory/out.nc", "."])
+def test_a_place_that_cannot_be_written_is_told(
+    where: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+):
+    monkeypatch.chdir(tmp_path)
+    assert main(["run", "elastica", "-o", where, *QUICK]) == 1
+    assert where in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("command", ["run", "validate"])
+def test_a_bad_case_is_refused_with_every_fault(command: str, capsys: pytest.CaptureFixture[str]):
+    faults = ["--set", "rod.length=-1", "--set", "t_end=soon"]
+    assert main([command, "elastica", *faults]) == 1
+    told = capsys.readouterr().err
+    assert "/rod/length must be > 0, got -1" in told
+    assert "/t_end must be a number, got 'soon'" in told
+
+
+def test_validate_tells_the_size_of_a_case(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    path = tmp_path / "mine.json"
+    path.write_text(json.dumps(load_case("goyal-2003")))
+    assert main(["validate", str(path), "--set", "numerics.intervals=400"]) == 0
+    assert capsys.readouterr().out == "goyal-2003 is valid: 401 nodes, 341 frames, 680 steps or more\n"
+
+
+def test_cases_lists_every_shipped_case(capsys: pytest.CaptureFixture[str]):
+    assert main(["cases"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    titles = service.cases.shipped_cases()
+    assert [line.split(maxsplit=1) for line in lines] == [[name, title] for name, title in titles.items()]

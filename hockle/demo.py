@@ -52,6 +52,7 @@ def _run(services: Services, client: Client, path: Path) -> None:
 
     job = client.submit(load_case(CASE))
     print(f"submitted {CASE}: {services.address}/v1/jobs/{job['id']}", flush=True)
+    print("(the very first run compiles the solver before it starts, which takes about a minute)", flush=True)
     job = show(_looked_after(services, client, job["id"]))
     if job["status"] != "successful":
         raise Failure(f"the job ended {job['status']}: {job['message']}")

@@ -42,7 +42,7 @@ class DatasetFile(FileResponse):
         except MalformedRangeHeader:
             return []
         except RangeNotSatisfiable:
-            raise Problem(416, "range_not_satisfiable", f"the dataset has {file_size} bytes, got {http_range!r}",
+            raise Problem(416, "range_not_satisfiable", f"there are {file_size} bytes, got {http_range!r}",
                           {"Content-Range": f"bytes */{file_size}"}) from None
 
 

@@ -17,10 +17,10 @@ from solver.scene import (
     PointLoad,
     Scene,
 )
-from solver.simulate import Simulation, simulate
+from solver.simulate import Simulation, simulate, warm
 
 __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
     "Initial", "Numerics", "Outcome", "PointLoad", "Rod", "RunFailed", "Scene", "Simulation", "Statistics",
-    "Vector", "constant_vector", "simulate",
+    "Vector", "constant_vector", "simulate", "warm",
 ]

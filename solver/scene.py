@@ -233,6 +233,8 @@ class Numerics:
         for name in ("rho_inf", "rho_inf_space"):
             if not 0 <= getattr(self, name) <= 1:
                 raise ValueError(f"{name} must be in [0, 1], got {getattr(self, name)}")
+        if self.linear_solver == "shooting" and self.rho_inf_space != 1.0:
+            raise ValueError(f"rho_inf_space must be 1 with linear_solver shooting, got {self.rho_inf_space}")
         if not self.increment_tolerance > 0:
             raise ValueError(f"increment_tolerance must be > 0, got {self.increment_tolerance}")
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from time import process_time
 
 from solver.frame import Frame, Statistics
@@ -10,9 +11,9 @@ from solver.measures.accounts import Accounts
 from solver.methods.box.method import BoxMethod
 from solver.methods.box.newton import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
-from solver.rod import Array
-from solver.scene import Scene
-from solver.step_control import CONSISTENT_STEP, StepControl
+from solver.rod import Array, Rod
+from solver.scene import Contact, End, Fluid, Initial, Numerics, Scene
+from solver.step_control import CONSISTENT_STEPS, StepControl
 
 
 def simulate(scene: Scene) -> Simulation:
@@ -32,7 +33,9 @@ class Simulation:
         if not self._outputs or self._outputs[-1] < scene.t_end * (1 - 1e-12):
             self._outputs.append(scene.t_end)
         ends = self._method.start.corners() + self._method.end.corners()
-        self._control = StepControl(scene.numerics, ends + self._method.applied.corners(), self._outputs)
+        self._control = StepControl(
+            scene.numerics, self._method.shortest_step, ends + self._method.applied.corners(), self._outputs
+        )
         self._switches = sorted({c.since for e in (scene.start, scene.end)
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
         self.statistics = Statistics()
@@ -43,19 +46,28 @@ class Simulation:
         return self._method.s
 
     def __iter__(self) -> Iterator[Frame]:
+        warm()
         started = process_time()
-        dt0 = self._scene.numerics.dt_max * CONSISTENT_STEP
-        dt0 = min(dt0, 0.1 * self._outputs[0])
-        t = 0.0
-        for _ in range(2):
-            t = self._advance(t, dt0, t + dt0, consistent=True)
-        yield self._frame(0.0)
+        t = self._begin()
+        yield self._accounts.frame(0.0)
         for output in self._outputs:
             while t < output:
                 t = self._advance(t, *self._control.step_from(t, self._method.contact.step_limit))
             self.statistics.cpu_time += process_time() - started
-            yield self._frame(output)
+            yield self._accounts.frame(output)
             started = process_time()
+
+    def _begin(self) -> float:
+        """Two tiny steps that find consistent accelerations and forces; return the time they reach."""
+        for part in CONSISTENT_STEPS:
+            dt = max(min(part * self._scene.numerics.dt_max, 0.1 * self._outputs[0]), self._method.shortest_step)
+            status, iterations = self._method.try_step(0.0, dt, consistent=True)
+            self.statistics.newton_iterations += iterations
+            if status == CONVERGED:
+                self._take(0.0, dt, dt, iterations)
+                return self._advance(dt, dt, 2 * dt, consistent=True)
+            self.statistics.failed_steps += 1
+        raise RunFailed(_fatal(status) or Outcome.STEP_TOO_SMALL, 0.0, 0, "no consistent start was found")
 
     def _advance(self, t: float, dt: float, target: float, consistent: bool = False) -> float:
         """Take one step from t, as long as dt or shorter if need be; return the time it reached."""
@@ -79,9 +91,7 @@ class Simulation:
             control.rejected(dt)
             dt *= 0.5
             target = t + dt
-        method.take_step(t, dt)
-        self.statistics.steps += 1
-        self._accounts.after_step(target, dt, iterations)
+        self._take(t, dt, target, iterations)
         if not consistent:
             control.accepted(dt, increment, iterations)
         if self._switches and self._switches[0] <= target + 1e-12:
@@ -90,8 +100,11 @@ class Simulation:
             control.restart()
         return target
 
-    def _frame(self, t: float) -> Frame:
-        return self._accounts.frame(t)
+    def _take(self, t: float, dt: float, target: float, iterations: int) -> None:
+        """Make the step that was tried the state, and enter it in the books."""
+        self._method.take_step(t, dt)
+        self.statistics.steps += 1
+        self._accounts.after_step(target, dt, iterations)
 
 
 def _fatal(status: int) -> Outcome | None:
@@ -104,3 +117,17 @@ def _fatal(status: int) -> Outcome | None:
 
 def _refusal(status: int) -> str:
     return "" if status == CONVERGED else "Newton's iteration stalled"
+
+
+@cache
+def warm() -> None:
+    """Compile every kernel, or load it from the cache, by one step of a tiny scene; once per process."""
+    scene = Scene(
+        rod=Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), initial=Initial.straight(), start=End.clamp(), end=End.free(),
+        t_end=1e-3, output_interval=1e-3, fluid=Fluid(1000.0), numerics=Numerics(intervals=4, dt_max=1e-3),
+        contact=Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05),
+    )  # fmt: skip
+    simulation = Simulation(scene)
+    simulation._begin()
+    simulation._accounts.frame(0.0)
+    simulation._method.contact.compile()

@@ -12,24 +12,25 @@ SMALLEST_STEP = 2.0**-26
 GROWTH = 1.5
 FIRST_STEP = 2.0**-4
 """In dt_max: the step after the start and after each switch of an end condition."""
-CONSISTENT_STEP = 2.0**-14
-"""In dt_max: the backward Euler steps that find consistent accelerations and forces at the start."""
+CONSISTENT_STEPS = (2.0**-14, 2.0**-10, 2.0**-6, 2.0**-2)
+"""In dt_max: backward Euler steps that find consistent accelerations and forces at the start; the longer ones are
+tried where a shape violates its end conditions, so that a boundary layer has to form within the first interval."""
 
 
 class StepControl:
     """Chooses steps that end exactly on every corner and output time."""
 
-    def __init__(self, numerics: Numerics, corners: Iterable[float], outputs: Iterable[float]) -> None:
+    def __init__(
+        self, numerics: Numerics, shortest: float, corners: Iterable[float], outputs: Iterable[float]
+    ) -> None:
         self._dt_max = numerics.dt_max
         self._tolerance = numerics.increment_tolerance
-        self._wanted = numerics.dt_max * FIRST_STEP
+        self._first = max(numerics.dt_max * FIRST_STEP, shortest)
+        self.smallest = max(numerics.dt_max * SMALLEST_STEP, shortest)
+        """The step (s) below which the run is given up."""
+        self._wanted = self._first
         self._events = sorted(set(corners) | set(outputs))
         self._next = 0
-
-    @property
-    def smallest(self) -> float:
-        """The step (s) below which the run is given up."""
-        return self._dt_max * SMALLEST_STEP
 
     def step_from(self, t: float, limit: float) -> tuple[float, float]:
         """The next step from t, and where it ends: equal steps up to the next event, each at most `limit`."""
@@ -61,4 +62,4 @@ class StepControl:
 
     def restart(self) -> None:
         """Begin small again, after the conditions have jumped."""
-        self._wanted = min(self._wanted, self._dt_max * FIRST_STEP)
+        self._wanted = min(self._wanted, self._first)

@@ -133,7 +133,7 @@ def _solve_for_forces(y: Array, h: float, system: Linear, touch: Touch, sign: fl
         for j in range(max(node - 1, 0), min(node, len(touch.force) - 1) + 1):
             for c in range(3):
                 touch.force[j, 6 + c] -= sign * 0.5 * h * system.rows[6 + c] * y[3 * m + c]
-    solve(system, b_scale * system.b_start, touch.force, b_scale * system.b_end, touch.x)
+    solve(system, b_scale, touch.force, touch.x)
 
 
 @kernel

@@ -42,8 +42,8 @@ class Law(NamedTuple):
     def of(cls, contact: Contact, spacing: float) -> Law:
         """The law of a scene for points `spacing` apart."""
         weight = spacing if contact.sum == "grid_points" else spacing * spacing / PAPER_SPACING
-        return cls(contact.k1, contact.k2, contact.k3, contact.k4, float(np.sin(0.5 * contact.aperture)),
-                   contact.cutoff, contact.skip, weight)  # fmt: skip
+        constants = (contact.k1, contact.k2, contact.k3, contact.k4, np.sin(0.5 * contact.aperture))
+        return cls(*(float(x) for x in (*constants, contact.cutoff, contact.skip, weight)))
 
 
 @kernel

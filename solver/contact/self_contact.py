@@ -103,6 +103,15 @@ class SelfContact:
         stored, lost = contact_power(self.touch.points, self.touch.pairs)
         return float(stored), float(lost)
 
+    def compile(self) -> None:
+        """Have every kernel compiled that a run in contact needs."""
+        self._search()
+        find_pairs(self.touch.points, self._law.skip, 0.0, self.touch.pairs)
+        keep_separations(self.touch.points, self.touch.pairs)
+        approaches(self.touch.points, self.touch.pairs)
+        contact_power(self.touch.points, self.touch.pairs)
+        largest_displacement(self.touch.points)
+
     def _search(self) -> None:
         points = self.touch.points
         points.checked[:] = points.p

@@ -30,7 +30,7 @@ class AppliedLoads:
             lab=np.zeros((n, 6)),
             material=np.zeros((n, 6)),
             follows=any(load.frame == "material" for load in self._given),
-            damping=scene.damping,
+            damping=float(scene.damping),
             added_mass=density * area * (fluid.added_mass if fluid else 0.0),
             drag_normal=0.5 * density * section.diameter * (fluid.drag_normal if fluid else 0.0),
             drag_tangential=0.5 * density * pi * section.diameter * (fluid.drag_tangential if fluid else 0.0),

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.methods.box.space import BOX, SpaceScheme
 from solver.rod import Array, Rod
 
 V, OMEGA, KAPPA, F = 0, 3, 6, 9
@@ -110,14 +111,44 @@ class Loads(NamedTuple):
     wet: bool
 
 
+class Wide(NamedTuple):
+    """The system of generalized-alpha in space: 24 unknowns a node, Y and the auxiliary derivatives A along s.
+
+    `A` (n, 12); `panels` (N, 42, 48) with `swaps` (N, 24); `last` (24, 48) with `last_swaps` (24,); residuals
+    `b_start` (18,), `b` (N, 24), `b_end` (6,); `rhs_start`, `rhs` the same shapes; `y` (N, 42); `x` (n, 24).
+    """
+
+    A: Array
+    panels: Array
+    swaps: Array
+    last: Array
+    last_swaps: Array
+    b_start: Array
+    b: Array
+    rhs_start: Array
+    rhs: Array
+    y: Array
+    x: Array
+
+    @classmethod
+    def empty(cls, intervals: int) -> Wide:
+        """Zeros for a rod of `intervals` intervals; 0 where the box scheme needs none."""
+        N, n = intervals, intervals + 1 if intervals else 0
+        return cls(np.zeros((n, 12)), np.zeros((N, 42, 48)), np.zeros((N, 24), np.int64), np.zeros((24, 48)),
+                   np.zeros(24, np.int64), np.zeros(18), np.zeros((N, 24)), np.zeros(18), np.zeros((N, 24)),
+                   np.zeros((N, 42)), np.zeros((n, 24)))  # fmt: skip
+
+
 class Linear(NamedTuple):
     """The almost block diagonal system and its factors.
 
-    `panels` (N, 18, 24): factors of six rows carried from the left over an interval's twelve; `start`, `end` (6, 12)
-    rows of the ends; residuals `b` (N, 12), `b_start`, `b_end` (6,); `swaps` (N, 12); `last` (12, 12) with
-    `last_swaps` (12,); `x` (n, 12) solution; `rhs` (N, 18) scratch; `columns`, `rows` (12,) scales.
+    `space` the scheme along s; `panels` (N, 18, 24): factors of six rows carried from the left over an interval's
+    twelve; `start`, `end` (6, 12) rows of the ends; residuals `b` (N, 12), `b_start`, `b_end` (6,); `swaps` (N, 12);
+    `last` (12, 24) with `last_swaps` (12,); `x` (n, 12) solution; `rhs` (N, 18) scratch; `columns`, `rows` (12,)
+    scales; `wide` what rho_inf_space < 1 needs.
     """
 
+    space: SpaceScheme
     panels: Array
     start: Array
     end: Array
@@ -131,13 +162,15 @@ class Linear(NamedTuple):
     rhs: Array
     columns: Array
     rows: Array
+    wide: Wide
 
     @classmethod
-    def empty(cls, intervals: int) -> Linear:
+    def empty(cls, intervals: int, space: SpaceScheme = BOX) -> Linear:
         """Zeros for a rod of `intervals` intervals."""
         N = intervals
         return cls(
-            np.zeros((N, 18, 24)), np.zeros((6, 12)), np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6),
-            np.zeros(6), np.zeros((N, 12), np.int64), np.zeros((12, 12)), np.zeros(12, np.int64),
+            space, np.zeros((N, 18, 24)), np.zeros((6, 12)), np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6),
+            np.zeros(6), np.zeros((N, 12), np.int64), np.zeros((12, 24)), np.zeros(12, np.int64),
             np.zeros((N + 1, 12)), np.zeros((N, 18)), np.ones(12), np.ones(12),
+            Wide.empty(0 if space == BOX else N),
         )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import solveh_banded
 
 from solver.contact.self_contact import SelfContact
 from solver.ends import DrivenEnd
@@ -12,12 +13,16 @@ from solver.measures.energies import powers
 from solver.methods.box.fields import KAPPA, OMEGA, F, Loads, Section, State, V, sample
 from solver.methods.box.generalized_alpha import BACKWARD_EULER, Scheme, rescale_aux
 from solver.methods.box.newton import EndValues, Scales, Work, step
+from solver.methods.box.space import SpaceScheme
 from solver.rod import Array
-from solver.rotation import rotate_back
+from solver.rotation import relative_rotation, rotate_back, tangents_of
 from solver.scene import Initial, Scene
 
 DRIFT_FEEDBACK = 0.2
 """Part of the constraints' drift that a step takes back."""
+
+SMALL_MOTION = 1e-6
+"""In rod lengths a step: motion below it does not shorten the step."""
 
 
 class BoxMethod:
@@ -26,7 +31,7 @@ class BoxMethod:
     def __init__(self, scene: Scene) -> None:
         numerics = scene.numerics
         self.s = np.linspace(0.0, scene.rod.length, numerics.intervals + 1)
-        self.h = scene.rod.length / numerics.intervals
+        self.h = float(scene.rod.length) / numerics.intervals
         self.section: Section = sample(scene.rod, self.s)
         self.applied = AppliedLoads(scene, self.section, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
@@ -34,9 +39,13 @@ class BoxMethod:
         self.contact = SelfContact(scene.contact, self.section, self.s)
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)
-        self._scales = Scales(scene.rod.length, float(self.section.stiffness[:, :2].mean()),
+        self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
-        self.work = Work.empty(numerics.intervals, self._scales.shooting)
+        self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space))
+        self.shortest_step = 0.0
+        """Step (s) below which the scheme along s does not resolve the equations; 0 for the box scheme."""
+        if numerics.rho_inf_space < 1.0:
+            self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / self.section.stiffness[:, 0])))
         self._last_dt, self._consistent = 0.0, False
         self._F_rate = np.zeros((len(self.s), 3))
         self.loads: Loads = self.applied.at(0.0)
@@ -85,7 +94,7 @@ class BoxMethod:
         """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|."""
         change = float(np.abs(self.trial.rate[:, :3] - self.state.rate[:, :3]).max())
         motion = float(np.abs(self.trial.r - self.state.r).max())
-        return dt * dt * change / (motion + 1e-8 * float(self.s[-1]))
+        return dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1]))
 
     def power(self, out: Array) -> None:
         """Write the power of ends, loads and dissipation at the state just taken into `out` (3,)."""
@@ -111,9 +120,39 @@ class BoxMethod:
 def _initial_state(initial: Initial, s: Array, section: Section) -> State:
     state = State.empty(len(s))
     r, quaternion, kappa = nodes_at_rest(initial, s)
-    state.r[:], state.quaternion[:], state.Y[:, KAPPA : KAPPA + 3] = r, quaternion, kappa
+    state.quaternion[:] = quaternion
+    state.r[:] = _follow_tangents(r[0], quaternion, s)
+    state.Y[:, KAPPA : KAPPA + 3] = kappa + _kappa_correction(quaternion, kappa, s)
     spin = np.array(initial.angular_velocity, dtype=float)
-    centre = np.average(r, axis=0, weights=section.mass)
-    state.Y[:, V : V + 3] = np.array(initial.velocity, dtype=float) + np.cross(spin, r - centre)
+    weights = section.mass * np.gradient(s) * np.where((s == s[0]) | (s == s[-1]), 0.5, 1.0)
+    centre = np.average(state.r, axis=0, weights=weights)
+    state.Y[:, V : V + 3] = np.array(initial.velocity, dtype=float) + np.cross(spin, state.r - centre)
     state.Y[:, OMEGA : OMEGA + 3] = rotate_back(quaternion, np.tile(spin, (len(s), 1)))
     return state
+
+
+def _follow_tangents(start: Array, quaternion: Array, s: Array) -> Array:
+    """Positions (n, 3) that satisfy the scheme's own Delta r = h T_m, from the first node on."""
+    tangent = np.empty((len(s), 3))
+    tangents_of(quaternion, tangent)
+    steps = 0.5 * np.diff(s)[:, None] * (tangent[1:] + tangent[:-1])
+    return np.vstack([start, start + np.cumsum(steps, axis=0)])
+
+
+def _kappa_correction(quaternion: Array, kappa: Array, s: Array) -> Array:
+    """The smallest change of kappa (n, 3) that makes its means those of the nodes' relative rotations."""
+    turned = np.array([_turn(a, b) for a, b in zip(quaternion[:-1], quaternion[1:], strict=True)])
+    missing = turned / np.diff(s)[:, None] - 0.5 * (kappa[1:] + kappa[:-1])
+    bands = np.full((2, len(missing)), 0.25)
+    bands[1] = 0.5
+    shares = solveh_banded(bands, missing)
+    correction = np.zeros_like(kappa)
+    correction[1:] += 0.5 * shares
+    correction[:-1] += 0.5 * shares
+    return correction
+
+
+def _turn(left: Array, right: Array) -> Array:
+    theta = np.empty(3)
+    relative_rotation(left, right, theta)
+    return theta

@@ -8,6 +8,7 @@ import numpy as np
 
 from solver.contact.coupling import Touch, add_contact, allowed_fraction, solve_with_contact
 from solver.kernel import kernel
+from solver.methods.box.augmented import take_auxiliary, wide_residuals
 from solver.methods.box.elimination import factor, solve
 from solver.methods.box.ends import end_conditions
 from solver.methods.box.fields import KAPPA, F, Linear, Loads, Nodes, Section, State
@@ -15,14 +16,15 @@ from solver.methods.box.generalized_alpha import Scheme, finish, history
 from solver.methods.box.intervals import interval_residuals, measure_drift
 from solver.methods.box.nodes import balance_rotation, balance_translation, place_nodes
 from solver.methods.box.shooting import LARGEST_GROWTH, shoot
+from solver.methods.box.space import SpaceScheme
 from solver.rod import Array
 
 CONVERGED, STALLED, SINGULAR, LOST_DIGITS = 0, 1, 2, 3
 """How an iteration ended."""
 
 LARGEST_ITERATIONS = 12
-LARGEST_INCREMENT = 1e3
-"""Scaled increment beyond which an iteration is given up."""
+LARGEST_INCREMENT = 1e8
+"""Scaled increment beyond which an iteration is given up: forces of a heavy, soft cable start at 1e4 or more."""
 TOLERANCE = 1e-9
 """Scaled increment at which an iteration has converged: far below a buckling seed."""
 
@@ -70,11 +72,13 @@ def assemble(old: State, new: State, past: Array, c0: float, h: float, section: 
     balance_translation(new, section, loads, past, c0, nodes)
     if touch.present and touch.pairs.count[0] > 0:
         add_contact(new, nodes, h, touch)
-    interval_residuals(new.Y, past, c0, h, nodes, drift, system)
+    interval_residuals(new.Y, past, c0, h, system.space, nodes, drift, system.rows, system.b)
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
                    nodes, section, system.b_start, system.start)  # fmt: skip
     end_conditions(new.Y, len(new.Y) - 1, ends.end_kinds, ends.end, ends.end_dead, system.rows, system.columns,
                    nodes, section, system.b_end, system.end)  # fmt: skip
+    if len(system.wide.A) > 0:
+        wide_residuals(new.Y, past, c0, h, nodes, system)
 
 
 @kernel
@@ -104,11 +108,11 @@ class Work(NamedTuple):
     marched: Array
 
     @classmethod
-    def empty(cls, intervals: int, shooting: bool) -> Work:
+    def empty(cls, intervals: int, shooting: bool, space: SpaceScheme) -> Work:
         """Zeros for a rod of `intervals` intervals."""
         n = intervals + 1
         marched = np.zeros((n if shooting else 1, 12, 7))
-        return cls(np.zeros((n, 15)), np.zeros((intervals, 6)), Nodes.empty(n), Linear.empty(intervals), marched)
+        return cls(np.zeros((n, 15)), np.zeros((intervals, 6)), Nodes.empty(n), Linear.empty(intervals, space), marched)
 
 
 @kernel
@@ -123,7 +127,7 @@ def solve_linear(Y: Array, c0: float, h: float, scales: Scales, touch: Touch, wo
     if touch.present and touch.pairs.count[0] > 0:
         solve_with_contact(c0, h, nodes, system, touch)
     else:
-        solve(system, system.b_start, system.b, system.b_end, system.x)
+        solve(system, 1.0, system.b, system.x)
     return CONVERGED
 
 
@@ -155,6 +159,8 @@ def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: S
         for j in range(len(new.Y)):
             for k in range(12):
                 new.Y[j, k] -= fraction * system.columns[k] * system.x[j, k]
+        if len(system.wide.A) > 0:
+            take_auxiliary(fraction, h, system)
         if size < TOLERANCE or (before > 0.0 and size < 1e-4 and size * size / before < TOLERANCE):
             place_nodes(old, new, work.past, c0, work.nodes)
             finish(old, new, scheme, dt, work.past)

@@ -12,6 +12,7 @@ import numpy as np
 from solver.kernel import kernel
 from solver.methods.box.fields import Linear, Nodes
 from solver.methods.box.intervals import interval_panel
+from solver.methods.box.space import BOX
 from solver.rod import Array
 
 LARGEST_GROWTH = 1e12
@@ -29,7 +30,7 @@ def shoot(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear, marched: 
         return np.inf
     A, panel, mean = np.empty((12, 12)), np.empty((18, 24)), np.zeros((4, 3))
     for j in range(N):
-        interval_panel(j, Y, c0, h, nodes, system.rows, system.columns, mean, panel)
+        interval_panel(j, Y, c0, h, BOX, nodes, system.rows, system.columns, mean, panel, 6)
         for i in range(12):
             for k in range(12):
                 A[i, k] = panel[6 + i, 12 + k]

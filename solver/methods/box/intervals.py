@@ -67,7 +67,7 @@ def interval_residuals(Y: Array, past: Array, c0: float, h: float, space: SpaceS
             b[j, 9 + i] = rows[9 + i] * moment
 
 
-@inlined
+@kernel
 def interval_panel(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes, rows: Array,
                    columns: Array, mean: Array, panel: Array, top: int) -> None:  # fmt: skip
     """Write the tangents of interval j's residuals by the scaled unknowns into rows `top` to `top` + 11 of `panel`.

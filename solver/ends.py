@@ -89,7 +89,7 @@ class DrivenEnd:
             return condition.curve.value(t + dt)
         if condition.kind == "stop":
             return self._stopping_from[i] * (1.0 - _smoothstep((t + dt - condition.since) / condition.within))
-        behind = _travel(condition, t) - (self.travel[i] - self._travel_at_switch[i])
+        behind = _travel(condition, t) - float(self.travel[i] - self._travel_at_switch[i])
         return _rate(condition, t + dt, dt) + gain * behind
 
 

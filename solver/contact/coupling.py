@@ -51,9 +51,9 @@ def add_contact(new: State, nodes: Nodes, h: float, touch: Touch) -> int:
     """Subtract the contact force density from nodes.P, and keep the tangents; returns the number of pressing pairs."""
     points, pairs = touch.points, touch.pairs
     last, pressing = len(new.Y) - 1, 0
-    for m in range(pairs.count[1]):
+    for m in range(pairs.counts[1]):
         place_point(points, pairs.points[m], new.r, nodes.T, new.Y)
-    for pair in range(pairs.count[0]):
+    for pair in range(pairs.counts[0]):
         a, b = pairs.first[pair], pairs.second[pair]
         elastic, damping, _ = pair_force(touch.law, points, a, b, pairs.n[pair], pairs.G[pair], pairs.k[pair])
         pairs.force[pair, 0], pairs.force[pair, 1] = elastic, damping
@@ -78,7 +78,7 @@ def _spread(points: Points, i: int, force: float, last: int, h: float, density: 
 def _move_points(x: Array, c0: float, system: Linear, nodes: Nodes, touch: Touch) -> None:
     """Write the changes of p, t, w of the points that take part, for scaled unknowns x (n, 12), into touch.moved."""
     points, columns = touch.points, system.columns
-    for m in range(touch.pairs.count[1]):
+    for m in range(touch.pairs.counts[1]):
         i = touch.pairs.points[m]
         j, xi = points.interval[i], points.xi[i]
         for k in range(9):
@@ -102,8 +102,8 @@ def _node_forces(x: Array, c0: float, h: float, system: Linear, nodes: Nodes, to
     points, pairs, moved = touch.points, touch.pairs, touch.moved
     last = len(x) - 1
     _move_points(x, c0, system, nodes, touch)
-    y[: 3 * pairs.count[2]] = 0.0
-    for pair in range(pairs.count[0]):
+    y[: 3 * pairs.counts[2]] = 0.0
+    for pair in range(pairs.counts[0]):
         if pairs.force[pair, 0] == 0.0:
             continue
         a, b = pairs.first[pair], pairs.second[pair]
@@ -128,7 +128,7 @@ def _solve_for_forces(y: Array, h: float, system: Linear, touch: Touch, sign: fl
     for j in range(len(touch.force)):
         for k in range(12):
             touch.force[j, k] = b_scale * system.b[j, k]
-    for m in range(pairs.count[2]):
+    for m in range(pairs.counts[2]):
         node = pairs.nodes[m]
         for j in range(max(node - 1, 0), min(node, len(touch.force) - 1) + 1):
             for c in range(3):
@@ -139,7 +139,7 @@ def _solve_for_forces(y: Array, h: float, system: Linear, touch: Touch, sign: fl
 @kernel
 def solve_with_contact(c0: float, h: float, nodes: Nodes, system: Linear, touch: Touch) -> int:
     """Solve the factored system with the contact tangents into system.x; returns GMRES's iterations."""
-    size = 3 * touch.pairs.count[2]
+    size = 3 * touch.pairs.counts[2]
     Q, H = touch.basis, np.zeros((KRYLOV + 1, KRYLOV))
     cosine, sine, g = np.zeros(KRYLOV), np.zeros(KRYLOV), np.zeros(KRYLOV + 1)
     _solve_for_forces(touch.y, h, system, touch, 0.0, 1.0)
@@ -198,7 +198,7 @@ def allowed_fraction(c0: float, system: Linear, nodes: Nodes, touch: Touch) -> f
     """How much of the update system.x may be taken without using up a pair's distance."""
     _move_points(system.x, c0, system, nodes, touch)
     fraction, pairs = 1.0, touch.pairs
-    for pair in range(pairs.count[0]):
+    for pair in range(pairs.counts[0]):
         a, b = pairs.first[pair], pairs.second[pair]
         moved, distance = 0.0, 0.0
         for k in range(3):

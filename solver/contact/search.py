@@ -22,13 +22,13 @@ from solver.rod import Array
 class Pairs(NamedTuple):
     """Pairs of points that may touch, until the next search.
 
-    `count` (4,): pairs, points and nodes that take part, and whether the list overflowed; `first`, `second`
+    `counts` (4,): pairs, points and nodes that take part, and whether the list overflowed; `first`, `second`
     (capacity,); `points` (M,) and `nodes` (n,) that take part, `slot` (n,) a node's place among them or -1.
     At the current iterate: `n` (capacity, 3), `G` (capacity, 3, 3), `k` (capacity, 3), see `pair_force`;
     `force` (capacity, 2): elastic and damping; `before` (capacity, 3): separations at the start of the step.
     """
 
-    count: Array
+    counts: Array
     first: Array
     second: Array
     points: Array
@@ -99,7 +99,7 @@ def largest_displacement(points: Points) -> float:
 
 @kernel
 def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None:
-    """List the pairs nearer than `radius`; count[3] says how many did not fit."""
+    """List the pairs nearer than `radius`; counts[3] says how many did not fit."""
     M, spacing = len(points.p), points.spacing
     apart = int(np.ceil(skip / spacing))
     found = 0
@@ -116,26 +116,26 @@ def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None
                 b += 1
             else:
                 b += max(1, int((d - radius) / spacing))
-    pairs.count[0] = min(found, len(pairs.first))
-    pairs.count[3] = found - pairs.count[0]
+    pairs.counts[0] = min(found, len(pairs.first))
+    pairs.counts[3] = found - pairs.counts[0]
     _list_members(points, pairs)
 
 
 @kernel
 def _list_members(points: Points, pairs: Pairs) -> None:
     taking_part = np.zeros(len(points.p), np.bool_)
-    for pair in range(pairs.count[0]):
+    for pair in range(pairs.counts[0]):
         taking_part[pairs.first[pair]] = True
         taking_part[pairs.second[pair]] = True
     pairs.slot[:] = -1
-    pairs.count[1] = 0
-    pairs.count[2] = 0
+    pairs.counts[1] = 0
+    pairs.counts[2] = 0
     for i in range(len(taking_part)):
         if taking_part[i]:
-            pairs.points[pairs.count[1]] = i
-            pairs.count[1] += 1
+            pairs.points[pairs.counts[1]] = i
+            pairs.counts[1] += 1
             for node in range(points.interval[i], points.interval[i] + 2):
                 if pairs.slot[node] < 0:
-                    pairs.slot[node] = pairs.count[2]
-                    pairs.nodes[pairs.count[2]] = node
-                    pairs.count[2] += 1
+                    pairs.slot[node] = pairs.counts[2]
+                    pairs.nodes[pairs.counts[2]] = node
+                    pairs.counts[2] += 1

@@ -52,7 +52,7 @@ class SelfContact:
     def pressing(self) -> int:
         """Number of pairs that press on each other."""
         pairs = self.touch.pairs
-        return int(np.count_nonzero(pairs.force[: pairs.count[0], 0])) if self._present else 0
+        return int(np.count_nonzero(pairs.force[: pairs.counts[0], 0])) if self._present else 0
 
     def prepare(self, state: State) -> None:
         """Before a step from `state`: make the list of pairs good for it."""
@@ -60,7 +60,7 @@ class SelfContact:
             return
         points, pairs = self.touch.points, self.touch.pairs
         if cannot_touch(total_bending(state.Y, self._h), self._reach, self._law):
-            pairs.count[:] = 0
+            pairs.counts[:] = 0
             self._looked = False
             return
         tangents_of(state.quaternion, self._T)
@@ -98,7 +98,7 @@ class SelfContact:
 
     def power(self) -> tuple[float, float]:
         """Power (W) stored in contact, and dissipated by it, at the end of the step."""
-        if not self._present or self.touch.pairs.count[0] == 0:
+        if not self._present or self.touch.pairs.counts[0] == 0:
             return 0.0, 0.0
         stored, lost = contact_power(self.touch.points, self.touch.pairs)
         return float(stored), float(lost)
@@ -118,13 +118,13 @@ class SelfContact:
         self._looked = True
         nearest = smallest_distance(points, self._law.skip, 1.5 * self._reach)
         if nearest > self._reach:
-            self.touch.pairs.count[:] = 0
+            self.touch.pairs.counts[:] = 0
             self._slack = nearest - self._law.cutoff
             return
         self._slack = SKIN * self._law.cutoff
         find_pairs(points, self._law.skip, self._reach, self.touch.pairs)
-        if self.touch.pairs.count[3] > 0:
-            self._make_room(points, 2 * int(self.touch.pairs.count[0] + self.touch.pairs.count[3]))
+        if self.touch.pairs.counts[3] > 0:
+            self._make_room(points, 2 * int(self.touch.pairs.counts[0] + self.touch.pairs.counts[3]))
             find_pairs(points, self._law.skip, self._reach, self.touch.pairs)
 
     def _make_room(self, points: Points, capacity: int) -> None:
@@ -147,7 +147,7 @@ def place_points(points: Points, r: Array, T: Array, velocity: Array) -> None:
 @kernel
 def keep_separations(points: Points, pairs: Pairs) -> None:
     """Remember the pairs' separations at the start of a step."""
-    for pair in range(pairs.count[0]):
+    for pair in range(pairs.counts[0]):
         for k in range(3):
             pairs.before[pair, k] = points.p[pairs.first[pair], k] - points.p[pairs.second[pair], k]
 
@@ -156,7 +156,7 @@ def keep_separations(points: Points, pairs: Pairs) -> None:
 def approaches(points: Points, pairs: Pairs) -> tuple[float, float]:
     """The largest change of a separation relative to the distance before; the shortest time (s) to closure."""
     largest, shortest = 0.0, np.inf
-    for pair in range(pairs.count[0]):
+    for pair in range(pairs.counts[0]):
         a, b = pairs.first[pair], pairs.second[pair]
         change, before, square, closing = 0.0, 0.0, 0.0, 0.0
         for k in range(3):
@@ -177,7 +177,7 @@ def approaches(points: Points, pairs: Pairs) -> tuple[float, float]:
 def contact_power(points: Points, pairs: Pairs) -> tuple[float, float]:
     """Power (W) that goes into the elastic part of the contact, and that its damping takes."""
     stored, lost = 0.0, 0.0
-    for pair in range(pairs.count[0]):
+    for pair in range(pairs.counts[0]):
         if pairs.force[pair, 0] != 0.0:
             a, b = pairs.first[pair], pairs.second[pair]
             opening = 0.0

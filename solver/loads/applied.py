@@ -6,6 +6,7 @@ from math import pi
 
 import numpy as np
 
+from solver.curve import Curve
 from solver.methods.box.fields import Loads, Section
 from solver.rod import Array
 from solver.scene import DistributedLoad, PointLoad, Scene
@@ -30,6 +31,7 @@ class AppliedLoads:
             lab=np.zeros((n, 6)),
             material=np.zeros((n, 6)),
             follows=any(load.frame == "material" for load in self._given),
+            turns=any(load.frame == "lab" and not _is_moment_free(load) for load in self._given),
             damping=float(scene.damping),
             added_mass=density * area * (fluid.added_mass if fluid else 0.0),
             drag_normal=0.5 * density * section.diameter * (fluid.drag_normal if fluid else 0.0),
@@ -106,3 +108,7 @@ def _is_steady(load: DistributedLoad | PointLoad) -> bool:
     if isinstance(load, DistributedLoad):
         return load.schedule.is_constant
     return all(c.is_constant for c in (*load.force, *load.moment))
+
+
+def _is_moment_free(load: DistributedLoad | PointLoad) -> bool:
+    return all(isinstance(c, Curve) and c.is_zero for c in load.moment)

@@ -35,7 +35,7 @@ def add_added_mass(coefficient: float, c0: float, acceleration: Array, T: Array,
 
 @kernel
 def fluid_power(added_mass: float, normal: float, tangential: float, velocity: Array, current: Array,
-                acceleration: Array, T: Array, U: Array) -> tuple[float, float]:  # fmt: skip
+                acceleration: Array, T: Array, T_t: Array) -> tuple[float, float]:  # fmt: skip
     """Power (W/m) that the current gives to the rod, and that the fluid takes from it for good.
 
     The second holds what drag dissipates and u_3 Ca rho_w A u_n.T_t, the part of the power of the added mass that
@@ -49,7 +49,7 @@ def fluid_power(added_mass: float, normal: float, tangential: float, velocity: A
     for i in range(3):
         across = velocity[i] - current[i] - along * T[i]
         square += across * across
-        turning += across * U[i]
+        turning += across * T_t[i]
     speed = np.sqrt(square)
     given = 0.0
     for i in range(3):

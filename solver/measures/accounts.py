@@ -9,7 +9,7 @@ import numpy as np
 from solver.frame import Frame
 from solver.measures.energies import energies
 from solver.measures.topology import writhe
-from solver.methods.box.fields import KAPPA, OMEGA, F, V
+from solver.methods.box.fields import KAPPA, OMEGA, F
 from solver.methods.box.method import BoxMethod
 from solver.rotation import rotate, rotate_back
 from solver.scene import Scene

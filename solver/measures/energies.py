@@ -57,12 +57,11 @@ def powers(state: State, nodes: Nodes, section: Section, loads: Loads, weight: A
     """Write the power (W) of the ends, of the loads other than `weight`, and dissipated, into `out` (3,)."""
     last = len(state.Y) - 1
     out[:] = 0.0
+    T_t = np.zeros(3)
     for i in range(3):
         for node, sign in ((0, -1.0), (last, 1.0)):
-            omega = 0.0
-            for k in range(3):
-                omega += nodes.R[node, i, k] * state.Y[node, OMEGA + k]
-            out[0] += sign * (state.Y[node, F + i] * state.Y[node, V + i] + nodes.M[node, i] * omega)
+            out[0] += sign * state.Y[node, F + i] * state.Y[node, V + i]
+            out[0] += sign * nodes.q[node, i] * state.Y[node, OMEGA + i]
     for j in range(last + 1):
         length = 0.5 * h if j == 0 or j == last else h
         lost, given = 0.0, 0.0
@@ -74,9 +73,11 @@ def powers(state: State, nodes: Nodes, section: Section, loads: Loads, weight: A
                 turning = loads.lab[j, 3 + i] * state.Y[j, OMEGA + k]
                 given += nodes.R[j, i, k] * (loads.material[j, k] * velocity + turning)
         if loads.wet:
+            for i in range(3):
+                T_t[i] = nodes.R[j, i, 0] * state.Y[j, OMEGA + 1] - nodes.R[j, i, 1] * state.Y[j, OMEGA]
             from_current, to_fluid = fluid_power(
                 loads.added_mass[j], loads.drag_normal[j], loads.drag_tangential[j], state.Y[j, V : V + 3],
-                loads.current, state.rate[j, :3], nodes.T[j], nodes.U[j],
+                loads.current, state.rate[j, :3], nodes.T[j], T_t,
             )  # fmt: skip
             given += from_current
             lost += to_fluid

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.kernel import kernel
-from solver.methods.box.fields import OMEGA, F, Linear, Nodes, V
+from solver.methods.box.fields import OMEGA, F, Linear, Nodes, Section, V
 from solver.methods.box.intervals import interval_panel, interval_residuals
 from solver.methods.box.space import AT_LEFT_NODE, MINUS_DIFFERENCE
 from solver.rod import Array
@@ -34,17 +34,17 @@ def wide_residuals(Y: Array, past: Array, c0: float, h: float, nodes: Nodes, sys
             elif k < 9:
                 change = Y[j + 1, F + k - 6] - Y[j, F + k - 6]
             else:
-                change = nodes.M[j + 1, k - 9] - nodes.M[j, k - 9]
+                change = nodes.q[j + 1, k - 9] - nodes.q[j, k - 9]
             wide.b[j, k] = system.b[j, k] + rows[k] * h * system.space.b * wide.A[j, k]
             carried = h * ((1.0 - gamma) * wide.A[j, k] + gamma * wide.A[j + 1, k])
             wide.b[j, 12 + k] = rows[k] * (carried - change)
 
 
 @kernel
-def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, system: Linear, mean: Array, W: Array) -> None:
+def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, mean: Array, W: Array) -> None:
     """Write the tangents of interval j into rows 18 to 41 of W (42, 48)."""
-    interval_panel(j, Y, c0, h, system.space, nodes, system.rows, system.columns, mean, W, 18)
-    interval_panel(j, Y, c0, h, MINUS_DIFFERENCE, nodes, system.rows, system.columns, mean, W, 30)
+    interval_panel(j, Y, c0, h, system.space, nodes, section, system.rows, system.columns, mean, W, 18)
+    interval_panel(j, Y, c0, h, MINUS_DIFFERENCE, nodes, section, system.rows, system.columns, mean, W, 30)
     for k in range(12):
         W[18 + k, 12 + k] = system.space.b
         W[30 + k, 12 + k] = 1.0 - system.space.gamma
@@ -52,9 +52,9 @@ def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, system: Line
 
 
 @kernel
-def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear, mean: Array, W: Array) -> None:
+def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, mean: Array, W: Array) -> None:
     """Write the 18 conditions at s = 0 into the first rows of W (42, 48)."""
-    interval_panel(0, Y, c0, h, AT_LEFT_NODE, nodes, system.rows, system.columns, mean, W, 6)
+    interval_panel(0, Y, c0, h, AT_LEFT_NODE, nodes, section, system.rows, system.columns, mean, W, 6)
     W[:6, :] = 0.0
     W[:6, :12] = system.start
     for k in range(12):

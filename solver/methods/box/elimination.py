@@ -14,8 +14,8 @@ import numpy as np
 
 from solver.kernel import inlined, kernel
 from solver.methods.box.augmented import wide_panel, wide_start
-from solver.methods.box.fields import Linear, Nodes
-from solver.methods.box.intervals import interval_panel
+from solver.methods.box.fields import Linear, Nodes, Section
+from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.space import BOX
 from solver.rod import Array
 
@@ -99,15 +99,15 @@ def _substitute_columns(size: int, panels: Array, swaps: Array, last: Array, las
 
 
 @kernel
-def factor(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear) -> bool:
+def factor(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear) -> bool:
     """Factor the system of the iterate `Y` (n, 12), making each panel when its turn comes; False if it is singular."""
     if len(system.wide.A) > 0:
-        return bool(_factor_wide(Y, c0, h, nodes, system))
+        return bool(_factor_wide(Y, c0, h, nodes, section, system))
     N = len(system.panels)
-    W, mean = np.zeros((18, 24)), np.zeros((4, 3))
+    W, mean = np.zeros((18, 24)), np.zeros((MEANS, 3))
     W[:6, :12] = system.start
     for j in range(N):
-        interval_panel(j, Y, c0, h, BOX, nodes, system.rows, system.columns, mean, W, 6)
+        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, W, 6)
         if not _eliminate(W, system.swaps[j]):
             return False
         for i in range(18):
@@ -124,16 +124,16 @@ def factor(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear) -> bool:
 
 
 @kernel
-def _factor_wide(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear) -> bool:
-    wide, mean = system.wide, np.zeros((4, 3))
+def _factor_wide(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear) -> bool:
+    wide, mean = system.wide, np.zeros((MEANS, 3))
     for j in range(len(wide.panels)):
         W = wide.panels[j]
         if j == 0:
-            wide_start(Y, c0, h, nodes, system, mean, W)
+            wide_start(Y, c0, h, nodes, section, system, mean, W)
         else:
             W[:18, :24] = wide.panels[j - 1, 24:, 24:]
             W[:18, 24:] = 0.0
-        wide_panel(j, Y, c0, h, nodes, system, mean, W)
+        wide_panel(j, Y, c0, h, nodes, section, system, mean, W)
         if not _eliminate_wide(W, wide.swaps[j]):
             return False
     wide.last[:, :] = 0.0

@@ -66,21 +66,17 @@ class State(NamedTuple):
 class Nodes(NamedTuple):
     """What the nodes bring to the balances, at the current iterate, and its tangents.
 
-    (n, 3), lab: `T` = R a3; `U` = dT/dt; `P` = rho_c A dV/dt - B; `M` = R q; `W` = dH/dt - Q with H = R I omega.
-    (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V, omega (`w`) or kappa (`k`)).
+    (n, 3): `T` = R a3 (lab); `P` = rho_c A dV/dt - B (lab); `q` moment (material); `W` = I omega_t + omega x I omega - Q
+    (material). (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V or omega (`w`)).
     """
 
     R: Array
     J: Array
     T: Array
-    U: Array
     P: Array
-    M: Array
+    q: Array
     W: Array
     T_w: Array
-    U_w: Array
-    M_k: Array
-    M_w: Array
     P_V: Array
     P_w: Array
     W_w: Array
@@ -88,14 +84,15 @@ class Nodes(NamedTuple):
     @classmethod
     def empty(cls, n: int) -> Nodes:
         """Zeros for n nodes."""
-        vectors = {"T", "U", "P", "M", "W"}
+        vectors = {"T", "P", "q", "W"}
         return cls(*(np.zeros((n, 3) if name in vectors else (n, 3, 3)) for name in cls._fields))
 
 
 class Loads(NamedTuple):
     """Loads at the nodes at the end of the step, per length.
 
-    `lab` and `material` (n, 6): force and moment; `follows`: whether `material` is not zero;
+    `lab` and `material` (n, 6): force and moment; `follows`: whether `material` is not zero; `turns`: whether
+    `lab` has moments;
     `damping` c (1/s); `added_mass`, `drag_normal`, `drag_tangential` (n,): Ca rho_w A, 0.5 rho_w D Cdn,
     0.5 rho_w pi D Cdt; `current` (3,); `wet`: whether there is a fluid.
     """
@@ -103,6 +100,7 @@ class Loads(NamedTuple):
     lab: Array
     material: Array
     follows: bool
+    turns: bool
     damping: float
     added_mass: Array
     drag_normal: Array

@@ -1,25 +1,33 @@
 """The balances over an interval: residuals and 12 x 24 tangents of equations (2) to (5).
 
 With mean values over the interval (subscript m) and differences (Delta), the box scheme reads (space.py has its
-family)
+family), with R_m the mean of the two nodes' rotations:
 
-    (2)  Delta omega + h kappa_m x omega_m - h (kappa_t)_m            + h g (kappa_R - kappa)_m = 0   material
-    (3)  Delta V - h (dT/dt)_m                                         + g (Delta r - h T_m)    = 0   lab
-    (4)  Delta F - h (rho_c A dV/dt - B)_m                                                      = 0   lab
-    (5)  Delta (R q) + h T_m x F_m - h (d(R I omega)/dt - Q)_m                                  = 0   lab
+    (2)  Delta omega + h kappa_m x omega_m - h (kappa_t)_m             + h g (kappa_R - kappa)_m = 0   material
+    (3)  Delta V - h R_m (omega_m x a3)                                + g (Delta r - h T_m)     = 0   lab
+    (4)  Delta F - h (rho_c A dV/dt - B)_m                                                       = 0   lab
+    (5)  Delta q + h kappa_m x q_m + h a3 x R_m^t F_m - h (I omega_t + omega x I omega - Q)_m    = 0   material
 
-(3) to (5) are the paper's equations turned into the lab frame. The terms with g feed back, from the start of the
-step, what time integration has let drift: kappa against the curvature kappa_R of the nodes' own frames, and
-the stretch. They vanish with the step and keep Tw + Wr = Lk and the ends where they belong.
+(3) and (4) are the paper's equations turned into the lab frame. (2) and (5), and (3) and (4), are adjoint to each
+other: F_m . R_m (omega_m x a3) + omega_m . (a3 x R_m^t F_m) = 0, and likewise for q and omega. So the scheme in space
+conserves energy, at all wave lengths; with (5) in the lab frame it did not, and grew at steps of h / wave speed.
+The terms with g feed back, from the start of the step, what time integration has let drift: kappa against the
+curvature kappa_R of the nodes' own frames, and the stretch. They vanish with the step and keep Tw + Wr = Lk and the
+ends where they belong.
 """
 
 from __future__ import annotations
 
+import numpy as np
+
 from solver.kernel import inlined, kernel
-from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, State, V
+from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, Section, State, V
 from solver.methods.box.space import SpaceScheme
 from solver.rod import Array
 from solver.rotation import matrix_of, relative_rotation
+
+MEANS = 5
+"""Means over an interval: kappa, omega, F (lab), q, and a3 x R_m^t F_m."""
 
 
 @kernel
@@ -46,87 +54,120 @@ def interval_residuals(Y: Array, past: Array, c0: float, h: float, space: SpaceS
                        rows: Array, b: Array) -> None:  # fmt: skip
     """Write the residuals of (2) to (5), times the row scales, into `b` (N, 12); without the term of A."""
     a, left, right = space.a, space.w_left, space.w_right
+    mean = np.zeros((MEANS, 3))
     for j in range(len(drift)):
         L, R = Y[j], Y[j + 1]
+        _take_means(j, Y, left, right, nodes, mean)
+        kappa, omega, force, q, thrust = mean[0], mean[1], mean[2], mean[3], mean[4]
         for i in range(3):
             m, n = (i + 1) % 3, (i + 2) % 3
-            k_m, k_n = left * L[KAPPA + m] + right * R[KAPPA + m], left * L[KAPPA + n] + right * R[KAPPA + n]
-            w_m, w_n = left * L[OMEGA + m] + right * R[OMEGA + m], left * L[OMEGA + n] + right * R[OMEGA + n]
-            T_m = left * nodes.T[j, m] + right * nodes.T[j + 1, m]
-            T_n = left * nodes.T[j, n] + right * nodes.T[j + 1, n]
-            F_m, F_n = left * L[F + m] + right * R[F + m], left * L[F + n] + right * R[F + n]
             rate = left * (c0 * L[KAPPA + i] + past[j, 12 + i]) + right * (c0 * R[KAPPA + i] + past[j + 1, 12 + i])
-            compatibility = a * (R[OMEGA + i] - L[OMEGA + i]) + h * (k_m * w_n - k_n * w_m - rate) + drift[j, i]
-            inextensibility = a * (R[V + i] - L[V + i]) - h * (left * nodes.U[j, i] + right * nodes.U[j + 1, i])
-            force = a * (R[F + i] - L[F + i]) - h * (left * nodes.P[j, i] + right * nodes.P[j + 1, i])
-            moment = a * (nodes.M[j + 1, i] - nodes.M[j, i]) + h * (T_m * F_n - T_n * F_m)
-            moment -= h * (left * nodes.W[j, i] + right * nodes.W[j + 1, i])
+            compatibility = a * (R[OMEGA + i] - L[OMEGA + i]) + drift[j, i]
+            compatibility += h * (kappa[m] * omega[n] - kappa[n] * omega[m] - rate)
+            swing = left * (nodes.R[j, i, 0] * omega[1] - nodes.R[j, i, 1] * omega[0])
+            swing += right * (nodes.R[j + 1, i, 0] * omega[1] - nodes.R[j + 1, i, 1] * omega[0])
+            inextensibility = a * (R[V + i] - L[V + i]) - h * swing + drift[j, 3 + i]
+            translation = a * (R[F + i] - L[F + i]) - h * (left * nodes.P[j, i] + right * nodes.P[j + 1, i])
+            rotation = a * (nodes.q[j + 1, i] - nodes.q[j, i]) + h * (kappa[m] * q[n] - kappa[n] * q[m] + thrust[i])
+            rotation -= h * (left * nodes.W[j, i] + right * nodes.W[j + 1, i])
             b[j, i] = rows[i] * compatibility
-            b[j, 3 + i] = rows[3 + i] * (inextensibility + drift[j, 3 + i])
-            b[j, 6 + i] = rows[6 + i] * force
-            b[j, 9 + i] = rows[9 + i] * moment
+            b[j, 3 + i] = rows[3 + i] * inextensibility
+            b[j, 6 + i] = rows[6 + i] * translation
+            b[j, 9 + i] = rows[9 + i] * rotation
 
 
 @kernel
-def interval_panel(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes, rows: Array,
-                   columns: Array, mean: Array, panel: Array, top: int) -> None:  # fmt: skip
+def _take_means(j: int, Y: Array, left: float, right: float, nodes: Nodes, mean: Array) -> None:
+    """Write the weighted means of kappa, omega, F and q, and a3 x R_m^t F_m, into `mean` (MEANS, 3)."""
+    for i in range(3):
+        mean[0, i] = left * Y[j, KAPPA + i] + right * Y[j + 1, KAPPA + i]
+        mean[1, i] = left * Y[j, OMEGA + i] + right * Y[j + 1, OMEGA + i]
+        mean[2, i] = left * Y[j, F + i] + right * Y[j + 1, F + i]
+        mean[3, i] = left * nodes.q[j, i] + right * nodes.q[j + 1, i]
+    mean[4, 0] = mean[4, 1] = mean[4, 2] = 0.0
+    for i in range(3):
+        mean[4, 0] -= (left * nodes.R[j, i, 1] + right * nodes.R[j + 1, i, 1]) * mean[2, i]
+        mean[4, 1] += (left * nodes.R[j, i, 0] + right * nodes.R[j + 1, i, 0]) * mean[2, i]
+
+
+@kernel
+def interval_panel(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes, section: Section,
+                   rows: Array, columns: Array, mean: Array, panel: Array, top: int) -> None:  # fmt: skip
     """Write the tangents of interval j's residuals by the scaled unknowns into rows `top` to `top` + 11 of `panel`.
 
-    Columns 0 to 11 belong to node j; the upper 12 of the panel's columns start at its middle. `mean` (4, 3) is scratch.
+    Columns 0 to 11 belong to node j, those from the panel's middle on to node j + 1. `mean` (MEANS, 3) is scratch.
     """
-    left, right = space.w_left, space.w_right
     for i in range(top, top + 12):
         for k in range(panel.shape[1]):
             panel[i, k] = 0.0
-    for i in range(3):
-        mean[0, i] = h * (left * Y[j, KAPPA + i] + right * Y[j + 1, KAPPA + i])
-        mean[1, i] = h * (left * Y[j, OMEGA + i] + right * Y[j + 1, OMEGA + i])
-        mean[2, i] = h * (left * nodes.T[j, i] + right * nodes.T[j + 1, i])
-        mean[3, i] = h * (left * Y[j, F + i] + right * Y[j + 1, F + i])
+    _take_means(j, Y, space.w_left, space.w_right, nodes, mean)
     for side in range(2):
+        node = j + side
         sign = space.a if side == 1 else -space.a
-        weight = right if side == 1 else left
+        weight = h * (space.w_right if side == 1 else space.w_left)
         at = side * (panel.shape[1] // 2)
-        _compatibility(panel, mean, sign, weight, top, at, h * c0, rows, columns)
-        _lab_balances(panel, mean, j + side, sign, weight, top, at, h, rows, columns, nodes.T_w, nodes.U_w,
-                      nodes.P_V, nodes.P_w, nodes.M_k, nodes.M_w, nodes.W_w)  # fmt: skip
+        _compatibility(panel, mean, sign, weight, top, at, c0, rows, columns)
+        _translation(panel, mean, sign, weight, top, at, space, j, nodes.R, nodes.J[node], nodes.R[node],
+                     nodes.P_V[node], nodes.P_w[node], rows, columns)  # fmt: skip
+        _rotation(panel, mean, sign, weight, top, at, space, j, nodes.R, nodes.J[node], nodes.R[node],
+                  nodes.W_w[node], section.stiffness[node], rows, columns)  # fmt: skip
 
 
 @inlined
-def _compatibility(panel: Array, mean: Array, sign: float, weight: float, top: int, at: int, inertia: float,
+def _compatibility(panel: Array, mean: Array, sign: float, weight: float, top: int, at: int, c0: float,
                    rows: Array, columns: Array) -> None:  # fmt: skip
-    """Tangents of (2) by one node; `mean` (4, 3): weighted means of kappa, omega, T and F times h."""
+    """Tangents of (2) by one node; `weight` is h times the node's weight in the means."""
     by_omega, by_kappa = rows[0] * columns[OMEGA], rows[0] * columns[KAPPA] * weight
     for i in range(3):
         m, n = (i + 1) % 3, (i + 2) % 3
         panel[top + i, at + OMEGA + i] = by_omega * sign
         panel[top + i, at + OMEGA + n] = by_omega * weight * mean[0, m]
         panel[top + i, at + OMEGA + m] = -by_omega * weight * mean[0, n]
-        panel[top + i, at + KAPPA + i] = -by_kappa * inertia
+        panel[top + i, at + KAPPA + i] = -by_kappa * c0
         panel[top + i, at + KAPPA + m] = by_kappa * mean[1, n]
         panel[top + i, at + KAPPA + n] = -by_kappa * mean[1, m]
 
 
 @inlined
-def _lab_balances(panel: Array, mean: Array, node: int, sign: float, weight: float, top: int, at: int, h: float,
-                  rows: Array, columns: Array, T_w: Array, U_w: Array, P_V: Array, P_w: Array, M_k: Array,
-                  M_w: Array, W_w: Array) -> None:  # fmt: skip
-    """Tangents of (3), (4) and (5) by one node."""
+def _translation(panel: Array, mean: Array, sign: float, weight: float, top: int, at: int, space: SpaceScheme, j: int,
+                 Rs: Array, J: Array, R: Array, P_V: Array, P_w: Array, rows: Array, columns: Array) -> None:  # fmt: skip
+    """Tangents of (3) and (4) by one node with rotation R; `Rs` are all nodes' rotations."""
+    x, y = mean[1, 1], -mean[1, 0]
     velocity, force = sign * rows[3] * columns[V], sign * rows[6] * columns[F]
-    stretch = -h * weight * rows[3] * columns[OMEGA]
-    load_V, load_w = -h * weight * rows[6] * columns[V], -h * weight * rows[6] * columns[OMEGA]
-    moment_k, moment_w = sign * rows[9] * columns[KAPPA], rows[9] * columns[OMEGA]
-    moment_F = weight * rows[9] * columns[F]
+    swing = -weight * rows[3] * columns[OMEGA]
+    load_V, load_w = -weight * rows[6] * columns[V], -weight * rows[6] * columns[OMEGA]
     for i in range(3):
-        m, n = (i + 1) % 3, (i + 2) % 3
         panel[top + 3 + i, at + V + i] = velocity
         panel[top + 6 + i, at + F + i] = force
-        panel[top + 9 + i, at + F + n] = moment_F * mean[2, m]
-        panel[top + 9 + i, at + F + m] = -moment_F * mean[2, n]
+        # d(R_j (omega_m x a3)) = -R_j [omega_m x a3] J d omega
+        a, b, c = y * R[i, 2], -x * R[i, 2], x * R[i, 1] - y * R[i, 0]
         for k in range(3):
-            panel[top + 3 + i, at + OMEGA + k] = stretch * U_w[node, i, k]
-            panel[top + 6 + i, at + V + k] = load_V * P_V[node, i, k]
-            panel[top + 6 + i, at + OMEGA + k] = load_w * P_w[node, i, k]
-            panel[top + 9 + i, at + KAPPA + k] = moment_k * M_k[node, i, k]
-            thrust = T_w[node, m, k] * mean[3, n] - T_w[node, n, k] * mean[3, m] - h * W_w[node, i, k]
-            panel[top + 9 + i, at + OMEGA + k] = moment_w * (sign * M_w[node, i, k] + weight * thrust)
+            panel[top + 3 + i, at + OMEGA + k] = swing * (a * J[0, k] + b * J[1, k] + c * J[2, k])
+            panel[top + 6 + i, at + V + k] = load_V * P_V[i, k]
+            panel[top + 6 + i, at + OMEGA + k] = load_w * P_w[i, k]
+        panel[top + 3 + i, at + OMEGA] -= swing * (space.w_left * Rs[j, i, 1] + space.w_right * Rs[j + 1, i, 1])
+        panel[top + 3 + i, at + OMEGA + 1] += swing * (space.w_left * Rs[j, i, 0] + space.w_right * Rs[j + 1, i, 0])
+
+
+@inlined
+def _rotation(panel: Array, mean: Array, sign: float, weight: float, top: int, at: int, space: SpaceScheme, j: int,
+              Rs: Array, J: Array, R: Array, W_w: Array, stiffness: Array, rows: Array, columns: Array) -> None:  # fmt: skip
+    """Tangents of (5) by one node with rotation R and moment q = stiffness (kappa - kappa0)."""
+    by_kappa, by_omega = rows[9] * columns[KAPPA], weight * rows[9] * columns[OMEGA]
+    by_F = weight * rows[9] * columns[F]
+    f0 = R[0, 0] * mean[2, 0] + R[1, 0] * mean[2, 1] + R[2, 0] * mean[2, 2]
+    f1 = R[0, 1] * mean[2, 0] + R[1, 1] * mean[2, 1] + R[2, 1] * mean[2, 2]
+    f2 = R[0, 2] * mean[2, 0] + R[1, 2] * mean[2, 1] + R[2, 2] * mean[2, 2]
+    for i in range(3):
+        m, n = (i + 1) % 3, (i + 2) % 3
+        panel[top + 9 + i, at + KAPPA + i] = by_kappa * sign * stiffness[i]
+        panel[top + 9 + i, at + KAPPA + n] = by_kappa * weight * (mean[0, m] * stiffness[n] - mean[3, m])
+        panel[top + 9 + i, at + KAPPA + m] = -by_kappa * weight * (mean[0, n] * stiffness[m] - mean[3, n])
+        for k in range(3):
+            panel[top + 9 + i, at + OMEGA + k] = -by_omega * W_w[i, k]
+    for k in range(3):
+        # d(R^t F) = (R^t F) x J d omega; a3 x y = (-y_2, y_1, 0)
+        panel[top + 9, at + OMEGA + k] -= by_omega * (f2 * J[0, k] - f0 * J[2, k])
+        panel[top + 10, at + OMEGA + k] += by_omega * (f1 * J[2, k] - f2 * J[1, k])
+        panel[top + 9, at + F + k] = -by_F * (space.w_left * Rs[j, k, 1] + space.w_right * Rs[j + 1, k, 1])
+        panel[top + 10, at + F + k] = by_F * (space.w_left * Rs[j, k, 0] + space.w_right * Rs[j + 1, k, 0])

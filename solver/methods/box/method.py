@@ -19,7 +19,9 @@ from solver.rotation import relative_rotation, rotate_back, tangents_of
 from solver.scene import Initial, Scene
 
 DRIFT_FEEDBACK = 0.2
-"""Part of the constraints' drift that a step takes back."""
+"""Part of the constraints' drift that a step takes back, if it is no shorter than FEEDBACK_STEP dt_max; a shorter
+one takes back less, or the correction would be a jolt."""
+FEEDBACK_STEP = 2.0**-4
 
 SMALL_MOTION = 1e-6
 """In rod lengths a step: motion below it does not shorten the step."""
@@ -38,6 +40,7 @@ class BoxMethod:
         self.state = _initial_state(scene.initial, self.s, self.section)
         self.contact = SelfContact(scene.contact, self.section, self.s)
         self.trial = State.empty(len(self.s))
+        self._feedback_step = FEEDBACK_STEP * numerics.dt_max
         self._scheme = Scheme.of(numerics.rho_inf)
         self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
@@ -59,7 +62,7 @@ class BoxMethod:
         if not consistent and self._last_dt > 0.0 and dt != self._last_dt:
             rescale_aux(self.state, dt / self._last_dt)
         self._last_dt, self._consistent = dt, consistent
-        gain = DRIFT_FEEDBACK / dt
+        gain = DRIFT_FEEDBACK / max(dt, self._feedback_step)
         self.loads = self.applied.at(t + dt)
         self._guess(dt, consistent)
         self.contact.prepare(self.state)
@@ -107,7 +110,7 @@ class BoxMethod:
             self.trial.Y[:, F:] += dt * self._F_rate
 
     def _ends(self, t: float, dt: float, gain: float) -> EndValues:
-        values = []
+        values: list[Array] = []
         for end, s in ((self.start, 0.0), (self.end, float(self.s[-1]))):
             target = end.values(t, dt, gain)
             follower = self.applied.at_end(t + dt, s, "material")

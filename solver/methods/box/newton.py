@@ -70,7 +70,7 @@ def assemble(old: State, new: State, past: Array, c0: float, h: float, section: 
     place_nodes(old, new, past, c0, nodes)
     balance_rotation(new, section, loads, past, c0, nodes)
     balance_translation(new, section, loads, past, c0, nodes)
-    if touch.present and touch.pairs.count[0] > 0:
+    if touch.present and touch.pairs.counts[0] > 0:
         add_contact(new, nodes, h, touch)
     interval_residuals(new.Y, past, c0, h, system.space, nodes, drift, system.rows, system.b)
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
@@ -116,15 +116,15 @@ class Work(NamedTuple):
 
 
 @kernel
-def solve_linear(Y: Array, c0: float, h: float, scales: Scales, touch: Touch, work: Work) -> int:
+def solve_linear(Y: Array, c0: float, h: float, section: Section, scales: Scales, touch: Touch, work: Work) -> int:
     """Solve for Newton's increment of the iterate `Y` into the system's x; returns how that ended."""
     system, nodes = work.system, work.nodes
     if scales.shooting:
-        growth = shoot(Y, c0, h, nodes, system, work.marched, system.x)
+        growth = shoot(Y, c0, h, nodes, section, system, work.marched, system.x)
         return CONVERGED if growth < LARGEST_GROWTH else LOST_DIGITS
-    if not factor(Y, c0, h, nodes, system):
+    if not factor(Y, c0, h, nodes, section, system):
         return SINGULAR
-    if touch.present and touch.pairs.count[0] > 0:
+    if touch.present and touch.pairs.counts[0] > 0:
         solve_with_contact(c0, h, nodes, system, touch)
     else:
         solve(system, 1.0, system.b, system.x)
@@ -147,14 +147,14 @@ def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: S
     before = 0.0
     for iteration in range(1, LARGEST_ITERATIONS + 1):
         assemble(old, new, work.past, c0, h, section, loads, ends, work.nodes, work.drift, system, touch)
-        status = solve_linear(new.Y, c0, h, scales, touch, work)
+        status = solve_linear(new.Y, c0, h, section, scales, touch, work)
         if status != CONVERGED:
             return status, iteration
         size = increment_size(new, system, scales)
         if not size < LARGEST_INCREMENT:
             return STALLED, iteration
         fraction = 1.0
-        if touch.present and touch.pairs.count[0] > 0:
+        if touch.present and touch.pairs.counts[0] > 0:
             fraction = allowed_fraction(c0, system, work.nodes, touch)
         for j in range(len(new.Y)):
             for k in range(12):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from solver.kernel import kernel
 from solver.loads.fluid import add_added_mass, add_drag
 from solver.methods.box.fields import KAPPA, OMEGA, Loads, Nodes, Section, State, V
@@ -22,8 +24,8 @@ def rotation_tangent(R: Array, x: Array, J: Array, out: Array) -> None:
 
 @kernel
 def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) -> None:
-    """Write positions and orientations of `new` and the nodes' R, J, T, U with their tangents."""
-    theta, x = past[0, :3].copy(), past[0, :3].copy()
+    """Write positions and orientations of `new` and the nodes' R, J, T with its tangent."""
+    theta, a3 = np.zeros(3), np.array([0.0, 0.0, 1.0])
     for j in range(len(past)):
         R, J = nodes.R[j], nodes.J[j]
         for i in range(3):
@@ -32,48 +34,43 @@ def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) ->
         turn(old.quaternion[j], theta, new.quaternion[j])
         matrix_of(new.quaternion[j], R)
         right_jacobian(theta, 1.0 / c0, J)
-        x[0], x[1], x[2] = 0.0, 0.0, 1.0
-        rotation_tangent(R, x, J, nodes.T_w[j])
-        x[0], x[1], x[2] = new.Y[j, OMEGA + 1], -new.Y[j, OMEGA], 0.0
-        rotation_tangent(R, x, J, nodes.U_w[j])
+        rotation_tangent(R, a3, J, nodes.T_w[j])
         for i in range(3):
             nodes.T[j, i] = R[i, 2]
-            nodes.U[j, i] = R[i, 0] * x[0] + R[i, 1] * x[1]
-            nodes.U_w[j, i, 0] -= R[i, 1]
-            nodes.U_w[j, i, 1] += R[i, 0]
 
 
 @kernel
 def balance_rotation(new: State, section: Section, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
-    """Write M = R K (kappa - kappa0) and W = R (I omega_t + omega x I omega + c I omega) - Q with tangents."""
-    q, m = past[0, :3].copy(), past[0, :3].copy()
-    D = nodes.R[0].copy()
+    """Write q = K (kappa - kappa0) and W = I omega_t + omega x I omega + c I omega - Q with its tangent by omega."""
     for j in range(len(past)):
-        R, J = nodes.R[j], nodes.J[j]
+        W, D = nodes.W[j], nodes.W_w[j]
         I0, I1, I2 = section.inertia[j, 0], section.inertia[j, 1], section.inertia[j, 2]
         w0, w1, w2 = new.Y[j, OMEGA], new.Y[j, OMEGA + 1], new.Y[j, OMEGA + 2]
         for i in range(3):
-            q[i] = section.stiffness[j, i] * (new.Y[j, KAPPA + i] - section.kappa0[j, i])
+            nodes.q[j, i] = section.stiffness[j, i] * (new.Y[j, KAPPA + i] - section.kappa0[j, i])
             rate = c0 * new.Y[j, OMEGA + i] + past[j, 9 + i] + loads.damping * new.Y[j, OMEGA + i]
-            m[i] = section.inertia[j, i] * rate
+            W[i] = section.inertia[j, i] * rate - loads.material[j, 3 + i]
             D[i, i] = section.inertia[j, i] * (c0 + loads.damping)
-        m[0] += (I2 - I1) * w1 * w2
-        m[1] += (I0 - I2) * w2 * w0
-        m[2] += (I1 - I0) * w0 * w1
+        W[0] += (I2 - I1) * w1 * w2
+        W[1] += (I0 - I2) * w2 * w0
+        W[2] += (I1 - I0) * w0 * w1
         D[0, 1], D[0, 2] = (I2 - I1) * w2, (I2 - I1) * w1
         D[1, 0], D[1, 2] = (I0 - I2) * w2, (I0 - I2) * w0
         D[2, 0], D[2, 1] = (I1 - I0) * w1, (I1 - I0) * w0
-        if loads.follows:
-            for i in range(3):
-                m[i] -= loads.material[j, 3 + i]
-        rotation_tangent(R, q, J, nodes.M_w[j])
-        rotation_tangent(R, m, J, nodes.W_w[j])
-        for i in range(3):
-            nodes.M[j, i] = R[i, 0] * q[0] + R[i, 1] * q[1] + R[i, 2] * q[2]
-            nodes.W[j, i] = R[i, 0] * m[0] + R[i, 1] * m[1] + R[i, 2] * m[2] - loads.lab[j, 3 + i]
-            for k in range(3):
-                nodes.M_k[j, i, k] = R[i, k] * section.stiffness[j, k]
-                nodes.W_w[j, i, k] += R[i, 0] * D[0, k] + R[i, 1] * D[1, k] + R[i, 2] * D[2, k]
+        if loads.turns:
+            _subtract_lab_moment(nodes.R[j], nodes.J[j], loads.lab[j, 3:], W, D)
+
+
+@kernel
+def _subtract_lab_moment(R: Array, J: Array, moment: Array, W: Array, W_w: Array) -> None:
+    """Subtract R^t moment from W and its tangent from W_w: d(R^t m) = (R^t m) x d psi."""
+    for i in range(3):
+        a, c = (i + 1) % 3, (i + 2) % 3
+        at_a = R[0, a] * moment[0] + R[1, a] * moment[1] + R[2, a] * moment[2]
+        at_c = R[0, c] * moment[0] + R[1, c] * moment[1] + R[2, c] * moment[2]
+        W[i] -= R[0, i] * moment[0] + R[1, i] * moment[1] + R[2, i] * moment[2]
+        for k in range(3):
+            W_w[i, k] -= at_a * J[c, k] - at_c * J[a, k]
 
 
 @kernel

@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from solver.kernel import kernel
-from solver.methods.box.fields import Linear, Nodes
-from solver.methods.box.intervals import interval_panel
+from solver.methods.box.fields import Linear, Nodes, Section
+from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.space import BOX
 from solver.rod import Array
 
@@ -20,7 +20,8 @@ LARGEST_GROWTH = 1e12
 
 
 @kernel
-def shoot(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear, marched: Array, x: Array) -> float:
+def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, marched: Array,
+          x: Array) -> float:  # fmt: skip
     """Solve the system of the iterate `Y` (n, 12) for its residuals into `x` (n, 12); `marched` (n, 12, 7) is scratch.
 
     Returns the growth of the homogeneous solutions from s = 0 to s = L (inf if a block is singular).
@@ -28,9 +29,9 @@ def shoot(Y: Array, c0: float, h: float, nodes: Nodes, system: Linear, marched: 
     N = len(system.panels)
     if not _start(system.start, system.b_start, marched[0]):
         return np.inf
-    A, panel, mean = np.empty((12, 12)), np.empty((18, 24)), np.zeros((4, 3))
+    A, panel, mean = np.empty((12, 12)), np.empty((18, 24)), np.zeros((MEANS, 3))
     for j in range(N):
-        interval_panel(j, Y, c0, h, BOX, nodes, system.rows, system.columns, mean, panel, 6)
+        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 6)
         for i in range(12):
             for k in range(12):
                 A[i, k] = panel[6 + i, 12 + k]

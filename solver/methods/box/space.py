@@ -1,6 +1,6 @@
 """Generalized-alpha in space: the one-step formula of the box scheme's family, and its solve.
 
-With Z = (omega, V, F, M) and Z_s = -G at a node, A an auxiliary derivative carried along s,
+With Z = (omega, V, F, q) and Z_s = -G at a node, A an auxiliary derivative carried along s,
 
     a Delta Z + h b A_j + h (w_left G_j + w_right G_{j+1}) = 0,   Z_{j+1} = Z_j + h ((1 - gamma) A_j + gamma A_{j+1}),
 

@@ -23,7 +23,7 @@ IN_WATER = 0.6215441433
 """rad/s, rod_benchmarks.json; water of 1000 kg/m^3, Ca = 1."""
 ROOTS = (1.875104068711961, 4.694091132974175, 7.854757438237613)
 """Of cos x cosh x = -1: the modes' wave numbers times L."""
-AMPLITUDE = 1e-3
+AMPLITUDE = 1e-4
 """The tip's, in L, or the twist in rad: the frequency's own shift is of its square."""
 PERIODS = 6
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from math import asin, atan2, nan, sqrt
 
+import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
@@ -53,7 +54,7 @@ def at_rest(alpha: float, numerics: Numerics) -> tuple[float, float, float]:
         damping=2.0, numerics=numerics, topology=False,
     )  # fmt: skip
     *_, last = simulate(scene)
-    tangent = rotate(last.orientation[-1:], [[0.0, 0.0, 1.0]])[0]
+    tangent = rotate(last.orientation[-1:], np.array([[0.0, 0.0, 1.0]]))[0]
     return last.r[-1, 0] / LENGTH, 1.0 - last.r[-1, 2] / LENGTH, atan2(tangent[0], tangent[2])
 
 

@@ -15,7 +15,7 @@ from validation.row import Row, at_most
 
 
 def curled() -> Initial:
-    """A rod whose tangent turns by 2 rad one way and 1 rad the other along its length, the curvature fading at the tip."""
+    """A rod whose tangent turns by 2 rad one way and 1 rad the other, its curvature fading at the tip."""
     fine = np.linspace(0.0, 1.0, 2001)
     fade = 1.5 * (fine - fine**3 / 3)
     polar, azimuth = 2.0 * fade, 1.0 * fade

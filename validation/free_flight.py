@@ -17,7 +17,7 @@ SPIN = (1.0, 2.0, 0.5)
 
 
 def curled(s: Array) -> Array:
-    """A centreline whose tangent turns by 2 rad one way and 1 rad the other; its curvature and shear fade at both ends."""
+    """A centreline whose tangent turns by 2 and 1 rad; its curvature and shear fade at both ends."""
     fine = np.linspace(0.0, 1.0, 2001)
     turned = fine**3 * (10.0 - 15.0 * fine + 6.0 * fine**2)
     polar, azimuth = 2.0 * turned, 1.0 * turned
@@ -25,7 +25,7 @@ def curled(s: Array) -> Array:
     return np.asarray(CubicSpline(LENGTH * fine, tangent).antiderivative()(s), dtype=float)
 
 
-def throw(intervals: int = 100, dt: float = 2.5e-3) -> Scene:
+def throw(intervals: int = 100, dt: float = 1.25e-3) -> Scene:
     """Rod R, curled, straight when at rest: it bends to and fro while it flies and turns for 10 s."""
     initial = Initial(centreline=curled, velocity=VELOCITY, angular_velocity=SPIN)
     return Scene(

@@ -8,42 +8,72 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from solver.methods.box.fields import Linear
+from solver.methods.box.elimination import factor, solve
 from solver.methods.box.generalized_alpha import Scheme, history
-from solver.methods.box.intervals import measure_drift
+from solver.methods.box.intervals import interval_panel, measure_drift
 from solver.methods.box.method import BoxMethod
 from solver.methods.box.newton import assemble, set_scales
+from solver.methods.box.shooting import shoot
+from solver.methods.box.space import BOX
 from solver.rod import Array
 
 
-def assembled(method: BoxMethod, dt: float, rho_inf: float = 0.5) -> Linear:
-    """Assemble the system of the first Newton iteration of a step of dt from the method's state at t = 0."""
-    scheme, work, gain = Scheme.of(rho_inf), method.work, 0.0
-    c0 = scheme.c0(dt)
-    method.trial.Y[:] = method.state.Y
-    history(method.state, scheme, dt, work.past)
-    measure_drift(method.state, method.h, gain, work.drift)
-    set_scales(method._scales, c0, work.system)
-    method.contact.prepare(method.state)
-    assemble(method.state, method.trial, work.past, c0, method.h, method.section, method.loads,
-             method._ends(0.0, dt, gain), work.nodes, work.drift, work.system, method.contact.touch)  # fmt: skip
-    return work.system
+class NewtonSystem:
+    """The system of the first Newton iteration of a step of `dt` from a method's state, in the solver's own scaling."""
 
+    def __init__(self, method: BoxMethod, dt: float, rho_inf: float = 0.5) -> None:
+        self._method, self._dt = method, dt
+        self._scheme = Scheme.of(rho_inf)
+        self._c0 = self._scheme.c0(dt)
+        self._ends = method._ends(0.0, dt, 0.0)
+        self._marched = np.zeros((len(method.s), 12, 7))
+        method.trial.Y[:] = method.state.Y
+        history(method.state, self._scheme, dt, method.work.past)
+        measure_drift(method.state, method.h, 0.0, method.work.drift)
+        set_scales(method._scales, self._c0, method.work.system)
+        method.contact.prepare(method.state)
 
-def as_sparse(system: Linear) -> tuple[csr_array, Array]:
-    """Matrix and right-hand side of an unfactored system: conditions at s = 0, intervals, conditions at L."""
-    N = len(system.panels)
-    rows, columns, values = [], [], []
+    def assemble(self) -> None:
+        """Residuals, and what the tangents are made of."""
+        method, work = self._method, self._method.work
+        assemble(method.state, method.trial, work.past, self._c0, method.h, method.section, method.loads, self._ends,
+                 work.nodes, work.drift, work.system, method.contact.touch)  # fmt: skip
 
-    def put(block: Array, row: int, column: int) -> None:
-        i, k = np.indices(block.shape)
-        rows.append((row + i).ravel())
-        columns.append((column + k).ravel())
-        values.append(block.ravel().copy())
+    def factor(self) -> bool:
+        """Block elimination: form the panels and factor them."""
+        method, work = self._method, self._method.work
+        return bool(factor(method.trial.Y, self._c0, method.h, work.nodes, work.system))
 
-    put(system.start, 0, 0)
-    for j in range(N):
-        put(system.panels[j, 6:], 6 + 12 * j, 12 * j)
-    put(system.end, 6 + 12 * N, 12 * N)
-    matrix = coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))).tocsr()
-    return matrix, np.concatenate([system.b_start, system.b.ravel(), system.b_end])
+    def solve(self) -> Array:
+        """Block elimination: the solution (12 n,) with the factors."""
+        solve(self._method.work.system, 1.0, self._method.work.system.b, self._method.work.system.x)
+        return self._method.work.system.x.ravel().copy()
+
+    def shoot(self) -> tuple[Array, float]:
+        """Shooting: the solution (12 n,) and the growth of the homogeneous solutions."""
+        method, work = self._method, self._method.work
+        x = np.zeros_like(work.system.x)
+        growth = shoot(method.trial.Y, self._c0, method.h, work.nodes, work.system, self._marched, x)
+        return x.ravel(), float(growth)
+
+    def as_sparse(self) -> tuple[csr_array, Array]:
+        """Matrix and right-hand side: conditions at s = 0, intervals, conditions at L."""
+        method, system = self._method, self._method.work.system
+        N = len(method.s) - 1
+        rows, columns, values = [], [], []
+
+        def put(block: Array, row: int, column: int) -> None:
+            i, k = np.indices(block.shape)
+            rows.append((row + i).ravel())
+            columns.append((column + k).ravel())
+            values.append(block.ravel().copy())
+
+        put(system.start, 0, 0)
+        panel, mean = np.zeros((18, 24)), np.zeros((4, 3))
+        for j in range(N):
+            interval_panel(j, method.trial.Y, self._c0, method.h, BOX, method.work.nodes, system.rows, system.columns,
+                           mean, panel, 6)  # fmt: skip
+            put(panel[6:], 6 + 12 * j, 12 * j)
+        put(system.end, 6 + 12 * N, 12 * N)
+        matrix = coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))).tocsr()
+        return matrix, np.concatenate([system.b_start, system.b.ravel(), system.b_end])

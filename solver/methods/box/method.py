@@ -18,7 +18,7 @@ from solver.rod import Array
 from solver.rotation import relative_rotation, rotate_back, tangents_of
 from solver.scene import Initial, Scene
 
-DRIFT_FEEDBACK = 0.2
+DRIFT_FEEDBACK = 0.5
 """Part of the constraints' drift that a step takes back, if it is no shorter than FEEDBACK_STEP dt_max; a shorter
 one takes back less, or the correction would be a jolt."""
 FEEDBACK_STEP = 2.0**-4

@@ -1,0 +1,187 @@
+"""A step of the box method in the middle of Newton's iteration, with everything in it: for tests of its algebra."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver import Contact, Initial, Numerics, Rod, Scene
+from solver.contact.coupling import _node_forces
+from solver.contact.self_contact import SelfContact
+from solver.curve import Curve
+from solver.kernel import kernel
+from solver.methods.box.augmented import wide_panel, wide_start
+from solver.methods.box.fields import Loads, Section, State, sample
+from solver.methods.box.generalized_alpha import Scheme, history
+from solver.methods.box.intervals import MEANS, interval_panel, measure_drift
+from solver.methods.box.method import _initial_state
+from solver.methods.box.newton import EndValues, Scales, Work, assemble, set_scales
+from solver.methods.box.space import SpaceScheme
+from solver.rod import Array
+from solver.scene import End
+
+LENGTH = 0.4
+CLAMPED = np.zeros(6, np.int64)
+
+
+def rod(diameter: float = 0.004) -> Rod:
+    """A rod whose diameter varies along s."""
+    s = np.linspace(0.0, LENGTH, 11)
+    width = Curve.table(s, diameter * (1.0 - 0.1 * np.exp(-(((s - 0.2) / 0.05) ** 2))), "cubic")
+    return Rod.circular(LENGTH, width, 1.25e7, 5e6, 1500.0)
+
+
+def two_turns() -> Initial:
+    """A helix of two turns, radius 3 cm, whose neighbouring turns lie 8 mm apart."""
+    rate = LENGTH / np.hypot(0.03, 0.008 / (2 * np.pi))
+
+    def helix(s: Array) -> Array:
+        angle = rate * s / LENGTH
+        return np.stack([0.03 * np.cos(angle), 0.03 * np.sin(angle), 0.008 / (2 * np.pi) * angle], axis=1)
+
+    return Initial(helix, a1=(1.0, 0.0, 0.0))
+
+
+@kernel
+def panel_of(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, problem_nodes, section, rows: Array,
+             columns: Array, mean: Array, panel: Array) -> None:  # type: ignore[no-untyped-def]  # fmt: skip
+    """`interval_panel` as Python may call it."""
+    interval_panel(j, Y, c0, h, space, problem_nodes, section, rows, columns, mean, panel, 6)
+
+
+@dataclass
+class Problem:
+    """A step at an iterate: `residual()` of all equations and `matrix()` of its tangents, both scaled."""
+
+    old: State
+    new: State
+    section: Section
+    loads: Loads
+    ends: EndValues
+    scheme: Scheme
+    dt: float
+    work: Work
+    contact: SelfContact
+    h: float
+
+    @property
+    def c0(self) -> float:
+        return self.scheme.c0(self.dt)
+
+    @property
+    def wide(self) -> bool:
+        return len(self.work.system.wide.A) > 0
+
+    def residual(self) -> Array:
+        """All residuals in the order of the system's rows."""
+        system = self.work.system
+        assemble(self.old, self.new, self.work.past, self.c0, self.h, self.section, self.loads, self.ends,
+                 self.work.nodes, self.work.drift, system, self.contact.touch)  # fmt: skip
+        if self.wide:
+            parts = [system.wide.b_start, system.wide.b.ravel(), system.b_end]
+        else:
+            parts = [system.b_start, system.b.ravel(), system.b_end]
+        return np.concatenate(parts).copy()
+
+    def unknowns(self) -> list[tuple[Array, int, int, float]]:
+        """Each unknown as (array, row, column, scale), in the order of the system's columns."""
+        system = self.work.system
+        listed = []
+        for j in range(len(self.new.Y)):
+            listed += [(self.new.Y, j, k, float(system.columns[k])) for k in range(12)]
+            if self.wide:
+                listed += [(system.wide.A, j, k, 1.0 / float(system.rows[k] * self.h)) for k in range(12)]
+        return listed
+
+    def differences(self, step: float = 1e-6) -> Array:
+        """The tangents by central differences."""
+        columns = []
+        for array, j, k, scale in self.unknowns():
+            kept = array[j, k]
+            array[j, k] = kept + step * scale
+            up = self.residual()
+            array[j, k] = kept - step * scale
+            columns.append((up - self.residual()) / (2.0 * step))
+            array[j, k] = kept
+        self.residual()
+        return np.stack(columns, axis=1)
+
+    def matrix(self) -> Array:
+        """The tangents as the solver writes them, contact included."""
+        self.residual()
+        system, nodes, Y = self.work.system, self.work.nodes, self.new.Y
+        N, mean = len(system.panels), np.zeros((MEANS, 3))
+        size, left = (24, 18) if self.wide else (12, 6)
+        A, W = np.zeros((size * (N + 1), size * (N + 1))), np.zeros((left + size, 2 * size))
+        A[:6, :12] = system.start
+        if self.wide:
+            wide_start(Y, self.c0, self.h, nodes, self.section, system, mean, W)
+            A[:18, :24] = W[:18, :24]
+        for j in range(N):
+            if self.wide:
+                wide_panel(j, Y, self.c0, self.h, nodes, self.section, system, mean, W)
+            else:
+                panel_of(j, Y, self.c0, self.h, system.space, nodes, self.section, system.rows, system.columns, mean, W)
+            A[left + size * j : left + size * (j + 1), size * j : size * (j + 2)] = W[left:]
+        A[left + size * N :, size * N : size * N + 12] = system.end
+        return A + self._contact_matrix(A.shape[0], size, left)
+
+    def _contact_matrix(self, count: int, size: int, left: int) -> Array:
+        A = np.zeros((count, count))
+        touch, system = self.contact.touch, self.work.system
+        pairs = touch.pairs
+        if pairs.counts[0] == 0:
+            return A
+        x, y = np.zeros((len(self.new.Y), 12)), np.zeros(3 * len(self.new.Y))
+        for column in range(12 * len(x)):
+            x[:] = 0.0
+            x.ravel()[column] = 1.0
+            _node_forces(x, self.c0, self.h, system, self.work.nodes, touch, y)
+            at = size * (column // 12) + column % 12
+            for m in range(pairs.counts[2]):
+                node = pairs.nodes[m]
+                for j in (node - 1, node):
+                    if 0 <= j < len(system.panels):
+                        rows = left + size * j + 6
+                        A[rows : rows + 3, at] -= 0.5 * self.h * system.rows[6:9] * y[3 * m : 3 * m + 3]
+        return A
+
+
+def problem(
+    intervals: int = 12,
+    kinds: tuple[Array, Array] = (CLAMPED, CLAMPED),
+    contact: Contact | None = None,
+    rho_inf_space: float = 1.0,
+    dt: float = 0.02,
+    diameter: float = 0.004,
+    seed: int = 1,
+    **loads: object,
+) -> Problem:
+    """A step with a random past and a random iterate; `loads` replaces fields of `Loads` (all are zero)."""
+    random = np.random.default_rng(seed)
+    numerics = Numerics(intervals=intervals, rho_inf=0.6, rho_inf_space=rho_inf_space)
+    scene = Scene(rod(diameter), two_turns(), End.clamp(), End.clamp(), 1.0, 1.0, contact=contact, numerics=numerics)
+    n, s, h = intervals + 1, np.linspace(0.0, LENGTH, intervals + 1), LENGTH / intervals
+    section = sample(scene.rod, s)
+    old, new = _initial_state(scene.initial, s, section), State.empty(n)
+    natural = np.repeat([0.05, 2.0, 3.0, 1e-3], 3)
+    old.Y[:] += natural * random.normal(size=(n, 12))
+    old.rate[:] = natural[:9] * random.normal(size=(n, 9))
+    old.aux[:] = np.concatenate([natural[:6], natural[:9]]) * random.normal(size=(n, 15))
+    new.Y[:] = old.Y + 0.1 * natural * random.normal(size=(n, 12))
+    none = Loads(np.zeros((n, 6)), np.zeros((n, 6)), False, False, 0.0, np.zeros(n), np.zeros(n), np.zeros(n),
+                 np.zeros(3), False)  # fmt: skip
+    values = [np.where(kind % 2 == 1, 1e-4, natural[:6]) * random.normal(size=6) for kind in kinds]
+    dead = [1e-4 * random.normal(size=6), 1e-4 * random.normal(size=6)]
+    ends = EndValues(kinds[0], values[0], dead[0], kinds[1], values[1], dead[1])
+    scheme = Scheme.of(numerics.rho_inf)
+    work = Work.empty(intervals, False, SpaceScheme.of(rho_inf_space))
+    work.system.wide.A[:] = 0.1 * random.normal(size=work.system.wide.A.shape)
+    set_scales(Scales(LENGTH, float(section.stiffness[:, 0].mean()), False), scheme.c0(dt), work.system)
+    history(old, scheme, dt, work.past)
+    measure_drift(old, h, 0.2 / dt, work.drift)
+    touching = SelfContact(contact, section, s)
+    if contact is not None:
+        touching.prepare(old)
+    return Problem(old, new, section, none._replace(**loads), ends, scheme, dt, work, touching, h)  # type: ignore[arg-type]

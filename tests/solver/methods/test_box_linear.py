@@ -1,0 +1,84 @@
+"""The linear solves: block elimination, shooting, and GMRES on the contact forces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from solver import Contact
+from solver.contact.coupling import solve_with_contact
+from solver.methods.box.elimination import factor, solve
+from solver.methods.box.shooting import LARGEST_GROWTH, shoot
+from solver.rod import Array
+from tests.solver.methods.problem import Problem, problem
+
+
+def eliminate(case: Problem) -> Array:
+    """The increment by block elimination."""
+    case.residual()
+    system = case.work.system
+    assert factor(case.new.Y, case.c0, case.h, case.work.nodes, case.section, system)
+    solve(system, 1.0, system.b, system.x)
+    return system.x.copy()
+
+
+def banded_error(case: Problem, x: Array) -> float:
+    """Normwise backward error |A x - b| / (|A| |x| + |b|), from the dense matrix."""
+    A, b, flat = case.matrix(), case.residual(), x.ravel()
+    return float(np.abs(A @ flat - b).max() / (np.abs(A).sum(axis=1).max() * np.abs(flat).max() + np.abs(b).max()))
+
+
+@pytest.mark.parametrize("diameter", [0.0005, 0.002, 0.01])
+@pytest.mark.parametrize("dt", [1e-4, 1e-2, 1e-1])
+def test_block_elimination_is_backward_stable(diameter: float, dt: float) -> None:
+    case = problem(60, diameter=diameter, dt=dt, damping=0.5)
+    assert banded_error(case, eliminate(case)) <= 1e-14
+
+
+def test_generalized_alpha_in_space_is_solved_by_the_same_elimination() -> None:
+    case = problem(20, rho_inf_space=0.5)
+    x = eliminate(case)
+    expected = np.linalg.solve(case.matrix(), case.residual()).reshape(-1, 24)[:, :12]
+    assert x == pytest.approx(expected, rel=1e-7, abs=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("diameter", "dt"), [(0.01, 0.1), (0.01, 0.01), (0.002, 0.1), (0.002, 0.02)])
+def test_shooting_agrees_with_elimination_while_little_is_lost(diameter: float, dt: float) -> None:
+    case = problem(60, diameter=diameter, dt=dt)
+    x = eliminate(case)
+    case.residual()
+    shot = np.zeros_like(x)
+    growth = shoot(case.new.Y, case.c0, case.h, case.work.nodes, case.section, case.work.system,
+                   np.zeros((61, 12, 7)), shot)  # fmt: skip
+    assert growth < 1e8
+    # both err by rounding times the condition of the system; shooting by its growth besides
+    bound = max(growth, np.linalg.cond(case.matrix())) * np.finfo(float).eps
+    assert np.abs(shot - x).max() <= bound * np.abs(x).max()
+
+
+def test_shooting_tells_how_much_it_has_lost() -> None:
+    case = problem(60, diameter=0.0005, dt=1e-4)
+    case.residual()
+    growth = shoot(case.new.Y, case.c0, case.h, case.work.nodes, case.section, case.work.system,
+                   np.zeros((61, 12, 7)), np.zeros((61, 12)))  # fmt: skip
+    assert growth > LARGEST_GROWTH
+
+
+def test_the_solve_with_contact_solves_the_whole_system() -> None:
+    contact = Contact(k1=1e-7, k2=3.0, k3=0.0, k4=1.0, aperture=np.radians(100), cutoff=0.013, skip=0.06,
+                      spacing=0.004)  # fmt: skip
+    case = problem(24, contact=contact)
+    expected = np.linalg.solve(case.matrix(), case.residual()).reshape(-1, 12)
+    eliminate(case)
+    iterations = solve_with_contact(case.c0, case.h, case.work.nodes, case.work.system, case.contact.touch)
+    # GMRES stops at a relative residual of 1e-6 in the contact forces
+    assert np.abs(case.work.system.x - expected).max() <= 1e-4 * np.abs(expected).max()
+    assert 0 < iterations <= 40
+
+
+def test_a_system_that_leaves_a_motion_free_is_found_singular() -> None:
+    nothing_held = np.ones(6, np.int64)
+    case = problem(10, kinds=(nothing_held, nothing_held))
+    case.residual()
+    case.work.system.start[:, :] = 0.0
+    assert not factor(case.new.Y, case.c0, case.h, case.work.nodes, case.section, case.work.system)

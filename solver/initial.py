@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation
 
 from solver.rod import Array
 from solver.rotation import quaternion_of
@@ -28,7 +29,9 @@ def arclength_spline(points: Array, length: float) -> Callable[[Array], Array]:
     speed = np.linalg.norm(raw(fine, 1), axis=1)
     arclength = CubicSpline(fine, speed).antiderivative()(fine)
     if abs(arclength[-1] / length - 1.0) > 1e-3:
-        raise ValueError(f"the centreline is {arclength[-1]:.6g} m long, the rod {length:.6g} m: they must agree to 0.1 %")
+        raise ValueError(
+            f"the centreline is {arclength[-1]:.6g} m long, the rod {length:.6g} m: they must agree to 0.1 %"
+        )
     by_arclength = CubicSpline(arclength * (length / arclength[-1]), fine)
 
     def centreline(s: Array) -> Array:
@@ -49,9 +52,7 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     first = _transport(tangent, np.array(initial.a1, dtype=float))
     R = np.stack([first, np.cross(tangent, first), tangent], axis=2)
     angle = np.asarray(initial.twist(refined), dtype=float)
-    c, o, i = np.cos(angle), np.zeros_like(angle), np.ones_like(angle)
-    spin = np.stack([np.stack([c, -np.sin(angle), o], 1), np.stack([np.sin(angle), c, o], 1), np.stack([o, o, i], 1)], 1)
-    R = R @ spin
+    R = R @ Rotation.from_rotvec(np.outer(angle, [0.0, 0.0, 1.0])).as_matrix()
     bend = curve(refined, 2)
     bend -= np.sum(bend * tangent, axis=1)[:, None] * tangent
     kappa_lab = np.cross(tangent, bend)

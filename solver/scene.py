@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -107,7 +108,7 @@ class End:
         for name, components in (("translation", self.translation), ("rotation", self.rotation)):
             for i, component in enumerate(components):
                 times = [c.since for c in component]
-                if not times or times[0] != 0.0 or any(a >= b for a, b in zip(times, times[1:], strict=False)):
+                if not times or times[0] != 0.0 or any(a >= b for a, b in pairwise(times)):
                     raise ValueError(f"{name}[{i}]: since must start at 0 and increase, got {times}")
                 if component[0].kind == "stop":
                     raise ValueError(f"{name}[{i}]: a stop needs a condition before it")

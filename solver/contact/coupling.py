@@ -31,7 +31,8 @@ class Touch(NamedTuple):
     """Everything that contact needs in a step; `present` is False in a scene without contact.
 
     Scratch: `moved` (M, 9), changes of p, t, w; `basis` (KRYLOV + 1, 3 n); `y`, `z` (3 n,);
-    `force` (N, 12) a right-hand side; `x` (n, 12).
+    `force` (N, 12) a right-hand side; `x` (n, 12); GMRES's `H` (KRYLOV + 1, KRYLOV), its Givens rotations
+    `givens` (KRYLOV, 2) and residual `g` (KRYLOV + 1,).
     """
 
     present: bool
@@ -44,6 +45,9 @@ class Touch(NamedTuple):
     z: Array
     force: Array
     x: Array
+    H: Array
+    givens: Array
+    g: Array
 
 
 @kernel
@@ -91,7 +95,8 @@ def _move_points(x: Array, c0: float, system: Linear, nodes: Nodes, touch: Touch
                 tangent = 0.0
                 for c in range(3):
                     tangent += nodes.T_w[node, k, c] * columns[OMEGA + c] * x[node, OMEGA + c]
-                touch.moved[i, k] += points.hermite[i, 2 * side] * velocity / c0 + points.hermite[i, 2 * side + 1] * tangent
+                touch.moved[i, k] += points.hermite[i, 2 * side] * velocity / c0
+                touch.moved[i, k] += points.hermite[i, 2 * side + 1] * tangent
                 touch.moved[i, 3 + k] += share * tangent
                 touch.moved[i, 6 + k] += share * velocity
 
@@ -110,7 +115,8 @@ def _node_forces(x: Array, c0: float, h: float, system: Linear, nodes: Nodes, to
         n, k = pairs.n[pair], pairs.k[pair]
         along = 0.0
         for c in range(3):
-            along += n[c] * (k[0] * moved[a, 3 + c] + k[1] * moved[b, 3 + c] + k[2] * (moved[a, 6 + c] - moved[b, 6 + c]))
+            turned = k[0] * moved[a, 3 + c] + k[1] * moved[b, 3 + c]
+            along += n[c] * (turned + k[2] * (moved[a, 6 + c] - moved[b, 6 + c]))
         for c in range(3):
             force = n[c] * along
             for e in range(3):
@@ -140,19 +146,19 @@ def _solve_for_forces(y: Array, h: float, system: Linear, touch: Touch, sign: fl
 def solve_with_contact(c0: float, h: float, nodes: Nodes, system: Linear, touch: Touch) -> int:
     """Solve the factored system with the contact tangents into system.x; returns GMRES's iterations."""
     size = 3 * touch.pairs.counts[2]
-    Q, H = touch.basis, np.zeros((KRYLOV + 1, KRYLOV))
-    cosine, sine, g = np.zeros(KRYLOV), np.zeros(KRYLOV), np.zeros(KRYLOV + 1)
+    Q, H, g = touch.basis, touch.H, touch.g
     _solve_for_forces(touch.y, h, system, touch, 0.0, 1.0)
     _node_forces(touch.x, c0, h, system, nodes, touch, touch.y)
-    g[0] = np.sqrt(np.sum(touch.y[:size] ** 2))
+    g[0] = _norm(touch.y, size)
     used = 0
     if g[0] > 0.0:
-        Q[0, :size] = touch.y[:size] / g[0]
+        for c in range(size):
+            Q[0, c] = touch.y[c] / g[0]
         while used < min(KRYLOV, size) and abs(g[used]) > SOLVED * abs(g[0]) + 1e-300:
             _solve_for_forces(Q[used], h, system, touch, 1.0, 0.0)
             _node_forces(touch.x, c0, h, system, nodes, touch, touch.z)
             _arnoldi(Q, H, touch.z, used, size)
-            _rotate(H, cosine, sine, g, used)
+            _rotate(H, touch.givens, g, used)
             used += 1
     for m in range(used - 1, -1, -1):
         for k in range(m + 1, used):
@@ -160,7 +166,8 @@ def solve_with_contact(c0: float, h: float, nodes: Nodes, system: Linear, touch:
         g[m] /= H[m, m]
     touch.y[:size] = 0.0
     for m in range(used):
-        touch.y[:size] += g[m] * Q[m, :size]
+        for c in range(size):
+            touch.y[c] += g[m] * Q[m, c]
     _solve_for_forces(touch.y, h, system, touch, -1.0, 1.0)
     system.x[:, :] = touch.x
     return used
@@ -172,25 +179,37 @@ def _arnoldi(Q: Array, H: Array, z: Array, m: int, size: int) -> None:
     for c in range(size):
         z[c] += Q[m, c]
     for k in range(m + 1):
-        H[k, m] = np.sum(Q[k, :size] * z[:size])
-        z[:size] -= H[k, m] * Q[k, :size]
-    H[m + 1, m] = np.sqrt(np.sum(z[:size] ** 2))
-    if H[m + 1, m] > 0.0:
-        Q[m + 1, :size] = z[:size] / H[m + 1, m]
+        overlap = 0.0
+        for c in range(size):
+            overlap += Q[k, c] * z[c]
+        for c in range(size):
+            z[c] -= overlap * Q[k, c]
+        H[k, m] = overlap
+    H[m + 1, m] = _norm(z, size)
+    for c in range(size):
+        Q[m + 1, c] = z[c] / H[m + 1, m] if H[m + 1, m] > 0.0 else 0.0
 
 
 @kernel
-def _rotate(H: Array, cosine: Array, sine: Array, g: Array, m: int) -> None:
+def _norm(z: Array, size: int) -> float:
+    total = 0.0
+    for c in range(size):
+        total += z[c] * z[c]
+    return float(np.sqrt(total))
+
+
+@kernel
+def _rotate(H: Array, givens: Array, g: Array, m: int) -> None:
     """Apply the old Givens rotations to column m of H, and a new one that annihilates H[m + 1, m]."""
     for k in range(m):
-        upper = cosine[k] * H[k, m] + sine[k] * H[k + 1, m]
-        H[k + 1, m] = -sine[k] * H[k, m] + cosine[k] * H[k + 1, m]
+        upper = givens[k, 0] * H[k, m] + givens[k, 1] * H[k + 1, m]
+        H[k + 1, m] = -givens[k, 1] * H[k, m] + givens[k, 0] * H[k + 1, m]
         H[k, m] = upper
     norm = np.sqrt(H[m, m] ** 2 + H[m + 1, m] ** 2)
-    cosine[m], sine[m] = H[m, m] / norm, H[m + 1, m] / norm
+    givens[m, 0], givens[m, 1] = H[m, m] / norm, H[m + 1, m] / norm
     H[m, m], H[m + 1, m] = norm, 0.0
-    g[m + 1] = -sine[m] * g[m]
-    g[m] = cosine[m] * g[m]
+    g[m + 1] = -givens[m, 1] * g[m]
+    g[m] = givens[m, 0] * g[m]
 
 
 @kernel

@@ -2,8 +2,8 @@
 
     B = rho_c A (k1 / (d - D/2)^k2 - (k3/d) d_t |d_t|^k4)
 
-along the separation, times a smooth weight for the aperture and the cutoff. The damping opposes d_t (as printed it would
-feed an approaching pair). B is a density along the rod that equals the printed sum over grid points at the
+along the separation, times a smooth weight for the aperture and the cutoff. The damping opposes d_t (as printed it
+would feed an approaching pair). B is a density along the rod that equals the printed sum over grid points at the
 paper's ds of 1 mm: a pair's force is B spacing^2 / 1 mm.
 """
 
@@ -70,7 +70,7 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, G: Array, k: 
     """Force on point a from point b: elastic part, damping part (N, along n from b to a), and the distance (m).
 
     Writes n (3,), and the tangents of the force: G (3, 3) by the separation; n k[0] n by t_a, n k[1] n by t_b and
-    n k[2] n by the relative velocity. Two zeros beyond the cutoff or outside the aperture, where nothing else is written.
+    n k[2] n by the relative velocity. Two zeros beyond the cutoff or outside the aperture, where nothing is written.
     """
     x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
     square = x * x + y * y + z * z

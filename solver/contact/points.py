@@ -18,8 +18,8 @@ from solver.scene import Contact
 class Points(NamedTuple):
     """M points at even arclengths.
 
-    Fixed: `interval` (M,) and `xi` (M,) in [0, 1], where each lies; `hermite` (M, 4), weights of r_j, T_j, r_j+1, T_j+1;
-    `mass` rho_c A and `diameter` (M,); `spacing` (m). At the current iterate, lab: `p` position, `t` tangent,
+    Fixed: `interval` (M,) and `xi` (M,) in [0, 1], where each lies; `hermite` (M, 4), weights of r_j, T_j, r_j+1 and
+    T_j+1; `mass` rho_c A and `diameter` (M,); `spacing` (m). At the current iterate, lab: `p` position, `t` tangent,
     `w` velocity, each (M, 3). `checked` (M, 3): positions at the last search.
     """
 

@@ -133,7 +133,8 @@ class SelfContact:
         self.touch = Touch(
             self._present, self._law, points, Pairs.empty(capacity, M, n), np.zeros((M, 9)),
             np.zeros((KRYLOV + 1 if self._present else 1, 3 * room)), np.zeros(3 * room), np.zeros(3 * room),
-            np.zeros((room, 12))[: room - 1], np.zeros((room, 12)),
+            np.zeros((room, 12))[: room - 1], np.zeros((room, 12)), np.zeros((KRYLOV + 1, KRYLOV)),
+            np.zeros((KRYLOV, 2)), np.zeros(KRYLOV + 1),
         )  # fmt: skip
 
 

@@ -21,7 +21,7 @@ def wide_residuals(Y: Array, past: Array, c0: float, h: float, nodes: Nodes, sys
     """Write the residuals of the wide system; those of the box part, `system.b`, are complete but for A."""
     wide, rows, gamma = system.wide, system.rows, system.space.gamma
     nothing, at_start = np.zeros((1, 6)), np.zeros((1, 12))
-    interval_residuals(Y, past, c0, h, AT_LEFT_NODE, nodes, nothing, rows, at_start)
+    interval_residuals(Y, past, c0, h, AT_LEFT_NODE, nodes, nothing, rows, system.mean, at_start)
     wide.b_start[:6] = system.b_start
     for k in range(12):
         wide.b_start[6 + k] = at_start[0, k] + rows[k] * h * wide.A[0, k]
@@ -41,7 +41,8 @@ def wide_residuals(Y: Array, past: Array, c0: float, h: float, nodes: Nodes, sys
 
 
 @kernel
-def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, mean: Array, W: Array) -> None:
+def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, mean: Array,
+               W: Array) -> None:  # fmt: skip
     """Write the tangents of interval j into rows 18 to 41 of W (42, 48)."""
     interval_panel(j, Y, c0, h, system.space, nodes, section, system.rows, system.columns, mean, W, 18)
     interval_panel(j, Y, c0, h, MINUS_DIFFERENCE, nodes, section, system.rows, system.columns, mean, W, 30)
@@ -52,7 +53,8 @@ def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Sec
 
 
 @kernel
-def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, mean: Array, W: Array) -> None:
+def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, mean: Array,
+               W: Array) -> None:  # fmt: skip
     """Write the 18 conditions at s = 0 into the first rows of W (42, 48)."""
     interval_panel(0, Y, c0, h, AT_LEFT_NODE, nodes, section, system.rows, system.columns, mean, W, 6)
     W[:6, :] = 0.0

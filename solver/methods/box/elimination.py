@@ -104,8 +104,9 @@ def factor(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system
     if len(system.wide.A) > 0:
         return bool(_factor_wide(Y, c0, h, nodes, section, system))
     N = len(system.panels)
-    W, mean = np.zeros((18, 24)), np.zeros((MEANS, 3))
+    W, mean = system.panel, system.mean
     W[:6, :12] = system.start
+    W[:6, 12:] = 0.0
     for j in range(N):
         interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, W, 6)
         if not _eliminate(W, system.swaps[j]):
@@ -146,9 +147,12 @@ def _factor_wide(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, 
 def solve(system: Linear, scale: float, b: Array, x: Array) -> None:
     """Solve with the factors into `x` (n, 12): right-hand side `b` (N, 12), and `scale` times all other residuals."""
     wide = system.wide
+    for i in range(6):
+        system.rhs_start[i] = scale * system.b_start[i]
+        system.rhs_end[i] = scale * system.b_end[i]
     if len(wide.A) == 0:
         _substitute_columns(12, system.panels, system.swaps, system.last, system.last_swaps, system.rhs,
-                            scale * system.b_start, b, scale * system.b_end, x)  # fmt: skip
+                            system.rhs_start, b, system.rhs_end, x)  # fmt: skip
         return
     for i in range(18):
         wide.rhs_start[i] = scale * wide.b_start[i]
@@ -157,7 +161,7 @@ def solve(system: Linear, scale: float, b: Array, x: Array) -> None:
             wide.rhs[j, k] = b[j, k] + scale * (wide.b[j, k] - system.b[j, k])
             wide.rhs[j, 12 + k] = scale * wide.b[j, 12 + k]
     _substitute_columns(len(wide.last), wide.panels, wide.swaps, wide.last, wide.last_swaps, wide.y,
-                        wide.rhs_start, wide.rhs, scale * system.b_end, wide.x)  # fmt: skip
+                        wide.rhs_start, wide.rhs, system.rhs_end, wide.x)  # fmt: skip
     x[:, :] = wide.x[:, :12]
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from solver.kernel import kernel
 from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, Section, V
 from solver.rod import Array
@@ -9,9 +12,11 @@ from solver.rod import Array
 RATE, LOAD, RATE_LAB, LOAD_LAB = 0, 1, 2, 3
 """Kinds of a condition on a translation component; a rotation component is RATE or LOAD."""
 
+Kinds = NDArray[np.int64]
+
 
 @kernel
-def end_conditions(Y: Array, node: int, kinds: Array, targets: Array, dead: Array, rows: Array, columns: Array,
+def end_conditions(Y: Array, node: int, kinds: Kinds, targets: Array, dead: Array, rows: Array, columns: Array,
                    nodes: Nodes, section: Section, b: Array, A: Array) -> None:  # fmt: skip
     """Write residuals `b` (6,) and tangents `A` (6, 12) of the conditions `kinds` (6,) with values `targets` (6,).
 

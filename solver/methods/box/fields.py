@@ -66,8 +66,9 @@ class State(NamedTuple):
 class Nodes(NamedTuple):
     """What the nodes bring to the balances, at the current iterate, and its tangents.
 
-    (n, 3): `T` = R a3 (lab); `P` = rho_c A dV/dt - B (lab); `q` moment (material); `W` = I omega_t + omega x I omega - Q
-    (material). (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V or omega (`w`)).
+    (n, 3): `T` = R a3 (lab); `P` = rho_c A dV/dt - B (lab); `q` moment (material); `W` = I omega_t + omega x I omega
+    - Q (material). (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V or omega (`w`)).
+    `scratch` (3, 3) belongs to the kernels that loop over the nodes.
     """
 
     R: Array
@@ -80,12 +81,13 @@ class Nodes(NamedTuple):
     P_V: Array
     P_w: Array
     W_w: Array
+    scratch: Array
 
     @classmethod
     def empty(cls, n: int) -> Nodes:
         """Zeros for n nodes."""
         vectors = {"T", "P", "q", "W"}
-        return cls(*(np.zeros((n, 3) if name in vectors else (n, 3, 3)) for name in cls._fields))
+        return cls(*(np.zeros((n, 3) if name in vectors else (n, 3, 3)) for name in cls._fields[:-1]), np.zeros((3, 3)))
 
 
 class Loads(NamedTuple):
@@ -142,8 +144,8 @@ class Linear(NamedTuple):
 
     `space` the scheme along s; `panels` (N, 18, 24): factors of six rows carried from the left over an interval's
     twelve; `start`, `end` (6, 12) rows of the ends; residuals `b` (N, 12), `b_start`, `b_end` (6,); `swaps` (N, 12);
-    `last` (12, 24) with `last_swaps` (12,); `x` (n, 12) solution; `rhs` (N, 18) scratch; `columns`, `rows` (12,)
-    scales; `wide` what rho_inf_space < 1 needs.
+    `last` (12, 24) with `last_swaps` (12,); `x` (n, 12) solution; `columns`, `rows` (12,) scales; `wide` what
+    rho_inf_space < 1 needs. Scratch: `rhs` (N, 18), `rhs_start`, `rhs_end` (6,), `panel` (18, 24), `mean` (5, 3).
     """
 
     space: SpaceScheme
@@ -161,6 +163,10 @@ class Linear(NamedTuple):
     columns: Array
     rows: Array
     wide: Wide
+    rhs_start: Array
+    rhs_end: Array
+    panel: Array
+    mean: Array
 
     @classmethod
     def empty(cls, intervals: int, space: SpaceScheme = BOX) -> Linear:
@@ -170,5 +176,5 @@ class Linear(NamedTuple):
             space, np.zeros((N, 18, 24)), np.zeros((6, 12)), np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6),
             np.zeros(6), np.zeros((N, 12), np.int64), np.zeros((12, 24)), np.zeros(12, np.int64),
             np.zeros((N + 1, 12)), np.zeros((N, 18)), np.ones(12), np.ones(12),
-            Wide.empty(0 if space == BOX else N),
+            Wide.empty(0 if space == BOX else N), np.zeros(6), np.zeros(6), np.zeros((18, 24)), np.zeros((5, 3)),
         )  # fmt: skip

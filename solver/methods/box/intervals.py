@@ -18,8 +18,6 @@ ends where they belong.
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.kernel import inlined, kernel
 from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, Section, State, V
 from solver.methods.box.space import SpaceScheme
@@ -51,14 +49,16 @@ def measure_drift(state: State, h: float, gain: float, drift: Array) -> None:
 
 @kernel
 def interval_residuals(Y: Array, past: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes, drift: Array,
-                       rows: Array, b: Array) -> None:  # fmt: skip
-    """Write the residuals of (2) to (5), times the row scales, into `b` (N, 12); without the term of A."""
+                       rows: Array, mean: Array, b: Array) -> None:  # fmt: skip
+    """Write the residuals of (2) to (5), times the row scales, into `b` (N, 12); without the term of A.
+
+    `mean` (MEANS, 3) is scratch.
+    """
     a, left, right = space.a, space.w_left, space.w_right
-    mean = np.zeros((MEANS, 3))
     for j in range(len(drift)):
         L, R = Y[j], Y[j + 1]
         _take_means(j, Y, left, right, nodes, mean)
-        kappa, omega, force, q, thrust = mean[0], mean[1], mean[2], mean[3], mean[4]
+        kappa, omega, q, thrust = mean[0], mean[1], mean[3], mean[4]
         for i in range(3):
             m, n = (i + 1) % 3, (i + 2) % 3
             rate = left * (c0 * L[KAPPA + i] + past[j, 12 + i]) + right * (c0 * R[KAPPA + i] + past[j + 1, 12 + i])
@@ -130,7 +130,8 @@ def _compatibility(panel: Array, mean: Array, sign: float, weight: float, top: i
 
 @inlined
 def _translation(panel: Array, mean: Array, sign: float, weight: float, top: int, at: int, space: SpaceScheme, j: int,
-                 Rs: Array, J: Array, R: Array, P_V: Array, P_w: Array, rows: Array, columns: Array) -> None:  # fmt: skip
+                 Rs: Array, J: Array, R: Array, P_V: Array, P_w: Array, rows: Array,
+                 columns: Array) -> None:  # fmt: skip
     """Tangents of (3) and (4) by one node with rotation R; `Rs` are all nodes' rotations."""
     x, y = mean[1, 1], -mean[1, 0]
     velocity, force = sign * rows[3] * columns[V], sign * rows[6] * columns[F]
@@ -151,7 +152,8 @@ def _translation(panel: Array, mean: Array, sign: float, weight: float, top: int
 
 @inlined
 def _rotation(panel: Array, mean: Array, sign: float, weight: float, top: int, at: int, space: SpaceScheme, j: int,
-              Rs: Array, J: Array, R: Array, W_w: Array, stiffness: Array, rows: Array, columns: Array) -> None:  # fmt: skip
+              Rs: Array, J: Array, R: Array, W_w: Array, stiffness: Array, rows: Array,
+              columns: Array) -> None:  # fmt: skip
     """Tangents of (5) by one node with rotation R and moment q = stiffness (kappa - kappa0)."""
     by_kappa, by_omega = rows[9] * columns[KAPPA], weight * rows[9] * columns[OMEGA]
     by_F = weight * rows[9] * columns[F]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.linalg import solveh_banded
 
@@ -110,14 +112,15 @@ class BoxMethod:
             self.trial.Y[:, F:] += dt * self._F_rate
 
     def _ends(self, t: float, dt: float, gain: float) -> EndValues:
-        values: list[Array] = []
-        for end, s in ((self.start, 0.0), (self.end, float(self.s[-1]))):
-            target = end.values(t, dt, gain)
-            follower = self.applied.at_end(t + dt, s, "material")
-            loaded = (end.kinds == 1) | (end.kinds == 3)
-            target[loaded] += follower[loaded]
-            values += [end.kinds, target, self.applied.at_end(t + dt, s, "lab")]
-        return EndValues(*values)
+        start, end = (self._targets(end, s, t, dt, gain) for end, s in ((self.start, 0.0), (self.end, self.s[-1])))
+        return EndValues(self.start.kinds, *start, self.end.kinds, *end)
+
+    def _targets(self, end: DrivenEnd, s: float, t: float, dt: float, gain: float) -> tuple[Array, Array]:
+        """Values of an end's conditions, and dead lab loads on it, at the end of the step."""
+        values = end.values(t, dt, gain)
+        loaded = end.kinds % 2 == 1
+        values[loaded] += self.applied.at_end(t + dt, s, "material")[loaded]
+        return values, self.applied.at_end(t + dt, s, "lab")
 
 
 def _initial_state(initial: Initial, s: Array, section: Section) -> State:
@@ -144,7 +147,7 @@ def _follow_tangents(start: Array, quaternion: Array, s: Array) -> Array:
 
 def _kappa_correction(quaternion: Array, kappa: Array, s: Array) -> Array:
     """The smallest change of kappa (n, 3) that makes its means those of the nodes' relative rotations."""
-    turned = np.array([_turn(a, b) for a, b in zip(quaternion[:-1], quaternion[1:], strict=True)])
+    turned = np.array([_turn(a, b) for a, b in pairwise(quaternion)])
     missing = turned / np.diff(s)[:, None] - 0.5 * (kappa[1:] + kappa[:-1])
     bands = np.full((2, len(missing)), 0.25)
     bands[1] = 0.5

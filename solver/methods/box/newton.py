@@ -10,7 +10,7 @@ from solver.contact.coupling import Touch, add_contact, allowed_fraction, solve_
 from solver.kernel import kernel
 from solver.methods.box.augmented import take_auxiliary, wide_residuals
 from solver.methods.box.elimination import factor, solve
-from solver.methods.box.ends import end_conditions
+from solver.methods.box.ends import Kinds, end_conditions
 from solver.methods.box.fields import KAPPA, F, Linear, Loads, Nodes, Section, State
 from solver.methods.box.generalized_alpha import Scheme, finish, history
 from solver.methods.box.intervals import interval_residuals, measure_drift
@@ -32,10 +32,10 @@ TOLERANCE = 1e-9
 class EndValues(NamedTuple):
     """Conditions at both ends, at the end of the step: kinds, values, and dead lab loads, (6,) each."""
 
-    start_kinds: Array
+    start_kinds: Kinds
     start: Array
     start_dead: Array
-    end_kinds: Array
+    end_kinds: Kinds
     end: Array
     end_dead: Array
 
@@ -72,7 +72,8 @@ def assemble(old: State, new: State, past: Array, c0: float, h: float, section: 
     balance_translation(new, section, loads, past, c0, nodes)
     if touch.present and touch.pairs.counts[0] > 0:
         add_contact(new, nodes, h, touch)
-    interval_residuals(new.Y, past, c0, h, system.space, nodes, drift, system.rows, system.b)
+    interval_residuals(new.Y, past, c0, h, system.space, nodes, drift, system.rows,
+                       system.mean, system.b)  # fmt: skip
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
                    nodes, section, system.b_start, system.start)  # fmt: skip
     end_conditions(new.Y, len(new.Y) - 1, ends.end_kinds, ends.end, ends.end_dead, system.rows, system.columns,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.kernel import kernel
 from solver.loads.fluid import add_added_mass, add_drag
 from solver.methods.box.fields import KAPPA, OMEGA, Loads, Nodes, Section, State, V
@@ -25,7 +23,7 @@ def rotation_tangent(R: Array, x: Array, J: Array, out: Array) -> None:
 @kernel
 def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) -> None:
     """Write positions and orientations of `new` and the nodes' R, J, T with its tangent."""
-    theta, a3 = np.zeros(3), np.array([0.0, 0.0, 1.0])
+    theta = nodes.scratch[0]
     for j in range(len(past)):
         R, J = nodes.R[j], nodes.J[j]
         for i in range(3):
@@ -34,9 +32,10 @@ def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) ->
         turn(old.quaternion[j], theta, new.quaternion[j])
         matrix_of(new.quaternion[j], R)
         right_jacobian(theta, 1.0 / c0, J)
-        rotation_tangent(R, a3, J, nodes.T_w[j])
         for i in range(3):
             nodes.T[j, i] = R[i, 2]
+            for k in range(3):
+                nodes.T_w[j, i, k] = R[i, 0] * J[1, k] - R[i, 1] * J[0, k]
 
 
 @kernel
@@ -76,7 +75,7 @@ def _subtract_lab_moment(R: Array, J: Array, moment: Array, W: Array, W_w: Array
 @kernel
 def balance_translation(new: State, section: Section, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
     """Write P = rho_c A (dV/dt + c V) - B with its tangents by V and omega."""
-    acceleration, u, b = past[0, :3].copy(), past[0, :3].copy(), past[0, :3].copy()
+    acceleration, u, b = nodes.scratch[0], nodes.scratch[1], nodes.scratch[2]
     for j in range(len(past)):
         mass = section.mass[j]
         P, P_V, P_w = nodes.P[j], nodes.P_V[j], nodes.P_w[j]

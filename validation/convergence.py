@@ -21,7 +21,7 @@ from validation.row import Row, observed_order
 FIELDS = ("r", "v", "omega", "kappa", "f")
 T_END = 4.0
 DAMPING = 20.0
-"""1/s; exp(-40) is left of the torsional ringing (90 rad/s, not resolved) that the start of the load excites."""
+"""1/s; exp(-40) is left of the torsional ringing (90 rad/s, not resolved) that the load's start excites."""
 LOOP_DAMPING = 60.0
 CONTACT_SPACING = 2.5e-4
 """m: finer than all intervals, so that the contact force is smooth on the scale of each."""
@@ -50,8 +50,9 @@ def smooth_motion(intervals: int, dt: float, rho_inf: float) -> Scene:
     clamp = End.clamp()
     start = End(clamp.translation, (*clamp.rotation[:2], (Condition("rate", growth),)))
     return Scene(
-        rod=uneven_rod(), initial=Initial.straight(), start=start, end=End.free(), t_end=T_END, output_interval=T_END,
-        damping=DAMPING, distributed=(force, moment), numerics=fixed_steps(intervals, dt, rho_inf), topology=False,
+        rod=uneven_rod(), initial=Initial.straight(), start=start, end=End.free(), t_end=T_END,
+        output_interval=T_END, damping=DAMPING, distributed=(force, moment),
+        numerics=fixed_steps(intervals, dt, rho_inf), topology=False,
     )  # fmt: skip
 
 
@@ -60,7 +61,8 @@ def pressed_loop(intervals: int, dt: float, rho_inf: float) -> Scene:
     settings = {"numerics.intervals": intervals, "contact.spacing": CONTACT_SPACING}
     scene = build_scene(parse_case(apply_settings(load_case("short-loop"), settings)))
     numerics = fixed_steps(intervals, dt, rho_inf)
-    return replace(scene, numerics=numerics, damping=LOOP_DAMPING, t_end=PRESSED, output_interval=PRESSED, topology=False)
+    damped = replace(scene, numerics=numerics, damping=LOOP_DAMPING, topology=False)
+    return replace(damped, t_end=PRESSED, output_interval=PRESSED)
 
 
 def last(scene: Scene) -> Frame:

@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, csr_array
 
 from solver.methods.box.elimination import factor, solve
 from solver.methods.box.generalized_alpha import Scheme, history
-from solver.methods.box.intervals import interval_panel, measure_drift
+from solver.methods.box.intervals import MEANS, interval_panel, measure_drift
 from solver.methods.box.method import BoxMethod
 from solver.methods.box.newton import assemble, set_scales
 from solver.methods.box.shooting import shoot
@@ -42,7 +42,7 @@ class NewtonSystem:
     def factor(self) -> bool:
         """Block elimination: form the panels and factor them."""
         method, work = self._method, self._method.work
-        return bool(factor(method.trial.Y, self._c0, method.h, work.nodes, work.system))
+        return bool(factor(method.trial.Y, self._c0, method.h, work.nodes, method.section, work.system))
 
     def solve(self) -> Array:
         """Block elimination: the solution (12 n,) with the factors."""
@@ -53,7 +53,7 @@ class NewtonSystem:
         """Shooting: the solution (12 n,) and the growth of the homogeneous solutions."""
         method, work = self._method, self._method.work
         x = np.zeros_like(work.system.x)
-        growth = shoot(method.trial.Y, self._c0, method.h, work.nodes, work.system, self._marched, x)
+        growth = shoot(method.trial.Y, self._c0, method.h, work.nodes, method.section, work.system, self._marched, x)
         return x.ravel(), float(growth)
 
     def as_sparse(self) -> tuple[csr_array, Array]:
@@ -69,10 +69,10 @@ class NewtonSystem:
             values.append(block.ravel().copy())
 
         put(system.start, 0, 0)
-        panel, mean = np.zeros((18, 24)), np.zeros((4, 3))
+        panel, mean = np.zeros((18, 24)), np.zeros((MEANS, 3))
         for j in range(N):
-            interval_panel(j, method.trial.Y, self._c0, method.h, BOX, method.work.nodes, system.rows, system.columns,
-                           mean, panel, 6)  # fmt: skip
+            interval_panel(j, method.trial.Y, self._c0, method.h, BOX, method.work.nodes, method.section, system.rows,
+                           system.columns, mean, panel, 6)  # fmt: skip
             put(panel[6:], 6 + 12 * j, 12 * j)
         put(system.end, 6 + 12 * N, 12 * N)
         matrix = coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))).tocsr()

@@ -20,8 +20,8 @@ REMEDY: dict[Outcome, str] = {
     Outcome.COMPLETED: "",
     Outcome.CANCELLED: "submit the case again to run it to its end",
     Outcome.STEP_TOO_SMALL: (
-        "Newton's iteration did not converge even at the smallest step: look for a load or an end that "
-        "jumps, soften the contact law, or use more intervals"
+        "no step was short enough: look for a load or an end that jumps, soften the contact law, or use "
+        "more intervals"
     ),
     Outcome.ROD_CROSSED_ITSELF: (
         "the rod passed through itself: use more intervals, a finer contact spacing, a stiffer contact law, "

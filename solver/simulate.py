@@ -15,6 +15,9 @@ from solver.rod import Array, Rod
 from solver.scene import Contact, End, Fluid, Initial, Numerics, Scene
 from solver.step_control import CONSISTENT_STEPS, StepControl
 
+FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
+"""Outcomes that a shorter step does not avert."""
+
 
 def simulate(scene: Scene) -> Simulation:
     """The run of a scene: iterate over it for its frames, from t = 0 to t_end."""
@@ -49,12 +52,16 @@ class Simulation:
         warm()
         started = process_time()
         t = self._begin()
-        yield self._accounts.frame(0.0)
+        frame = self._accounts.frame(0.0)
+        yield frame
         for output in self._outputs:
             while t < output:
                 t = self._advance(t, *self._control.step_from(t, self._method.contact.step_limit))
             self.statistics.cpu_time += process_time() - started
-            yield self._accounts.frame(output)
+            before, frame = frame, self._accounts.frame(output)
+            if self._scene.contact is not None and _has_crossed(before, frame):
+                raise RunFailed(Outcome.ROD_CROSSED_ITSELF, t, self.statistics.steps, "Tw + Wr - Lk jumped")
+            yield frame
             started = process_time()
 
     def _begin(self) -> float:
@@ -67,38 +74,44 @@ class Simulation:
                 self._take(0.0, dt, dt, iterations)
                 return self._advance(dt, dt, 2 * dt, consistent=True)
             self.statistics.failed_steps += 1
-        raise RunFailed(_fatal(status) or Outcome.STEP_TOO_SMALL, 0.0, 0, "no consistent start was found")
+        refusal, outcome = self._judge(status, 0.0)
+        raise RunFailed(outcome, 0.0, 0, f"no consistent start was found: {refusal}")
 
     def _advance(self, t: float, dt: float, target: float, consistent: bool = False) -> float:
         """Take one step from t, as long as dt or shorter if need be; return the time it reached."""
-        method, control = self._method, self._control
         while True:
-            status, iterations = method.try_step(t, dt, consistent)
+            status, iterations = self._method.try_step(t, dt, consistent)
             self.statistics.newton_iterations += iterations
-            refusal = _refusal(status)
-            if status == CONVERGED:
-                increment = 0.0 if consistent else method.relative_increment(dt)
-                refusal = "the motion is faster than the step" if control.too_coarse(increment) else ""
-                refusal = refusal or method.contact.refusal(method.trial)
-                if not refusal:
-                    break
+            increment = 0.0 if consistent or status != CONVERGED else self._method.relative_increment(dt)
+            refusal, outcome = self._judge(status, increment)
+            if not refusal:
+                break
             self.statistics.failed_steps += 1
-            outcome = _fatal(status)
-            if outcome is None and 0.5 * dt < control.smallest:
-                outcome = Outcome.STEP_TOO_SMALL
-            if outcome is not None:
+            if outcome in FATAL or 0.5 * dt < self._control.smallest:
                 raise RunFailed(outcome, t, self.statistics.steps, refusal)
-            control.rejected(dt)
+            self._control.rejected(dt)
             dt *= 0.5
             target = t + dt
         self._take(t, dt, target, iterations)
         if not consistent:
-            control.accepted(dt, increment, iterations)
+            self._control.accepted(dt, increment, iterations)
         if self._switches and self._switches[0] <= target + 1e-12:
             self._switches.pop(0)
-            method.switch_ends(target)
-            control.restart()
+            self._method.switch_ends(target)
+            self._control.restart()
         return target
+
+    def _judge(self, status: int, increment: float) -> tuple[str, Outcome]:
+        """Why the trial must not be taken, or nothing; and what that is called if no shorter step helps."""
+        if status == LOST_DIGITS:
+            return "the homogeneous solutions grew too much", Outcome.SHOOTING_LOST_DIGITS
+        if status == SINGULAR:
+            return "a pivot vanished", Outcome.SINGULAR_SYSTEM
+        if status != CONVERGED:
+            return "Newton's iteration stalled", Outcome.STEP_TOO_SMALL
+        if self._control.too_coarse(increment):
+            return "the motion is faster than the step", Outcome.STEP_TOO_SMALL
+        return self._method.contact.refusal(self._method.trial), Outcome.ROD_CROSSED_ITSELF
 
     def _take(self, t: float, dt: float, target: float, iterations: int) -> None:
         """Make the step that was tried the state, and enter it in the books."""
@@ -107,16 +120,10 @@ class Simulation:
         self._accounts.after_step(target, dt, iterations)
 
 
-def _fatal(status: int) -> Outcome | None:
-    if status == LOST_DIGITS:
-        return Outcome.SHOOTING_LOST_DIGITS
-    if status == SINGULAR:
-        return Outcome.SINGULAR_SYSTEM
-    return None
-
-
-def _refusal(status: int) -> str:
-    return "" if status == CONVERGED else "Newton's iteration stalled"
+def _has_crossed(before: Frame, frame: Frame) -> bool:
+    """Whether the rod has passed through itself between two frames: Tw + Wr - Lk then jumps by 2."""
+    jump = (frame.Tw + frame.Wr - frame.Lk) - (before.Tw + before.Wr - before.Lk)
+    return abs(jump) > 1.0
 
 
 @cache

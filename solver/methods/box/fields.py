@@ -86,8 +86,8 @@ class Nodes(NamedTuple):
     @classmethod
     def empty(cls, n: int) -> Nodes:
         """Zeros for n nodes."""
-        vectors = {"T", "P", "q", "W"}
-        return cls(*(np.zeros((n, 3) if name in vectors else (n, 3, 3)) for name in cls._fields[:-1]), np.zeros((3, 3)))
+        shapes = {"scratch": (3, 3)} | {name: (n, 3) for name in ("T", "P", "q", "W")}
+        return cls(*(np.zeros(shapes.get(name, (n, 3, 3))) for name in cls._fields))
 
 
 class Loads(NamedTuple):

@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, csr_array
 
 from solver.methods.box.elimination import factor, solve
 from solver.methods.box.generalized_alpha import Scheme, history
-from solver.methods.box.intervals import MEANS, interval_panel, measure_drift
+from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.method import BoxMethod
 from solver.methods.box.newton import assemble, set_scales
 from solver.methods.box.shooting import shoot
@@ -29,7 +29,7 @@ class NewtonSystem:
         self._marched = np.zeros((len(method.s), 12, 7))
         method.trial.Y[:] = method.state.Y
         history(method.state, self._scheme, dt, method.work.past)
-        measure_drift(method.state, method.h, 0.0, method.work.drift)
+        method.work.drift[:] = 0.0
         set_scales(method._scales, self._c0, method.work.system)
         method.contact.prepare(method.state)
 

@@ -86,7 +86,7 @@ class Nodes(NamedTuple):
     @classmethod
     def empty(cls, n: int) -> Nodes:
         """Zeros for n nodes."""
-        shapes = {"scratch": (3, 3)} | {name: (n, 3) for name in ("T", "P", "q", "W")}
+        shapes = {"scratch": (3, 3)} | dict.fromkeys(("T", "P", "q", "W"), (n, 3))
         return cls(*(np.zeros(shapes.get(name, (n, 3, 3))) for name in cls._fields))
 
 

@@ -11,9 +11,9 @@ family), with R_m the mean of the two nodes' rotations:
 (3) and (4) are the paper's equations turned into the lab frame. (2) and (5), and (3) and (4), are adjoint to each
 other: F_m . R_m (omega_m x a3) + omega_m . (a3 x R_m^t F_m) = 0, and likewise for q and omega. So the scheme in space
 conserves energy, at all wave lengths; with (5) in the lab frame it did not, and grew at steps of h / wave speed.
-The terms with g feed back, from the start of the step, what time integration has let drift: kappa against the
-curvature kappa_R of the nodes' own frames, and the stretch. They vanish with the step and keep Tw + Wr = Lk and the
-ends where they belong.
+The terms with g feed back what has drifted: kappa against the curvature kappa_R of the nodes' own frames, and the
+stretch, extrapolated from the last two steps to the end of this one. They keep Tw + Wr = Lk and the ends where they
+belong.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ MEANS = 5
 
 
 @kernel
-def measure_drift(state: State, h: float, gain: float, drift: Array) -> None:
-    """Write h g (kappa_R - kappa)_m, material, and g (Delta r - h T_m), lab, into `drift` (N, 6)."""
+def measure_drift(state: State, h: float, drift: Array) -> None:
+    """Write h (kappa_R - kappa)_m, material, and Delta r - h T_m, lab, into `drift` (N, 6)."""
     turn = drift[0, :3].copy()
     left, right = drift[0, :3].repeat(3).reshape(3, 3), drift[0, :3].repeat(3).reshape(3, 3)
     matrix_of(state.quaternion[0], right)
@@ -42,9 +42,9 @@ def measure_drift(state: State, h: float, gain: float, drift: Array) -> None:
         relative_rotation(state.quaternion[j], state.quaternion[j + 1], turn)
         for i in range(3):
             kappa = 0.5 * (state.Y[j, KAPPA + i] + state.Y[j + 1, KAPPA + i])
-            drift[j, i] = gain * (turn[i] - h * kappa)
+            drift[j, i] = turn[i] - h * kappa
             stretch = state.r[j + 1, i] - state.r[j, i] - 0.5 * h * (left[i, 2] + right[i, 2])
-            drift[j, 3 + i] = gain * stretch
+            drift[j, 3 + i] = stretch
 
 
 @kernel

@@ -14,16 +14,18 @@ from solver.loads.applied import AppliedLoads
 from solver.measures.energies import powers
 from solver.methods.box.fields import KAPPA, OMEGA, F, Loads, Section, State, V, sample
 from solver.methods.box.generalized_alpha import BACKWARD_EULER, Scheme, rescale_aux
+from solver.methods.box.intervals import measure_drift
 from solver.methods.box.newton import EndValues, Scales, Work, step
 from solver.methods.box.space import SpaceScheme
 from solver.rod import Array
 from solver.rotation import relative_rotation, rotate_back, tangents_of
 from solver.scene import Initial, Scene
 
-DRIFT_FEEDBACK = 0.5
-"""Part of the constraints' drift that a step takes back, if it is no shorter than FEEDBACK_STEP dt_max; a shorter
-one takes back less, or the correction would be a jolt."""
-FEEDBACK_STEP = 2.0**-4
+DRIFT_FEEDBACK = 30.0
+"""How often the constraints' drift is taken back in the run, to t_end. The rate must not depend on the step, or the
+order in dt is lost; without it |Tw + Wr - Lk| of the paper's scene is four times as large."""
+LARGEST_FEEDBACK = 0.2
+"""Part of the drift that a step may take back at the most: more would be a jolt."""
 
 SMALL_MOTION = 1e-6
 """In rod lengths a step: motion below it does not shorten the step."""
@@ -42,16 +44,19 @@ class BoxMethod:
         self.state = _initial_state(scene.initial, self.s, self.section)
         self.contact = SelfContact(scene.contact, self.section, self.s)
         self.trial = State.empty(len(self.s))
-        self._feedback_step = FEEDBACK_STEP * numerics.dt_max
         self._scheme = Scheme.of(numerics.rho_inf)
         self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
+        self._gain = DRIFT_FEEDBACK / scene.t_end
+        self._drift, self._drift_before = np.zeros((numerics.intervals, 6)), np.zeros((numerics.intervals, 6))
+        measure_drift(self.state, self.h, self._drift)
+        self._drift_before[:] = self._drift
         self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space))
         self.shortest_step = 0.0
         """Step (s) below which the scheme along s does not resolve the equations; 0 for the box scheme."""
         if numerics.rho_inf_space < 1.0:
             self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / self.section.stiffness[:, 0])))
-        self._last_dt, self._consistent = 0.0, False
+        self._last_dt, self._taken_dt, self._consistent = 0.0, 0.0, False
         self._F_rate = np.zeros((len(self.s), 3))
         self.loads: Loads = self.applied.at(0.0)
 
@@ -64,13 +69,15 @@ class BoxMethod:
         if not consistent and self._last_dt > 0.0 and dt != self._last_dt:
             rescale_aux(self.state, dt / self._last_dt)
         self._last_dt, self._consistent = dt, consistent
-        gain = DRIFT_FEEDBACK / max(dt, self._feedback_step)
+        ahead = dt / self._taken_dt if dt <= 2.0 * self._taken_dt else 0.0
+        gain = min(self._gain, LARGEST_FEEDBACK / dt)
         self.loads = self.applied.at(t + dt)
+        self.work.drift[:] = gain * (self._drift + ahead * (self._drift - self._drift_before))
         self._guess(dt, consistent)
         self.contact.prepare(self.state)
         status, iterations = step(
             self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt, gain),
-            self._scales, gain, self.contact.touch, self.work,
+            self._scales, self.contact.touch, self.work,
         )  # fmt: skip
         return int(status), int(iterations)
 
@@ -83,7 +90,9 @@ class BoxMethod:
             shift = new.r[node : node + 1] - old.r[node : node + 1]
             turned = self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0
             end.follow(shift[0] if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift)[0], turned)
-        self.state, self.trial = new, old
+        self.state, self.trial, self._taken_dt = new, old, dt
+        self._drift, self._drift_before = self._drift_before, self._drift
+        measure_drift(self.state, self.h, self._drift)
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""

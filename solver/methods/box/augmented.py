@@ -20,7 +20,7 @@ from solver.rod import Array
 def wide_residuals(Y: Array, past: Array, c0: float, h: float, nodes: Nodes, system: Linear) -> None:
     """Write the residuals of the wide system; those of the box part, `system.b`, are complete but for A."""
     wide, rows, gamma = system.wide, system.rows, system.space.gamma
-    nothing, at_start = np.zeros((1, 6)), np.zeros((1, 12))
+    nothing, at_start = np.zeros((1, 3)), np.zeros((1, 12))
     interval_residuals(Y, past, c0, h, AT_LEFT_NODE, nodes, nothing, rows, system.mean, at_start)
     wide.b_start[:6] = system.b_start
     for k in range(12):

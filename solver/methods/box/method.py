@@ -14,18 +14,18 @@ from solver.loads.applied import AppliedLoads
 from solver.measures.energies import powers
 from solver.methods.box.fields import KAPPA, OMEGA, F, Loads, Section, State, V, sample
 from solver.methods.box.generalized_alpha import BACKWARD_EULER, Scheme, rescale_aux
-from solver.methods.box.intervals import measure_drift
+from solver.methods.box.intervals import measure_stretch
 from solver.methods.box.newton import EndValues, Scales, Work, step
 from solver.methods.box.space import SpaceScheme
 from solver.rod import Array
 from solver.rotation import relative_rotation, rotate_back, tangents_of
 from solver.scene import Initial, Scene
 
-DRIFT_FEEDBACK = 30.0
-"""How often the constraints' drift is taken back in the run, to t_end. The rate must not depend on the step, or the
-order in dt is lost; without it |Tw + Wr - Lk| of the paper's scene is four times as large."""
+STRETCH_FEEDBACK = 60.0
+"""How many times in a run, to t_end, the stretch is taken back. The rate must not depend on the step, or the order in
+dt is lost; without it |Tw + Wr - Lk| of the paper's scene is three times as large."""
 LARGEST_FEEDBACK = 0.2
-"""Part of the drift that a step may take back at the most: more would be a jolt."""
+"""Part of a drift that a step may take back at the most: more would be a jolt."""
 
 SMALL_MOTION = 1e-6
 """In rod lengths a step: motion below it does not shorten the step."""
@@ -41,16 +41,15 @@ class BoxMethod:
         self.section: Section = sample(scene.rod, self.s)
         self.applied = AppliedLoads(scene, self.section, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
-        self.state = _initial_state(scene.initial, self.s, self.section)
+        self.state, correction = _initial_state(scene.initial, self.s, self.section)
+        self.section.kappa0[:] += correction
         self.contact = SelfContact(scene.contact, self.section, self.s)
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)
         self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
-        self._gain = DRIFT_FEEDBACK / scene.t_end
-        self._drift, self._drift_before = np.zeros((numerics.intervals, 6)), np.zeros((numerics.intervals, 6))
-        measure_drift(self.state, self.h, self._drift)
-        self._drift_before[:] = self._drift
+        self._gain = STRETCH_FEEDBACK / scene.t_end
+        self._stretch, self._stretch_before = np.zeros((numerics.intervals, 3)), np.zeros((numerics.intervals, 3))
         self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space))
         self.shortest_step = 0.0
         """Step (s) below which the scheme along s does not resolve the equations; 0 for the box scheme."""
@@ -72,11 +71,11 @@ class BoxMethod:
         ahead = dt / self._taken_dt if dt <= 2.0 * self._taken_dt else 0.0
         gain = min(self._gain, LARGEST_FEEDBACK / dt)
         self.loads = self.applied.at(t + dt)
-        self.work.drift[:] = gain * (self._drift + ahead * (self._drift - self._drift_before))
+        self.work.feedback[:] = gain * (self._stretch + ahead * (self._stretch - self._stretch_before))
         self._guess(dt, consistent)
         self.contact.prepare(self.state)
         status, iterations = step(
-            self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt, gain),
+            self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt),
             self._scales, self.contact.touch, self.work,
         )  # fmt: skip
         return int(status), int(iterations)
@@ -91,8 +90,8 @@ class BoxMethod:
             turned = self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0
             end.follow(shift[0] if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift)[0], turned)
         self.state, self.trial, self._taken_dt = new, old, dt
-        self._drift, self._drift_before = self._drift_before, self._drift
-        measure_drift(self.state, self.h, self._drift)
+        self._stretch, self._stretch_before = self._stretch_before, self._stretch
+        measure_stretch(self.state, self.h, self._stretch)
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
@@ -102,7 +101,7 @@ class BoxMethod:
 
     def velocity(self) -> Array:
         """v (n, 3), material."""
-        return rotate_back(self.state.quaternion, self.state.Y[:, V : V + 3])
+        return rotate_back(self.state.quaternion, self.state.Y[:, V : V + 3].copy())
 
     def relative_increment(self, dt: float) -> float:
         """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|."""
@@ -120,30 +119,36 @@ class BoxMethod:
             self.trial.Y[:, :9] += dt * self.state.rate
             self.trial.Y[:, F:] += dt * self._F_rate
 
-    def _ends(self, t: float, dt: float, gain: float) -> EndValues:
-        start, end = (self._targets(end, s, t, dt, gain) for end, s in ((self.start, 0.0), (self.end, self.s[-1])))
+    def _ends(self, t: float, dt: float) -> EndValues:
+        start, end = (self._targets(end, s, t, dt) for end, s in ((self.start, 0.0), (self.end, self.s[-1])))
         return EndValues(self.start.kinds, *start, self.end.kinds, *end)
 
-    def _targets(self, end: DrivenEnd, s: float, t: float, dt: float, gain: float) -> tuple[Array, Array]:
+    def _targets(self, end: DrivenEnd, s: float, t: float, dt: float) -> tuple[Array, Array]:
         """Values of an end's conditions, and dead lab loads on it, at the end of the step."""
-        values = end.values(t, dt, gain)
+        values = end.values(t, dt, LARGEST_FEEDBACK / dt)
         loaded = end.kinds % 2 == 1
         values[loaded] += self.applied.at_end(t + dt, s, "material")[loaded]
         return values, self.applied.at_end(t + dt, s, "lab")
 
 
-def _initial_state(initial: Initial, s: Array, section: Section) -> State:
+def _initial_state(initial: Initial, s: Array, section: Section) -> tuple[State, Array]:
+    """The state at t = 0, and by how much its kappa (n, 3) differs from the centreline's own.
+
+    kappa's means must be the relative rotations of the nodes. kappa0 is to be shifted by as much, so that a rod whose
+    natural shape is its initial one starts without stress.
+    """
     state = State.empty(len(s))
     r, quaternion, kappa = nodes_at_rest(initial, s)
     state.quaternion[:] = quaternion
     state.r[:] = _follow_tangents(r[0], quaternion, s)
-    state.Y[:, KAPPA : KAPPA + 3] = kappa + _kappa_correction(quaternion, kappa, s)
+    correction = _kappa_correction(quaternion, kappa, s)
+    state.Y[:, KAPPA : KAPPA + 3] = kappa + correction
     spin = np.array(initial.angular_velocity, dtype=float)
     weights = section.mass * np.gradient(s) * np.where((s == s[0]) | (s == s[-1]), 0.5, 1.0)
     centre = np.average(state.r, axis=0, weights=weights)
     state.Y[:, V : V + 3] = np.array(initial.velocity, dtype=float) + np.cross(spin, state.r - centre)
     state.Y[:, OMEGA : OMEGA + 3] = rotate_back(quaternion, np.tile(spin, (len(s), 1)))
-    return state
+    return state, correction
 
 
 def _follow_tangents(start: Array, quaternion: Array, s: Array) -> Array:

@@ -65,14 +65,14 @@ def set_scales(scales: Scales, c0: float, system: Linear) -> None:
 
 @kernel
 def assemble(old: State, new: State, past: Array, c0: float, h: float, section: Section, loads: Loads,
-             ends: EndValues, nodes: Nodes, drift: Array, system: Linear, touch: Touch) -> None:  # fmt: skip
+             ends: EndValues, nodes: Nodes, feedback: Array, system: Linear, touch: Touch) -> None:  # fmt: skip
     """Residuals of every equation at the iterate `new`, the tangents at the nodes and those of the ends."""
     place_nodes(old, new, past, c0, nodes)
     balance_rotation(new, section, loads, past, c0, nodes)
     balance_translation(new, section, loads, past, c0, nodes)
     if touch.present and touch.pairs.counts[0] > 0:
         add_contact(new, nodes, h, touch)
-    interval_residuals(new.Y, past, c0, h, system.space, nodes, drift, system.rows,
+    interval_residuals(new.Y, past, c0, h, system.space, nodes, feedback, system.rows,
                        system.mean, system.b)  # fmt: skip
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
                    nodes, section, system.b_start, system.start)  # fmt: skip
@@ -103,7 +103,7 @@ class Work(NamedTuple):
     """Arrays that a step writes and nobody keeps."""
 
     past: Array
-    drift: Array
+    feedback: Array
     nodes: Nodes
     system: Linear
     marched: Array
@@ -113,7 +113,7 @@ class Work(NamedTuple):
         """Zeros for a rod of `intervals` intervals."""
         n = intervals + 1
         marched = np.zeros((n if shooting else 1, 12, 7))
-        return cls(np.zeros((n, 15)), np.zeros((intervals, 6)), Nodes.empty(n), Linear.empty(intervals, space), marched)
+        return cls(np.zeros((n, 15)), np.zeros((intervals, 3)), Nodes.empty(n), Linear.empty(intervals, space), marched)
 
 
 @kernel
@@ -137,7 +137,7 @@ def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: S
          ends: EndValues, scales: Scales, touch: Touch, work: Work) -> tuple[int, int]:  # fmt: skip
     """Advance `old` by dt into `new`; `new.Y` is the first guess. Returns how it ended and the iterations.
 
-    `work.drift` holds the drift of the constraints times its feedback. Convergence: the increment, or its
+    `work.feedback` holds the stretch times its feedback rate. Convergence: the increment, or its
     extrapolation for a quadratically converging iteration, is below 1e-9 of the natural units.
     """
     c0 = scheme.alpha_m / (scheme.alpha_f * scheme.gamma * dt)
@@ -146,7 +146,7 @@ def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: S
     set_scales(scales, c0, system)
     before = 0.0
     for iteration in range(1, LARGEST_ITERATIONS + 1):
-        assemble(old, new, work.past, c0, h, section, loads, ends, work.nodes, work.drift, system, touch)
+        assemble(old, new, work.past, c0, h, section, loads, ends, work.nodes, work.feedback, system, touch)
         status = solve_linear(new.Y, c0, h, section, scales, touch, work)
         if status != CONVERGED:
             return status, iteration

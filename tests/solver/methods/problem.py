@@ -14,7 +14,7 @@ from solver.kernel import kernel
 from solver.methods.box.augmented import wide_panel, wide_start
 from solver.methods.box.fields import Loads, Section, State, sample
 from solver.methods.box.generalized_alpha import Scheme, history
-from solver.methods.box.intervals import MEANS, interval_panel, measure_drift
+from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.method import _initial_state
 from solver.methods.box.newton import EndValues, Scales, Work, assemble, set_scales
 from solver.methods.box.space import SpaceScheme
@@ -77,7 +77,7 @@ class Problem:
         """All residuals in the order of the system's rows."""
         system = self.work.system
         assemble(self.old, self.new, self.work.past, self.c0, self.h, self.section, self.loads, self.ends,
-                 self.work.nodes, self.work.drift, system, self.contact.touch)  # fmt: skip
+                 self.work.nodes, self.work.feedback, system, self.contact.touch)  # fmt: skip
         if self.wide:
             parts = [system.wide.b_start, system.wide.b.ravel(), system.b_end]
         else:
@@ -164,7 +164,7 @@ def problem(
     scene = Scene(rod(diameter), two_turns(), End.clamp(), End.clamp(), 1.0, 1.0, contact=contact, numerics=numerics)
     n, s, h = intervals + 1, np.linspace(0.0, LENGTH, intervals + 1), LENGTH / intervals
     section = sample(scene.rod, s)
-    old, new = _initial_state(scene.initial, s, section), State.empty(n)
+    old, new = _initial_state(scene.initial, s, section)[0], State.empty(n)
     natural = np.repeat([0.05, 2.0, 3.0, 1e-3], 3)
     old.Y[:] += natural * random.normal(size=(n, 12))
     old.rate[:] = natural[:9] * random.normal(size=(n, 9))
@@ -180,8 +180,7 @@ def problem(
     work.system.wide.A[:] = 0.1 * random.normal(size=work.system.wide.A.shape)
     set_scales(Scales(LENGTH, float(section.stiffness[:, 0].mean()), False), scheme.c0(dt), work.system)
     history(old, scheme, dt, work.past)
-    measure_drift(old, h, work.drift)
-    work.drift *= 10.0
+    work.feedback[:] = 1e-4 * random.normal(size=work.feedback.shape)
     touching = SelfContact(contact, section, s)
     if contact is not None:
         touching.prepare(old)

@@ -25,7 +25,7 @@ class NewtonSystem:
         self._method, self._dt = method, dt
         self._scheme = Scheme.of(rho_inf)
         self._c0 = self._scheme.c0(dt)
-        self._ends = method._ends(0.0, dt, 0.0)
+        self._ends = method._ends(0.0, dt)
         self._marched = np.zeros((len(method.s), 12, 7))
         method.trial.Y[:] = method.state.Y
         history(method.state, self._scheme, dt, method.work.past)

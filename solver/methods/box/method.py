@@ -24,8 +24,8 @@ from solver.scene import Initial, Scene
 STRETCH_FEEDBACK = 60.0
 """How many times in a run, to t_end, the stretch is taken back. The rate must not depend on the step, or the order in
 dt is lost; without it |Tw + Wr - Lk| of the paper's scene is three times as large."""
-LARGEST_FEEDBACK = 0.2
-"""Part of a drift that a step may take back at the most: more would be a jolt."""
+LARGEST_FEEDBACK = 0.5
+"""Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 
 SMALL_MOTION = 1e-6
 """In rod lengths a step: motion below it does not shorten the step."""

@@ -177,8 +177,8 @@ def serve(told: argparse.Namespace) -> int:
 
 
 def stop_on_signals() -> None:
-    """Have SIGTERM and SIGHUP do what Ctrl-C does."""
-    for number in (signal.SIGTERM, signal.SIGHUP):
+    """Have SIGTERM and SIGHUP do what Ctrl-C does, and SIGINT too where a shell's background made it ignored."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.default_int_handler)
 
 

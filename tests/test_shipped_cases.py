@@ -55,7 +55,12 @@ def test_the_energy_balance_closes(name: str):
     assert max(abs(f.energy_balance) for f in frames) < 0.01 * max(stored)
 
 
-@pytest.mark.parametrize("name", shipped_cases())
+STRETCHES = pytest.mark.xfail(strict=True, reason="goyal-2003 stretches by 6.2e-3 at 32.2 s, 1.45 times the bound")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[STRETCHES] if name == "goyal-2003" else []) for name in shipped_cases()]
+)
 def test_the_rod_keeps_its_length_and_its_frames_stay_orthonormal(name: str):
     scene, frames = run(name)
     ds = scene.rod.length / scene.numerics.intervals
@@ -65,7 +70,7 @@ def test_the_rod_keeps_its_length_and_its_frames_stay_orthonormal(name: str):
         # (kappa ds)^2 / 8; inextensibility itself holds to second order in dt.
         curvature = np.linalg.norm(frame.kappa[:, :2], axis=1).max()
         chords = np.linalg.norm(np.diff(frame.r, axis=0), axis=1)
-        assert chords == pytest.approx(ds, rel=5e-4 + (curvature * ds) ** 2 / 4)
+        assert chords == pytest.approx(ds, rel=5e-4 + (curvature * ds) ** 2 / 8)
 
 
 def test_the_papers_cable_meets_the_milestones(tmp_path: Path):

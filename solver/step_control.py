@@ -47,10 +47,13 @@ class StepControl:
 
     def accepted(self, dt: float, relative_increment: float, iterations: int) -> None:
         """Learn from a step: its error relative to its motion, and Newton's iterations."""
-        factor = GROWTH if iterations <= 4 else (1.0 if iterations <= 7 else 0.7)
+        taken = max(dt, 0.5 * self._wanted)
+        # growth starts from the step that was wanted: from one that was cut to end on a frame it would never double
+        grown = GROWTH * (self._wanted if 2.0 * dt >= self._wanted else taken)
+        longest = grown if iterations <= 4 else (taken if iterations <= 7 else 0.7 * taken)
         if relative_increment > 0.0:
-            factor = min(factor, max(0.5, 0.9 * (self._tolerance / relative_increment) ** 0.5))
-        self._wanted = min(self._dt_max, max(dt, 0.5 * self._wanted) * factor)
+            longest = min(longest, max(0.5 * taken, 0.9 * dt * (self._tolerance / relative_increment) ** 0.5))
+        self._wanted = min(self._dt_max, longest)
 
     def too_coarse(self, relative_increment: float) -> bool:
         """Whether a step's error is so large that it must be taken again."""

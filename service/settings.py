@@ -1,47 +1,81 @@
-"""What the service is told by its environment; every setting has a default that needs no file."""
+"""What the service is told: by its environment, over one settings file, over defaults that need neither."""
 
 from __future__ import annotations
 
 import os
+import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import fields
 from pathlib import Path
+from typing import Annotated, Any
 from urllib.parse import urlsplit
 
+from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass
 
-@dataclass(frozen=True)
+FILE = "HOCKLE_SETTINGS"
+"""The variable that names the settings file (TOML, with the names of the fields below)."""
+
+Positive = Field(gt=0, allow_inf_nan=False)
+
+
+def _kombu_url(url: str) -> str:
+    """A Redis address as kombu spells it: a Unix socket is redis+socket there, unix elsewhere."""
+    parts = urlsplit(url)
+    if parts.scheme == "unix":
+        return f"redis+socket://{parts.path}"
+    if url and parts.scheme not in ("redis", "rediss", "redis+socket"):
+        raise ValueError(f"must be redis://, rediss:// or unix://, got scheme {parts.scheme!r}")
+    return url
+
+
+def _sqlalchemy_url(url: str) -> str:
+    """A PostgreSQL address as SQLAlchemy spells it, with the driver that is installed."""
+    scheme, separator, rest = url.partition("://")
+    if scheme in ("postgres", "postgresql"):
+        return f"postgresql+psycopg{separator}{rest}"
+    if url and scheme not in ("postgresql+psycopg", "sqlite"):
+        raise ValueError(f"must be postgresql:// or sqlite://, got scheme {scheme!r}")
+    return url
+
+
+@dataclass(frozen=True, config=ConfigDict(extra="forbid"))
 class Settings:
     """Where the service keeps things, and its times in seconds.
 
-    `broker` is a kombu URL, or empty: messages then lie as files under `data` (no broker process).
-    `lease`: how long a silent worker keeps its job. `attempts`: how often a lost job is tried.
-    `ring_again`: how long an accepted job waits before the workers are told of it again.
+    `data` is of one host. `database` is a postgresql:// URL, or empty: SQLite in `data`. `broker` is a
+    redis:// URL, or empty: messages then lie as files in `data`. `store` holds datasets and
+    checkpoints, empty for `data`; several hosts share it.
+    `lease`: how long a silent worker keeps its job. `attempts`: how often a job is tried that gets no
+    farther. `checkpoint`: how much running a lost worker may cost.
     """
 
     data: Path = Path("var")
-    broker: str = ""
-    lease: float = 30.0
-    attempts: int = 3
-    ring_again: float = 30.0
-
-    def __post_init__(self) -> None:
-        for name in ("lease", "attempts", "ring_again"):
-            if not getattr(self, name) > 0:
-                raise ValueError(f"{name} must be > 0, got {getattr(self, name)}")
+    database: Annotated[str, AfterValidator(_sqlalchemy_url), Field(repr=False)] = ""
+    broker: Annotated[str, AfterValidator(_kombu_url), Field(repr=False)] = ""
+    store: Path | None = None
+    lease: Annotated[float, Positive] = 30.0
+    attempts: Annotated[int, Positive] = 3
+    checkpoint: Annotated[float, Positive] = 10.0
 
     @property
     def database_url(self) -> str:
         """The registry's address for SQLAlchemy."""
-        return f"sqlite:///{self.data.absolute() / 'registry.db'}"
+        return self.database or f"sqlite:///{self.data.absolute() / 'registry.db'}"
 
     @property
     def datasets(self) -> Path:
         """The directory of the published datasets."""
-        return self.data / "datasets"
+        return (self.store or self.data) / "datasets"
+
+    @property
+    def work(self) -> Path:
+        """The directory of what unfinished jobs have reached: one directory each."""
+        return (self.store or self.data) / "work"
 
     @property
     def locks(self) -> Path:
-        """The directory of the jobs' lock files."""
+        """The directory of the lock files of this host."""
         return self.data / "locks"
 
     @property
@@ -51,47 +85,39 @@ class Settings:
 
     def make_directories(self) -> None:
         """Make the data directory and what it holds, for this user only."""
-        for directory in (self.data, self.datasets, self.locks, self.messages):
+        for directory in (self.data, self.datasets, self.work, self.locks, self.messages):
             directory.mkdir(mode=0o700, parents=True, exist_ok=True)
 
     def environment(self) -> dict[str, str]:
-        """The environment variables from which `from_environment` makes the same settings."""
-        return {
-            "HOCKLE_DATA": str(self.data.absolute()),
-            "HOCKLE_LEASE": repr(self.lease),
-            "HOCKLE_ATTEMPTS": str(self.attempts),
-            "HOCKLE_RING_AGAIN": repr(self.ring_again),
-            "REDIS_URL": self.broker,
-        }
+        """The environment variables from which `from_environment` makes the same settings, without a file."""
+        told = {field.name: getattr(self, field.name) for field in fields(self)}
+        told |= {name: path.absolute() for name, path in told.items() if isinstance(path, Path)}
+        return {FILE: ""} | {variable(name): "" if value is None else str(value) for name, value in told.items()}
+
+
+def variable(field: str) -> str:
+    """The environment variable of a setting."""
+    return "REDIS_URL" if field == "broker" else f"HOCKLE_{field.upper()}"
 
 
 def from_environment(environment: Mapping[str, str] = os.environ) -> Settings:
-    """Read HOCKLE_DATA, HOCKLE_LEASE, HOCKLE_ATTEMPTS, HOCKLE_RING_AGAIN and REDIS_URL.
+    """The settings of the file that HOCKLE_SETTINGS names, if any, with those of the environment over them.
 
-    Raises ValueError that names the variable, its value and the rule.
+    Raises ValueError that names the setting, its value and the rule; OSError where there is no such file.
     """
-    return Settings(
-        data=Path(environment.get("HOCKLE_DATA") or "var"),
-        broker=_kombu_url(environment.get("REDIS_URL", "")),
-        lease=_number(environment, "HOCKLE_LEASE", Settings.lease),
-        attempts=int(_number(environment, "HOCKLE_ATTEMPTS", Settings.attempts)),
-        ring_again=_number(environment, "HOCKLE_RING_AGAIN", Settings.ring_again),
-    )
-
-
-def _number(environment: Mapping[str, str], name: str, default: float) -> float:
-    told = environment.get(name) or str(default)
+    told: dict[str, Any] = {}
+    if path := environment.get(FILE):
+        told = tomllib.loads(Path(path).read_text())
+    names = {field.name: variable(field.name) for field in fields(Settings)}
+    told |= {name: environment[its] for name, its in names.items() if environment.get(its)}
     try:
-        return float(told)
-    except ValueError:
-        raise ValueError(f"{name} must be a number, got {told!r}") from None
+        return TypeAdapter(Settings).validate_python(told)
+    except ValidationError as error:
+        raise ValueError("; ".join(_told(fault, names) for fault in error.errors())) from None
 
 
-def _kombu_url(url: str) -> str:
-    """A Redis address as kombu spells it: a Unix socket is redis+socket there, unix elsewhere."""
-    parts = urlsplit(url)
-    if parts.scheme == "unix":
-        return f"redis+socket://{parts.path}"
-    if url and parts.scheme not in ("redis", "rediss", "redis+socket"):
-        raise ValueError(f"REDIS_URL must be redis://, rediss:// or unix://, got scheme {parts.scheme!r}")
-    return url
+def _told(fault: Any, names: Mapping[str, str]) -> str:
+    """One fault. The value of an address is not told: it may hold a password."""
+    name = str(fault["loc"][0])
+    value = "" if name in ("database", "broker") else f", got {fault['input']!r}"
+    return f"{names.get(name, name)}: {fault['msg']}{value}"

@@ -12,8 +12,8 @@ from celery import Celery
 from celery.signals import worker_init, worker_process_init
 
 import solver
+from service.jobs import Database
 from service.jobs.doorbell import TASK, celery_settings
-from service.jobs.registry import Registry
 from service.settings import from_environment
 from worker import run
 from worker.parent import die_with_parent
@@ -25,15 +25,15 @@ main_process = os.getpid()
 
 
 @cache
-def registry() -> Registry:
-    """This process's own connection to the registry: none may cross a fork."""
-    return Registry(settings.database_url)
+def database() -> Database:
+    """This process's own connections to the registry: none may cross a fork."""
+    return Database(settings.database_url)
 
 
 @app.task(name=TASK)
-def run_job(job_id: str) -> None:
-    """Run one job; its row says the rest."""
-    run.run_job(job_id, registry(), settings)
+def run_next() -> None:
+    """Run one job; the registry says which."""
+    run.run_next(database(), settings)
 
 
 @worker_init.connect

@@ -11,7 +11,7 @@ from fastapi import FastAPI
 from service.api import cases, datasets, front, jobs, problems
 from service.api.guard import LoopbackGuard
 from service.api.parts import Parts
-from service.jobs import Registry
+from service.jobs import Database, Registry
 from service.jobs.doorbell import Doorbell
 from service.jobs.reconciler import Reconciler
 from service.settings import Settings
@@ -23,12 +23,13 @@ def create_app(settings: Settings) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         settings.make_directories()
-        parts = Parts(settings, Registry(settings.database_url), Doorbell(settings))
+        database = Database(settings.database_url)
+        parts = Parts(settings, Registry(database), Doorbell(settings))
         app.state.parts = parts
-        with Reconciler(parts.registry, parts.doorbell, settings):
+        with Reconciler(database, parts.doorbell, settings):
             yield
         parts.doorbell.close()
-        parts.registry.close()
+        database.close()
 
     app = FastAPI(title="hockle", version=version("hockle"), lifespan=lifespan,
                   openapi_url="/v1/openapi.json", docs_url=None, redoc_url=None, redirect_slashes=False)

@@ -32,7 +32,7 @@ def submit(spec: Annotated[CaseSpec, Depends(told_case)], parts: InParts,
            response: Response, afterwards: BackgroundTasks) -> JobDocument:
     """Accept a case to be run; the job is on disk when the answer comes."""
     job = parts.registry.submit(NewJob(spec.document(), title=spec.title or spec.name))
-    afterwards.add_task(parts.doorbell.ring, job.id)
+    afterwards.add_task(parts.doorbell.ring)
     response.headers["Location"] = address(job.id)
     response.headers["Retry-After"] = POLL_AFTER
     return document(job)

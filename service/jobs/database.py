@@ -1,97 +1,103 @@
-"""The registry's table and how its database is opened."""
+"""How the registry's database is opened, read and written."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import (
-    Boolean,
-    Column,
-    Engine,
-    Float,
-    Index,
-    Integer,
-    MetaData,
-    String,
-    Table,
-    Text,
-    create_engine,
-    event,
-    insert,
-    select,
-)
+from sqlalchemy import ColumnElement, Connection, Engine, create_engine, event, insert, update
 
-from service.jobs.job import Dataset, Job
-from service.jobs.lifecycle import Status
+from service.jobs.lifecycle import ENDED, Status, allowed_before
+from service.jobs.migrations import migrate
+from service.jobs.tables import events, jobs
 
-SCHEMA_VERSION = 1
-metadata = MetaData()
-
-schema_version = Table("schema_version", metadata, Column("version", Integer, primary_key=True))
-
-jobs = Table(
-    "jobs",
-    metadata,
-    Column("id", String(26), primary_key=True),
-    Column("status", String(10), nullable=False),
-    Column("title", Text, nullable=False),
-    Column("case_json", Text, nullable=False),
-    Column("case_sha256", String(64), nullable=False),
-    Column("progress", Float, nullable=False, default=0.0),
-    Column("t", Float, nullable=False, default=0.0),
-    Column("outcome", String(64), nullable=False, default=""),
-    Column("message", Text, nullable=False, default=""),
-    Column("cancel_requested", Boolean, nullable=False, default=False),
-    Column("created", Float, nullable=False),
-    Column("rung", Float, nullable=False),
-    Column("started", Float),
-    Column("finished", Float),
-    Column("attempts", Integer, nullable=False, default=0),
-    Column("epoch", Integer, nullable=False, default=0),
-    Column("lease_until", Float),
-    Column("version", Integer, nullable=False, default=1),
-    Column("worker", Text, nullable=False, default=""),
-    Column("dataset_file", Text),
-    Column("dataset_sha256", String(64)),
-    Column("dataset_bytes", Integer),
-    Index("jobs_by_status", "status", "id"),
-)
-
-JOB_COLUMNS = [column for column in jobs.columns if column.name not in ("case_json", "rung")]
+BUSY = 20.0
+"""Seconds for which a write waits for another one, or for a connection."""
 
 
-class WrongSchema(Exception):
-    """The database was written by another version of hockle."""
+@dataclass(frozen=True)
+class Transaction:
+    """Writes that are made together, or not at all. `now` is the Unix time they happen at."""
+
+    connection: Connection
+    now: float
+
+    def change(self, *where: ColumnElement[bool], event: str = "", status: Status | None = None,
+               **values: Any) -> list[str]:
+        """Change the jobs that meet `where`, and give their ids.
+
+        Each gets the next version, and the event if one is named. To a new `status` go only those that
+        the lifecycle lets; in one that ends them they lose their lease.
+        """
+        if status is not None:
+            where = (*where, jobs.c.status.in_(allowed_before(status)))
+            values |= {"status": status.value}
+            if status is not Status.RUNNING:
+                values |= {"lease_until": None}
+            if status in ENDED:
+                values |= {"finished": self.now}
+        values = {"version": jobs.c.version + 1} | values
+        changed = self.connection.execute(
+            update(jobs).where(*where).values(**values).returning(jobs.c.id, jobs.c.version, jobs.c.epoch)
+        ).all()
+        if event:
+            for job_id, version, epoch in changed:
+                told = {"status": status.value} if status is not None else {}
+                self.note(job_id, version, event, told | {"epoch": epoch})
+        return [row.id for row in changed]
+
+    def note(self, job_id: str, version: int, kind: str, data: Mapping[str, Any]) -> None:
+        """Write an event of a job, told by its version."""
+        self.connection.execute(insert(events), {"job_id": job_id, "seq": version, "time": self.now,
+                                                 "kind": kind, "data": json.dumps(data)})
 
 
-def open_database(url: str) -> Engine:
-    """Open the database, making the tables if it is new.
+class Database:
+    """One database at a URL (SQLAlchemy's spelling), with its tables at the newest version."""
 
-    Raises WrongSchema if it holds tables of another version.
-    """
-    engine = create_engine(url, connect_args={"timeout": 10.0} if url.startswith("sqlite") else {})
-    if engine.dialect.name == "sqlite":
-        event.listen(engine, "connect", _set_up_sqlite)
-    metadata.create_all(engine)
-    with engine.begin() as connection:
-        found = connection.scalar(select(schema_version.c.version))
-        if found is None:
-            connection.execute(insert(schema_version).prefix_with("OR IGNORE", dialect="sqlite"),
-                               {"version": SCHEMA_VERSION})
-        elif found != SCHEMA_VERSION:
-            raise WrongSchema(f"the registry has schema version {found}, this hockle needs {SCHEMA_VERSION}")
+    def __init__(self, url: str, clock: Callable[[], float] = time.time) -> None:
+        """Open it, making or upgrading its tables. Raises WrongSchema if a newer hockle has written it."""
+        self.engine = _engine(url)
+        self._reading = self.engine.execution_options(isolation_level="AUTOCOMMIT")
+        self._clock = clock
+        with self.engine.begin() as connection:
+            migrate(connection)
+
+    def reading(self) -> AbstractContextManager[Connection]:
+        """A connection for reads, each of which sees what is committed."""
+        return self._reading.connect()
+
+    @contextmanager
+    def writing(self) -> Iterator[Transaction]:
+        """A transaction, committed to the disk when the block ends."""
+        with self.engine.begin() as connection:
+            yield Transaction(connection, self._clock())
+
+    def close(self) -> None:
+        """Close every connection."""
+        self.engine.dispose()
+
+
+def _engine(url: str) -> Engine:
+    if not url.startswith("sqlite"):
+        return create_engine(url, pool_pre_ping=True, pool_timeout=BUSY)
+    engine = create_engine(url, connect_args={"timeout": BUSY}, pool_timeout=BUSY)
+    event.listen(engine, "connect", _set_up_sqlite)
+    event.listen(engine, "begin", _begin_sqlite)
     return engine
 
 
 def _set_up_sqlite(connection: Any, _record: object) -> None:
+    connection.isolation_level = None  # the driver shall begin nothing by itself
     for pragma in ("journal_mode=WAL", "synchronous=FULL"):  # a 202 outlives a power cut
         connection.execute(f"PRAGMA {pragma}")
 
 
-def job_of(row: Mapping[Any, Any]) -> Job:
-    """The job that a row of JOB_COLUMNS tells of."""
-    fields = dict(row)
-    file, sha256, size = (fields.pop(f"dataset_{name}") for name in ("file", "sha256", "bytes"))
-    dataset = Dataset(file, sha256, size) if file is not None else None
-    return Job(**fields | {"status": Status(fields["status"]), "dataset": dataset})
+def _begin_sqlite(connection: Connection) -> None:
+    """Writers queue where they begin: one that first reads cannot be refused in its middle."""
+    if connection.get_execution_options().get("isolation_level") != "AUTOCOMMIT":
+        connection.exec_driver_sql("BEGIN IMMEDIATE")

@@ -10,7 +10,8 @@ from kombu.exceptions import OperationalError
 
 from service.settings import Settings
 
-TASK = "hockle.run_job"
+TASK = "hockle.run_next"
+QUEUE = "hockle"
 ONCE_MORE = {"max_retries": 1, "interval_start": 0}  # a connection may have gone stale
 log = logging.getLogger(__name__)
 
@@ -23,7 +24,7 @@ def celery_settings(settings: Settings) -> dict[str, Any]:
         "accept_content": ["json"],
         "task_acks_late": False,  # the registry, not the broker, knows which job is lost
         "worker_prefetch_multiplier": 1,
-        "task_default_queue": "hockle",
+        "task_default_queue": QUEUE,
         "broker_connection_retry_on_startup": True,
         "broker_connection_max_retries": None,
         "worker_cancel_long_running_tasks_on_connection_loss": False,
@@ -52,14 +53,27 @@ class Doorbell:
         self._celery.conf.update(celery_settings(settings))
         self._celery.conf.broker_transport_options |= ONCE_MORE
 
-    def ring(self, job_id: str) -> bool:
-        """Tell the workers of a job; False if the broker could not be reached."""
+    def ring(self) -> bool:
+        """Have one worker look for a job; False if the broker could not be reached."""
         try:
-            self._celery.send_task(TASK, args=[job_id], retry_policy=ONCE_MORE)
+            self._celery.send_task(TASK, retry_policy=ONCE_MORE)
         except (OperationalError, OSError) as error:
-            log.warning("the broker did not take job %s, it will be told again: %s", job_id, error)
+            log.warning("the broker took no message, it will be told again: %s", error)
             return False
         return True
+
+    def leave(self, wanted: int) -> None:
+        """Ring until as many messages lie unanswered as are wanted, or the broker cannot be reached."""
+        try:
+            with self._celery.connection_for_write() as connection:
+                connection.ensure_connection(**ONCE_MORE)
+                unanswered = connection.default_channel.queue_declare(QUEUE, passive=False).message_count
+        except (OperationalError, OSError) as error:
+            log.warning("the broker cannot be reached, it will be told again: %s", error)
+            return
+        for _ in range(wanted - unanswered):
+            if not self.ring():
+                return
 
     def reachable(self) -> bool:
         """Whether the broker answers."""

@@ -12,6 +12,8 @@ from typing import Any
 from service.jobs.lifecycle import Status
 
 CROCKFORD = "0123456789abcdefghjkmnpqrstvwxyz"
+LOCAL = "local"
+"""The owner of what is submitted without a key."""
 
 
 @dataclass(frozen=True)
@@ -24,11 +26,27 @@ class Dataset:
 
 
 @dataclass(frozen=True)
+class Limits:
+    """What a job may use before it is ended by name: seconds of running, bytes of memory and of disk."""
+
+    wall: float = 7 * 86400.0
+    memory: int = 4 * 10**9
+    disk: int = 20 * 10**9
+
+
+@dataclass(frozen=True)
 class NewJob:
-    """A case that somebody wants run. `title` is what lists show."""
+    """A case that somebody wants run. `title` is what lists show, `label` what its owner sorts by.
+
+    Among the jobs of one owner the higher `priority` goes first; it takes nothing from other owners.
+    """
 
     case: dict[str, Any]
     title: str = ""
+    owner: str = LOCAL
+    label: str = ""
+    priority: int = 0
+    limits: Limits = Limits()
     id: str = field(default_factory=lambda: new_id())
 
     @property
@@ -43,19 +61,34 @@ class NewJob:
 
 
 @dataclass(frozen=True)
-class Job:
-    """One row of the registry, without its case. Times are Unix seconds; `t` is simulated seconds.
+class Reached:
+    """How far a run has come: the part done (0 to 1), simulated seconds, steps of the solver that count
+    and that were lost with their worker and computed again, and seconds of running."""
 
-    `version` grows with every change that a reader can see. `epoch` grows with every claim: a
-    writer that holds an older one has lost the job.
+    progress: float = 0.0
+    t: float = 0.0
+    steps: int = 0
+    steps_redone: int = 0
+    wall: float = 0.0
+
+
+@dataclass(frozen=True)
+class Job:
+    """One row of the registry, without its case. Times are Unix seconds.
+
+    `version` grows with every change that a reader can see. `epoch` grows with every claim and when a
+    lost job is taken back: a writer that holds an older one has lost the job. `attempts` counts the
+    claims, but for those handed back; `fruitless` those since the last new checkpoint.
     """
 
     id: str
+    owner: str
     status: Status
     title: str
+    label: str
+    priority: int
     case_sha256: str
-    progress: float
-    t: float
+    reached: Reached
     outcome: str
     message: str
     cancel_requested: bool
@@ -63,11 +96,23 @@ class Job:
     started: float | None
     finished: float | None
     attempts: int
+    fruitless: int
     epoch: int
     lease_until: float | None
     version: int
     worker: str
+    limits: Limits
     dataset: Dataset | None
+
+    @property
+    def progress(self) -> float:
+        """The part of the run that is done, 0 to 1."""
+        return self.reached.progress
+
+    @property
+    def t(self) -> float:
+        """How far the run has come, in simulated seconds."""
+        return self.reached.t
 
 
 def new_id() -> str:

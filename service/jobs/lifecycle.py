@@ -17,11 +17,10 @@ class Status(StrEnum):
 
 TRANSITIONS: frozenset[tuple[Status, Status]] = frozenset({
     (Status.ACCEPTED, Status.RUNNING),  # claimed
-    (Status.ACCEPTED, Status.DISMISSED),  # cancelled before any worker had it
-    (Status.RUNNING, Status.RUNNING),  # claimed again, after the lease ran out
-    (Status.RUNNING, Status.ACCEPTED),  # handed back by a worker that is told to stop
+    (Status.ACCEPTED, Status.DISMISSED),  # cancelled while no worker had it
+    (Status.RUNNING, Status.ACCEPTED),  # handed back by its worker, or taken back from a lost one
     (Status.RUNNING, Status.SUCCESSFUL),
-    (Status.RUNNING, Status.FAILED),
+    (Status.RUNNING, Status.FAILED),  # by its worker, or by the reconciler after too many lost ones
     (Status.RUNNING, Status.DISMISSED),  # the worker, or the reconciler for a lost one, saw the cancel flag
 })
 

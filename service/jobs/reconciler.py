@@ -1,32 +1,104 @@
-"""Looks after jobs that nobody else does: rings again for them, and ends the hopeless."""
+"""Looks after jobs that nobody else does: takes back the lost, ends the hopeless, rings for the waiting."""
 
 from __future__ import annotations
 
 import logging
 import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
+from sqlalchemy import func, select
+
+from service.jobs.database import Database
 from service.jobs.doorbell import Doorbell
-from service.jobs.registry import Registry
+from service.jobs.leader import Leader
+from service.jobs.lifecycle import Status
+from service.jobs.tables import jobs
 from service.settings import Settings
 
-AT_ONCE = 100
+AT_ONCE = 64
+"""The most messages that are left for the workers: each makes one of them look for a job."""
+
 log = logging.getLogger(__name__)
 
 
-def reconcile(registry: Registry, doorbell: Doorbell, settings: Settings) -> None:
-    """Do once what is due. Any number of processes may do so at the same time."""
-    registry.end_lost(settings.attempts)
-    for job_id in registry.overdue(settings.ring_again, AT_ONCE):
-        if not doorbell.ring(job_id):
-            return
+@dataclass(frozen=True)
+class Beat:
+    """What a worker renews: as long as it changes, the worker lives."""
+
+    job_id: str
+    epoch: int
+    lease_until: float
+
+
+@dataclass
+class Watch:
+    """Tells lost leases from living ones.
+
+    A lease is lost when this process has seen it unchanged for as long as it holds, by a clock that
+    nobody can set. So neither a wrong clock nor one that jumps takes a job from a living worker.
+    """
+
+    lease: float
+    clock: Callable[[], float] = time.monotonic
+    _first_seen: dict[Beat, float] = field(default_factory=dict)
+
+    def lost(self, beats: list[Beat]) -> list[Beat]:
+        """Those of the beats there are now that have been the same for too long."""
+        now = self.clock()
+        self._first_seen = {beat: self._first_seen.get(beat, now) for beat in beats}
+        return [beat for beat, since in self._first_seen.items() if now - since > self.lease]
+
+
+def beats(database: Database) -> list[Beat]:
+    """Those of all running jobs."""
+    query = select(jobs.c.id, jobs.c.epoch, jobs.c.lease_until).where(jobs.c.status == Status.RUNNING)
+    with database.reading() as connection:
+        return [Beat(*row) for row in connection.execute(query)]
+
+
+def take_back(database: Database, lost: Beat, attempts: int) -> None:
+    """Take a job from a worker that has fallen silent: it waits again, or ends if that has no use.
+
+    A renewal in the last moment is stronger; afterwards the epoch shuts the worker out.
+    """
+    same = (jobs.c.id == lost.job_id, jobs.c.epoch == lost.epoch, jobs.c.lease_until == lost.lease_until)
+    hopeless = (f"its worker stopped answering {attempts} times without a new checkpoint: the case may need more "
+                "memory than there is; try fewer intervals or frames, and see the worker's log")
+    with database.writing() as transaction:
+        (
+            transaction.change(*same, jobs.c.cancel_requested, event="ended", status=Status.DISMISSED,
+                               epoch=jobs.c.epoch + 1, outcome="cancelled",
+                               message="cancelled; its worker had stopped answering")
+            or transaction.change(*same, jobs.c.fruitless >= attempts, event="ended", status=Status.FAILED,
+                                  epoch=jobs.c.epoch + 1, outcome="worker_lost", message=hopeless)
+            or transaction.change(*same, event="taken_back", status=Status.ACCEPTED, epoch=jobs.c.epoch + 1, worker="")
+        )  # fmt: skip
+
+
+def dismiss_cancelled(database: Database) -> None:
+    """End the waiting jobs whose cancelling met a worker that handed them back."""
+    with database.writing() as transaction:
+        transaction.change(jobs.c.status == Status.ACCEPTED, jobs.c.cancel_requested, event="ended",
+                           status=Status.DISMISSED, outcome="cancelled", message="cancelled while it waited")
+
+
+def waiting(database: Database) -> int:
+    """How many jobs wait for a worker, counted up to AT_ONCE."""
+    some = select(jobs.c.id).where(jobs.c.status == Status.ACCEPTED).limit(AT_ONCE).subquery()
+    with database.reading() as connection:
+        return connection.scalar(select(func.count()).select_from(some)) or 0
 
 
 class Reconciler:
-    """A thread that reconciles a few times within each lease, and at once when it starts."""
+    """A thread that reconciles a few times within each lease, while no other process does."""
 
-    def __init__(self, registry: Registry, doorbell: Doorbell, settings: Settings) -> None:
-        self._parts = registry, doorbell, settings
-        self._interval = min(5.0, settings.lease / 3, settings.ring_again / 3)
+    def __init__(self, database: Database, doorbell: Doorbell, settings: Settings) -> None:
+        self._database, self._doorbell, self._attempts = database, doorbell, settings.attempts
+        self._watch = Watch(settings.lease)
+        self._leader = Leader(database, settings.locks / "reconciler.lock")
+        self._interval = min(5.0, settings.lease / 3)
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._run, name="reconciler", daemon=True)
 
@@ -37,11 +109,22 @@ class Reconciler:
     def __exit__(self, *_: object) -> None:
         self._stopped.set()
         self._thread.join()
+        self._leader.resign()
+
+    def once(self) -> None:
+        """Do what is due."""
+        for lost in self._watch.lost(beats(self._database)):
+            log.warning("job %s, epoch %d: its worker has fallen silent", lost.job_id, lost.epoch)
+            take_back(self._database, lost, self._attempts)
+        dismiss_cancelled(self._database)
+        if wanted := waiting(self._database):
+            self._doorbell.leave(wanted)
 
     def _run(self) -> None:
         while True:
             try:
-                reconcile(*self._parts)
+                if self._leader.elected():
+                    self.once()
             except Exception:
                 log.exception("reconciling failed; it is tried again in %.1f s", self._interval)
             if self._stopped.wait(self._interval):

@@ -18,7 +18,7 @@ from service.cases import apply_settings, load_case
 
 QUICK = {"t_end": 0.5, "output.interval": 0.1, "numerics.intervals": 20}
 SLOW = {"t_end": 5.0, "output.interval": 0.1, "numerics.dt_max": 0.002}
-SHORT_LEASES = {"HOCKLE_LEASE": "1.5", "HOCKLE_RING_AGAIN": "1.0"}
+SHORT_LEASES = {"HOCKLE_LEASE": "1.5"}
 
 
 class Server:

@@ -14,8 +14,28 @@ def test_an_empty_environment_is_enough():
 
 
 def test_settings_survive_the_way_to_a_child_process(tmp_path):
-    settings = Settings(tmp_path, "redis+socket:///tmp/b.sock", lease=0.7, attempts=2, ring_again=1.25)
-    assert from_environment(settings.environment()) == settings
+    told = Settings(tmp_path, "postgresql://h/x", "redis+socket:///tmp/b.sock", tmp_path / "shared", lease=0.7,
+                    attempts=2, checkpoint=1.25)
+    assert from_environment(told.environment()) == told
+    assert from_environment(Settings(tmp_path).environment()) == Settings(tmp_path)
+
+
+def test_one_file_tells_all_and_the_environment_is_stronger(tmp_path):
+    file = tmp_path / "hockle.toml"
+    file.write_text('database = "postgresql://db/hockle"\nlease = 12\nattempts = 5\n')
+    told = from_environment({"HOCKLE_SETTINGS": str(file), "HOCKLE_ATTEMPTS": "4"})
+    assert (told.database_url, told.lease, told.attempts) == ("postgresql+psycopg://db/hockle", 12.0, 4)
+
+
+def test_without_a_database_there_is_one_in_the_data_directory(tmp_path):
+    assert Settings(tmp_path).database_url == f"sqlite:///{tmp_path}/registry.db"
+
+
+def test_an_unknown_setting_in_the_file_is_refused(tmp_path):
+    file = tmp_path / "hockle.toml"
+    file.write_text("leese = 12\n")
+    with pytest.raises(ValueError, match="leese"):
+        from_environment({"HOCKLE_SETTINGS": str(file)})
 
 
 @pytest.mark.parametrize(("url", "kombu"), [
@@ -28,9 +48,10 @@ def test_redis_urls_are_spelt_for_kombu(url, kombu):
 
 
 @pytest.mark.parametrize(("environment", "message"), [
-    ({"HOCKLE_LEASE": "long"}, "HOCKLE_LEASE must be a number, got 'long'"),
-    ({"HOCKLE_LEASE": "-1"}, "lease must be > 0, got -1.0"),
-    ({"REDIS_URL": "amqp://x"}, "REDIS_URL must be redis://"),
+    ({"HOCKLE_LEASE": "long"}, "HOCKLE_LEASE: Input should be a valid number.*got 'long'"),
+    ({"HOCKLE_LEASE": "-1"}, "HOCKLE_LEASE: Input should be greater than 0, got '-1'"),
+    ({"HOCKLE_DATABASE": "mysql://me:secret@x/y"}, "HOCKLE_DATABASE: .*must be postgresql:// or sqlite://"),
+    ({"REDIS_URL": "amqp://x"}, "REDIS_URL: .*must be redis://"),
 ])
 def test_a_refusal_names_the_setting_the_value_and_the_rule(environment, message):
     with pytest.raises(ValueError, match=message):

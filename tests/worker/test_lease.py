@@ -1,69 +1,117 @@
-"""The lease is kept while a step takes long, and tells what the owner wants."""
+"""The lease is kept while a step takes long, tells what must end the run, and ends a process that lost it."""
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from service.jobs import Job, NewJob, Registry
-from worker.lease import Cancelled, Lease, LeaseLost
+from service.jobs import Database, Limits, NewJob, Reached, Registry
+from service.jobs.held import HeldJob, claim
+from worker import lease as lease_module
+from worker.lease import Cancelled, Lease, LeaseLost, OutOfTime
 
-SECONDS = 0.2
+LONG = 1000.0  # the kernel ends this process after 3/4 of it
+
+
+@pytest.fixture(autouse=True)
+def quick_renewals(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(lease_module, "RENEWAL", 0.01)
 
 
 @pytest.fixture
 def registry(tmp_path: Path) -> Registry:
-    return Registry(f"sqlite:///{tmp_path}/registry.db")
+    return Registry(Database(f"sqlite:///{tmp_path}/registry.db"))
 
 
-@pytest.fixture
-def job(registry: Registry) -> Job:
-    claim = registry.claim(registry.submit(NewJob({})).id, SECONDS, 3, "here")
-    assert claim is not None
-    return claim.job
+def held(registry: Registry, limits: Limits | None = None) -> HeldJob:
+    taken = claim(registry.database, registry.submit(NewJob({}, limits=limits or Limits())).id, LONG, "here")
+    assert taken is not None
+    return taken
 
 
-def tell_until_refused(lease: Lease, until) -> None:
-    until(lambda: lease.tell(0.5, 1.0))
+def kept(job: HeldJob) -> Lease:
+    return Lease(job, LONG, time.monotonic())
 
 
-def test_a_lease_is_renewed_without_any_frame(registry, job, until):
-    with Lease(registry, job, SECONDS):
-        until(lambda: registry.get(job.id).lease_until > job.lease_until + 2 * SECONDS)
-    assert registry.get(job.id).epoch == job.epoch
+def test_a_lease_is_renewed_without_any_step(registry, until):
+    job = held(registry)
+    with kept(job):
+        until(lambda: registry.get(job.job.id).lease_until > job.job.lease_until)
+    assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
 
-def test_progress_reaches_the_row(registry, job, until):
-    with Lease(registry, job, SECONDS) as lease:
-        lease.tell(0.25, 8.5)
-        until(lambda: registry.get(job.id).progress > 0)
-    told = registry.get(job.id)
+def test_the_kernel_is_told_to_end_the_process_before_the_lease_is_over(registry, until):
+    with Lease(held(registry), LONG, since=time.monotonic() - 100.0):
+        assert 0 < signal.getitimer(signal.ITIMER_REAL)[0] <= 0.75 * LONG - 100.0
+        until(lambda: signal.getitimer(signal.ITIMER_REAL)[0] > 0.75 * LONG - 100.0, "a renewal puts it off")
+
+
+def test_what_was_reached_comes_into_the_row_with_the_time_it_took(registry, until):
+    job = held(registry)
+    with kept(job) as lease:
+        lease.tell(Reached(0.25, 8.5, steps=70))
+        until(lambda: registry.get(job.job.id).reached.steps == 70)
+    told = registry.get(job.job.id).reached
     assert (told.progress, told.t) == (0.25, 8.5)
+    assert told.wall > 0
 
 
-def test_a_cancelled_job_stops_at_its_next_frame(registry, job, until):
-    registry.cancel(job.id)
-    with Lease(registry, job, SECONDS) as lease, pytest.raises(Cancelled):
-        tell_until_refused(lease, until)
+def test_a_cancelled_job_stops_at_its_next_step(registry, until):
+    job = held(registry)
+    registry.cancel(job.job.id)
+    with kept(job) as lease, pytest.raises(Cancelled):
+        until(lambda: lease.tell(Reached(0.5)))
 
 
-def test_a_job_that_is_anothers_stops_at_its_next_frame(registry, job, until):
-    registry._clock = lambda: 1e12
-    assert registry.claim(job.id, 1e6, 3, "elsewhere") is not None
-    with Lease(registry, job, SECONDS) as lease, pytest.raises(LeaseLost):
-        tell_until_refused(lease, until)
+def test_a_job_that_is_anothers_stops_at_its_next_step(registry, until):
+    job = held(registry)
+    job.release()
+    with kept(job) as lease, pytest.raises(LeaseLost):
+        until(lambda: lease.tell(Reached(0.5)))
 
 
-def test_a_database_that_is_away_for_a_moment_costs_nothing(registry, job, monkeypatch, until):
-    renew, failures = Registry.renew, iter([OSError("away"), OSError("away")])
+def test_a_job_that_runs_for_too_long_stops_at_its_next_step(registry, until):
+    with kept(held(registry, Limits(wall=0.05))) as lease, pytest.raises(OutOfTime):
+        until(lambda: lease.tell(Reached(0.5)))
+
+
+def test_a_database_that_is_away_for_a_moment_costs_nothing(registry, monkeypatch, until):
+    renew, failures = HeldJob.renew, iter([OSError("away"), OSError("away")])
 
     def sometimes(self, *told):
         for failure in failures:
             raise failure
         return renew(self, *told)
 
-    monkeypatch.setattr(Registry, "renew", sometimes)
-    with Lease(registry, job, SECONDS) as lease:
-        lease.tell(0.5, 1.0)
-        until(lambda: registry.get(job.id).progress > 0)
+    monkeypatch.setattr(HeldJob, "renew", sometimes)
+    job = held(registry)
+    with kept(job) as lease:
+        lease.tell(Reached(0.5, 1.0, steps=1))
+        until(lambda: registry.get(job.job.id).progress > 0)
+
+
+STALLED = """
+import sys, time
+from service.jobs import Database, NewJob, Registry
+from service.jobs.held import HeldJob, claim
+from worker.lease import Lease
+
+def away(*_):
+    raise OSError("the database is away")
+
+registry = Registry(Database(sys.argv[1]))
+job = claim(registry.database, registry.submit(NewJob({})).id, 1.0, "here")
+HeldJob.renew = away
+with Lease(job, 1.0, time.monotonic()):
+    time.sleep(60)
+"""
+
+
+def test_a_process_that_cannot_renew_its_lease_is_ended_by_the_kernel(tmp_path):
+    ended = subprocess.run([sys.executable, "-c", STALLED, f"sqlite:///{tmp_path}/r.db"], capture_output=True)
+    assert ended.returncode == -signal.SIGALRM

@@ -6,17 +6,19 @@ import errno
 import hashlib
 import logging
 import time
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from sqlalchemy.exc import OperationalError
 
 from service.cases import apply_settings, load_case
-from service.jobs import Job, NewJob, Registry, Status
+from service.jobs import Database, Job, Limits, NewJob, Registry, Status
+from service.jobs.held import HeldJob
+from service.jobs.reconciler import beats, take_back
 from service.results import DatasetWriter, open_dataset
 from service.settings import Settings
 from solver import Outcome, RunFailed, simulate
-from worker import run
+from worker import lease, run
 from worker.lock import job_lock
 
 SMALL = apply_settings(
@@ -26,14 +28,14 @@ SMALL = apply_settings(
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    made = Settings(data=tmp_path, lease=5.0)
+    made = Settings(data=tmp_path, lease=1000.0)
     made.make_directories()
     return made
 
 
 @pytest.fixture
 def registry(settings: Settings) -> Registry:
-    return Registry(settings.database_url)
+    return Registry(Database(settings.database_url))
 
 
 @pytest.fixture
@@ -42,7 +44,7 @@ def job(registry: Registry) -> Job:
 
 
 def ended(job: Job, registry: Registry, settings: Settings) -> Job:
-    run.run_job(job.id, registry, settings)
+    run.run_next(registry.database, settings)
     return registry.get(job.id)
 
 
@@ -93,15 +95,30 @@ def test_a_message_that_comes_twice_does_nothing(job, registry, settings):
     assert ended(job, registry, settings) == ended(job, registry, settings)
 
 
-def test_a_message_for_an_unknown_job_does_nothing(registry, settings):
-    run.run_job("01jzzzzzzzzzzzzzzzzzzzzzzz", registry, settings)
+def test_a_message_without_a_waiting_job_does_nothing(registry, settings):
+    run.run_next(registry.database, settings)
     assert left_over(settings) == []
 
 
 def test_a_job_whose_lock_another_process_holds_is_left_alone(job, registry, settings):
     with job_lock(settings.locks / f"{job.id}.lock") as mine:
         assert mine
-        assert ended(job, registry, settings).status is Status.ACCEPTED
+        other = registry.submit(NewJob(SMALL))
+        assert ended(other, registry, settings).status is Status.SUCCESSFUL
+        assert registry.get(job.id).status is Status.ACCEPTED
+
+
+def test_a_lock_file_that_its_holder_removed_meanwhile_locks_nothing(settings):
+    path = settings.locks / "x.lock"
+    with job_lock(path) as first:
+        assert first
+        path.unlink()
+        with job_lock(path) as second:
+            assert second
+            path.unlink()
+            path.touch()
+            with job_lock(path) as third:
+                assert third
 
 
 def test_a_run_that_fails_keeps_its_frames_and_tells_the_remedy(job, registry, settings, monkeypatch):
@@ -115,24 +132,50 @@ def test_a_run_that_fails_keeps_its_frames_and_tells_the_remedy(job, registry, s
 
 
 def test_a_job_cancelled_while_it_runs_leaves_nothing(job, registry, settings, monkeypatch, until):
-    seen: list[bool] = []
-    renew = Registry.renew
+    seen: list[bool | None] = []
+    renew = HeldJob.renew
 
     def watched(self, *told):
-        renewed = renew(self, *told)
-        seen.append(renewed.cancel_requested)
-        return renewed
+        seen.append(renew(self, *told))
+        return seen[-1]
 
     def cancel():
         registry.cancel(job.id)
-        until(lambda: seen.count(True) > 0, "the lease brings the owner's wish")
-        time.sleep(0.05)  # the lease judges after its renewal returns
+        until(lambda: seen.count(True) > 1, "the lease brings the owner's wish, and a renewal later it is judged")
 
-    monkeypatch.setattr(Registry, "renew", watched)
+    monkeypatch.setattr(lease, "RENEWAL", 0.01)
+    monkeypatch.setattr(HeldJob, "renew", watched)
     monkeypatch.setattr(run, "simulate", simulation_that(cancel))
-    done = ended(job, registry, replace(settings, lease=0.2))
+    done = ended(job, registry, settings)
     assert (done.status, done.outcome, done.dataset) == (Status.DISMISSED, "cancelled", None)
     assert left_over(settings) == []
+
+
+def test_a_job_that_runs_too_long_ends_by_name(registry, settings, monkeypatch, until):
+    job = registry.submit(NewJob(SMALL, limits=Limits(wall=0.05)))
+
+    def dawdle():
+        until(lambda: registry.get(job.id).reached.wall > 0.1, "a renewal tells the time")
+        time.sleep(0.1)
+
+    monkeypatch.setattr(lease, "RENEWAL", 0.01)
+    monkeypatch.setattr(run, "simulate", simulation_that(dawdle))
+    done = ended(job, registry, settings)
+    assert (done.status, done.outcome) == (Status.FAILED, "wall_time_exceeded")
+
+
+def test_an_end_is_written_though_the_database_was_away(job, registry, settings, monkeypatch):
+    finish, failures = HeldJob.finish, iter([OperationalError("x", {}, Exception("away"))] * 2)
+
+    def sometimes(self, *told):
+        for failure in failures:
+            raise failure
+        return finish(self, *told)
+
+    monkeypatch.setattr(HeldJob, "finish", sometimes)
+    done = ended(job, registry, settings)
+    assert done.status is Status.SUCCESSFUL
+    assert left_over(settings) == [settings.datasets / done.dataset.file]
 
 
 @pytest.mark.parametrize("method", ["append", "publish"])
@@ -175,7 +218,7 @@ def test_a_case_that_this_version_refuses_fails_with_its_faults(registry, settin
 def test_a_worker_told_to_stop_hands_its_job_back(job, registry, settings, monkeypatch):
     monkeypatch.setattr(run, "simulate", simulation_that(raising(SystemExit(0))))
     with pytest.raises(SystemExit):
-        run.run_job(job.id, registry, settings)
+        run.run_next(registry.database, settings)
     waiting = registry.get(job.id)
     assert (waiting.status, waiting.attempts) == (Status.ACCEPTED, 0)
     assert left_over(settings) == []
@@ -183,13 +226,13 @@ def test_a_worker_told_to_stop_hands_its_job_back(job, registry, settings, monke
 
 def test_a_worker_that_lost_its_job_writes_nothing_for_it(job, registry, settings, monkeypatch):
     def give_away():
-        registry._clock = lambda: 1e12
-        assert registry.claim(job.id, 1e6, 3, "elsewhere") is not None
+        for beat in beats(registry.database):
+            take_back(registry.database, beat, 3)
 
     monkeypatch.setattr(run, "simulate", simulation_that(give_away))
-    run.run_job(job.id, registry, settings)
+    run.run_next(registry.database, settings)
     held = registry.get(job.id)
-    assert (held.status, held.worker, held.epoch, held.dataset) == (Status.RUNNING, "elsewhere", 2, None)
+    assert (held.status, held.epoch, held.dataset) == (Status.ACCEPTED, 2, None)
     assert left_over(settings) == []
 
 

@@ -13,7 +13,7 @@ from service.api.app import create_app
 from service.cases import apply_settings, load_case
 from service.jobs import Registry
 from service.settings import Settings
-from worker.run import run_job
+from worker.run import run_next
 
 SMALL = {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8}
 
@@ -44,5 +44,5 @@ def case() -> dict[str, Any]:
 def done(client: TestClient, registry: Registry, settings: Settings, case: dict[str, Any]) -> str:
     """The id of a job that has been run."""
     job_id = client.post("/v1/jobs", json=case).json()["id"]
-    run_job(job_id, registry, settings)
+    run_next(registry.database, settings)
     return job_id

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from service.jobs import Dataset, Status
+from service.jobs import Dataset, Reached, Status
+from service.jobs.held import claim
 
 
 def test_a_submission_is_accepted_and_found_where_it_says(client, case):
@@ -18,14 +19,14 @@ def test_a_shipped_case_is_submitted_by_name_with_settings(client, registry):
     settings = {"t_end": 3, "numerics.intervals": 50}
     answer = client.post("/v1/jobs", json={"case": "goyal-2003", "set": settings})
     assert answer.status_code == 202
-    told = registry.claim(answer.json()["id"], 9.0, 3, "here").case
+    told = claim(registry.database, answer.json()["id"], 9.0, "here").case
     assert (told["t_end"], told["numerics"]["intervals"]) == (3, 50)
 
 
 def test_the_stored_case_has_every_default_filled_in(client, registry, case):
     del case["numerics"]
     job_id = client.post("/v1/jobs", json=case).json()["id"]
-    assert registry.claim(job_id, 9.0, 3, "here").case["numerics"]["intervals"] >= 2
+    assert claim(registry.database, job_id, 9.0, "here").case["numerics"]["intervals"] >= 2
 
 
 def test_a_job_is_accepted_while_the_broker_is_dead(client, case, monkeypatch):
@@ -41,7 +42,7 @@ def test_an_unchanged_job_is_answered_304_and_a_changed_one_is_not(client, regis
     for tag in (etag, f"W/{etag}", f'"x", {etag}', "*"):
         unchanged = client.get(address, headers={"If-None-Match": tag})
         assert (unchanged.status_code, unchanged.content) == (304, b"")
-    registry.claim(address.rsplit("/", 1)[1], 9.0, 3, "here")
+    claim(registry.database, address.rsplit("/", 1)[1], 9.0, "here")
     changed = client.get(address, headers={"If-None-Match": etag})
     assert (changed.status_code, changed.json()["status"]) == (200, "running")
     assert changed.headers["etag"] != etag
@@ -74,7 +75,7 @@ def test_a_waiting_job_is_cancelled_at_once(client, case):
 
 def test_a_running_job_is_marked_for_its_worker(client, registry, case):
     job_id = client.post("/v1/jobs", json=case).json()["id"]
-    registry.claim(job_id, 9.0, 3, "here")
+    claim(registry.database, job_id, 9.0, "here")
     told = client.delete(f"/v1/jobs/{job_id}").json()
     assert (told["status"], told["cancel_requested"]) == ("running", True)
 
@@ -93,10 +94,10 @@ def test_a_finished_job_links_to_its_results(client, done):
 
 def test_a_failed_job_says_why_and_still_gives_its_frames(client, registry, settings, case):
     job_id = client.post("/v1/jobs", json=case).json()["id"]
-    claim = registry.claim(job_id, 9.0, 3, "here")
+    held = claim(registry.database, job_id, 9.0, "here")
     (settings.datasets / "part.nc").write_bytes(b"frames so far")
     part = Dataset("part.nc", "ab" * 32, 13)
-    registry.finish(claim.job, Status.FAILED, "step_too_small", "soften it", part, 1.0, 34.0)
+    held.finish(Status.FAILED, "step_too_small", "soften it", part, Reached(1.0, 34.0))
     told = client.get(f"/v1/jobs/{job_id}").json()
     assert (told["outcome"], told["message"]) == ("step_too_small", "soften it")
     assert client.get(told["dataset"]["href"]).content == b"frames so far"

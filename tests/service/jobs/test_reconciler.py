@@ -1,4 +1,4 @@
-"""The doorbell may fail; the reconciler rings until somebody opens."""
+"""The doorbell may fail and workers may die; the reconciler sees to it that every job ends."""
 
 from __future__ import annotations
 
@@ -6,67 +6,163 @@ from pathlib import Path
 
 import pytest
 
-from service.jobs import NewJob, Registry, Status
+from service.jobs import Database, NewJob, Reached, Registry, Status
 from service.jobs.doorbell import Doorbell, celery_settings
-from service.jobs.reconciler import Reconciler, reconcile
+from service.jobs.held import HeldJob, claim
+from service.jobs.leader import Leader
+from service.jobs.reconciler import AT_ONCE, Reconciler, Watch, beats, dismiss_cancelled, take_back
 from service.settings import Settings
+
+LEASE, ATTEMPTS = 10.0, 3
 
 
 class Bell:
-    def __init__(self, works: bool = True) -> None:
-        self.works, self.rung = works, []
+    def __init__(self) -> None:
+        self.wanted: list[int] = []
 
-    def ring(self, job_id: str) -> bool:
-        self.rung.append(job_id)
-        return self.works
+    def leave(self, wanted: int) -> None:
+        self.wanted.append(wanted)
 
 
 @pytest.fixture
 def settings(tmp_path: Path) -> Settings:
-    made = Settings(data=tmp_path, lease=0.1, ring_again=0.01)
+    made = Settings(data=tmp_path, lease=0.1)
     made.make_directories()
     return made
 
 
-@pytest.fixture
-def registry(settings: Settings) -> Registry:
-    return Registry(settings.database_url)
+def held(registry: Registry, job_id: str | None = None) -> HeldJob:
+    taken = claim(registry.database, job_id or registry.submit(NewJob({})).id, LEASE, "here")
+    assert taken is not None
+    return taken
 
 
-def test_a_dead_broker_costs_no_job(settings, registry, tmp_path):
+def lose(database: Database) -> None:
+    for beat in beats(database):
+        take_back(database, beat, ATTEMPTS)
+
+
+def test_a_lease_is_lost_when_it_was_seen_unchanged_for_its_whole_length(registry, clock):
+    watch = Watch(LEASE, clock)
+    job = held(registry)
+    assert watch.lost(beats(registry.database)) == []
+    clock.now += LEASE - 1
+    job.renew(LEASE, Reached())
+    assert watch.lost(beats(registry.database)) == []
+    clock.now += LEASE - 1
+    assert watch.lost(beats(registry.database)) == []
+    clock.now += 2
+    assert [beat.job_id for beat in watch.lost(beats(registry.database))] == [job.job.id]
+
+
+def test_a_clock_that_jumps_takes_no_job_from_a_living_worker(registry, clock):
+    """The watch has a clock of its own: what the rows say of time is only compared for being the same."""
+    watch = Watch(LEASE, lambda: 0.0)
+    job = held(registry)
+    for jump in (1e9, -2e9):
+        clock.now += jump
+        assert watch.lost(beats(registry.database)) == []
+        assert job.renew(LEASE, Reached()) is False
+
+
+def test_a_lost_job_waits_again_and_its_worker_is_shut_out(registry):
+    job = held(registry)
+    lose(registry.database)
+    waiting = registry.get(job.job.id)
+    assert (waiting.status, waiting.epoch, waiting.worker) == (Status.ACCEPTED, 2, "")
+    assert job.renew(LEASE, Reached()) is None
+    assert held(registry, job.job.id).job.epoch == 3
+
+
+def test_a_renewal_in_the_last_moment_is_stronger(registry, clock):
+    job = held(registry)
+    seen = beats(registry.database)
+    clock.now += 1
+    job.renew(LEASE, Reached())
+    take_back(registry.database, seen[0], ATTEMPTS)
+    assert registry.get(job.job.id).status is Status.RUNNING
+
+
+def test_a_job_lost_three_times_without_a_checkpoint_fails_by_name(registry):
+    job_id = registry.submit(NewJob({})).id
+    for _ in range(ATTEMPTS):
+        assert registry.get(job_id).status is Status.ACCEPTED
+        last = held(registry, job_id)
+        lose(registry.database)
+    ended = registry.get(job_id)
+    assert (ended.status, ended.outcome) == (Status.FAILED, "worker_lost")
+    assert "3 times" in ended.message
+    assert not last.finish(Status.SUCCESSFUL, "completed", "", None, Reached(1.0))
+
+
+def test_a_job_that_gets_farther_each_time_is_never_given_up(registry):
+    job_id = registry.submit(NewJob({})).id
+    for attempt in range(1, 3 * ATTEMPTS):
+        held(registry, job_id).checkpointed(Reached(steps=attempt))
+        lose(registry.database)
+    assert registry.get(job_id).status is Status.ACCEPTED
+
+
+def test_a_cancelled_job_whose_worker_is_lost_is_dismissed(registry):
+    job = held(registry)
+    registry.cancel(job.job.id)
+    lose(registry.database)
+    assert registry.get(job.job.id).status is Status.DISMISSED
+
+
+def test_a_cancelled_job_that_is_handed_back_is_dismissed(registry):
+    job = held(registry)
+    registry.cancel(job.job.id)
+    job.release()
+    dismiss_cancelled(registry.database)
+    assert registry.get(job.job.id).status is Status.DISMISSED
+
+
+def test_messages_are_left_for_as_many_jobs_as_wait_up_to_a_bound(registry, settings):
+    bell = Bell()
+    reconciler = Reconciler(registry.database, bell, settings)
+    reconciler.once()
+    assert bell.wanted == []
+    for count in (3, AT_ONCE):
+        for _ in range(count):
+            registry.submit(NewJob({}))
+        reconciler.once()
+    assert bell.wanted == [3, AT_ONCE]
+
+
+def test_a_running_reconciler_takes_back_a_lost_job(registry, settings, until):
+    job = held(registry)
+    with Reconciler(registry.database, Bell(), settings):
+        until(lambda: registry.get(job.job.id).status is Status.ACCEPTED)
+
+
+def test_one_of_many_leads_and_another_when_it_resigns(database, settings):
+    first, second = (Leader(database, settings.locks / "leader") for _ in range(2))
+    assert first.elected()
+    assert not second.elected()
+    assert first.elected()
+    first.resign()
+    assert second.elected()
+    second.resign()
+
+
+def test_a_dead_broker_is_told_not_raised(tmp_path):
     nowhere = Doorbell(Settings(data=tmp_path, broker=f"redis+socket://{tmp_path}/nothing.sock"))
-    job = registry.submit(NewJob({}))
-    assert not nowhere.ring(job.id)
+    assert not nowhere.ring()
     assert not nowhere.reachable()
-    assert registry.get(job.id).status is Status.ACCEPTED
+    nowhere.leave(3)
 
 
-def test_without_a_broker_process_messages_lie_as_files(settings, registry):
+def test_messages_are_left_until_there_are_enough(settings):
     doorbell = Doorbell(settings)
     assert doorbell.reachable()
-    assert doorbell.ring(registry.submit(NewJob({})).id)
-    assert len(list(settings.messages.glob("*.msg"))) == 1
+    assert doorbell.ring()
+    for wanted in (3, 2, 4):
+        doorbell.leave(wanted)
+        assert len(list(settings.messages.glob("*.msg"))) == max(3, wanted)
 
 
-def test_a_waiting_job_is_rung_for_until_it_is_claimed(settings, registry, until):
-    bell = Bell()
-    job = registry.submit(NewJob({}))
-    with Reconciler(registry, bell, settings):
-        until(lambda: len(bell.rung) >= 2)
-    assert set(bell.rung) == {job.id}
-
-
-def test_a_broken_bell_is_not_rung_for_every_job(settings, registry):
-    bell = Bell(works=False)
-    clock = 1e12  # long after every submission
-    for _ in range(5):
-        registry.submit(NewJob({}))
-    registry._clock = lambda: clock
-    reconcile(registry, bell, settings)
-    assert len(bell.rung) == 1
-
-
-def test_the_broker_is_told_nothing_that_would_run_a_job_twice(settings):
+def test_the_broker_is_told_nothing_that_would_run_a_job_twice():
     told = celery_settings(Settings(broker="redis+socket:///x.sock"))
     assert told["task_acks_late"] is False
     assert told["broker_transport_options"]["visibility_timeout"] > 1e8

@@ -1,0 +1,1 @@
+"""Faults on purpose: real processes, brokers and databases, and what became of every job."""

@@ -1,0 +1,34 @@
+"""The registry's schema, step by step: `versions` holds one file for each change."""
+
+from __future__ import annotations
+
+from alembic import command
+from alembic.config import Config
+from alembic.util import CommandError
+from sqlalchemy import Connection, inspect, text
+
+ONE_AT_A_TIME = 0x686F636B6C65
+"""The name of the lock under which PostgreSQL lets one process migrate."""
+
+
+class WrongSchema(Exception):
+    """The database was written by another version of hockle."""
+
+
+def migrate(connection: Connection) -> None:
+    """Bring the tables to the newest version, within the transaction of `connection`.
+
+    Raises WrongSchema if they are of a version that this hockle does not know.
+    """
+    if connection.dialect.name == "postgresql":
+        connection.execute(text(f"SELECT pg_advisory_xact_lock({ONE_AT_A_TIME})"))
+    if inspect(connection).has_table("schema_version"):
+        raise WrongSchema("the registry was made by hockle 0.1.0, before there were migrations: "
+                          "give this one another data directory")
+    config = Config()
+    config.set_main_option("script_location", "service.jobs:migrations")
+    config.attributes["connection"] = connection
+    try:
+        command.upgrade(config, "head")
+    except CommandError as error:
+        raise WrongSchema(f"the registry was written by a newer hockle than this one: {error}") from None

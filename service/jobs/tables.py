@@ -1,0 +1,106 @@
+"""The registry's tables. A change of them needs a migration; a test compares the two."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from sqlalchemy import (
+    BigInteger,
+    Boolean,
+    Column,
+    Double,
+    ForeignKey,
+    Index,
+    Integer,
+    MetaData,
+    String,
+    Table,
+    Text,
+)
+
+from service.jobs.job import Dataset, Job, Limits, Reached
+from service.jobs.lifecycle import Status
+
+metadata = MetaData()
+
+jobs = Table(
+    "jobs",
+    metadata,
+    Column("id", String(26), primary_key=True),
+    Column("owner", String(64), nullable=False),
+    Column("status", String(10), nullable=False),
+    Column("title", Text, nullable=False),
+    Column("label", Text, nullable=False),
+    Column("priority", Integer, nullable=False),
+    Column("case_json", Text, nullable=False),
+    Column("case_sha256", String(64), nullable=False),
+    Column("progress", Double, nullable=False, default=0.0),
+    Column("t", Double, nullable=False, default=0.0),
+    Column("steps", BigInteger, nullable=False, default=0),
+    Column("steps_redone", BigInteger, nullable=False, default=0),
+    Column("wall", Double, nullable=False, default=0.0),
+    Column("outcome", String(64), nullable=False, default=""),
+    Column("message", Text, nullable=False, default=""),
+    Column("cancel_requested", Boolean, nullable=False, default=False),
+    Column("created", Double, nullable=False),
+    Column("started", Double),
+    Column("finished", Double),
+    Column("attempts", Integer, nullable=False, default=0),
+    Column("fruitless", Integer, nullable=False, default=0),
+    Column("checkpoint_steps", BigInteger, nullable=False, default=0),
+    Column("epoch", Integer, nullable=False, default=0),
+    Column("lease_until", Double),
+    Column("version", BigInteger, nullable=False, default=1),
+    Column("worker", Text, nullable=False, default=""),
+    Column("limit_wall", Double, nullable=False),
+    Column("limit_memory", BigInteger, nullable=False),
+    Column("limit_disk", BigInteger, nullable=False),
+    Column("dataset_file", Text),
+    Column("dataset_sha256", String(64)),
+    Column("dataset_bytes", BigInteger),
+    Index("jobs_by_status", "status", "id"),
+    Index("jobs_by_owner", "owner", "id"),
+    Index("jobs_by_case", "case_sha256", "status"),
+    Index("jobs_in_turn", "status", "owner", "priority", "id"),
+)
+
+owners = Table(
+    "owners",  # all who ever submitted a job; `served` orders their latest claims
+    metadata,
+    Column("name", String(64), primary_key=True),
+    Column("served", BigInteger, nullable=False, default=0),
+)
+
+events = Table(
+    "events",  # what happened to a job; `seq` is the job's version after it
+    metadata,
+    Column("job_id", String(26), ForeignKey("jobs.id"), primary_key=True),
+    Column("seq", BigInteger, primary_key=True),
+    Column("time", Double, nullable=False),
+    Column("kind", String(32), nullable=False),
+    Column("data", Text, nullable=False),
+)
+
+idempotency_keys = Table(
+    "idempotency_keys",
+    metadata,
+    Column("owner", String(64), primary_key=True),
+    Column("key", String(255), primary_key=True),
+    Column("body_sha256", String(64), nullable=False),
+    Column("job_id", String(26), ForeignKey("jobs.id"), nullable=False),
+    Column("created", Double, nullable=False, index=True),
+)
+
+JOB_COLUMNS = [column for column in jobs.columns if column.name not in ("case_json", "checkpoint_steps")]
+
+
+def job_of(row: Mapping[Any, Any]) -> Job:
+    """The job that a row of JOB_COLUMNS tells of."""
+    fields = dict(row)
+    reached = Reached(*(fields.pop(name) for name in ("progress", "t", "steps", "steps_redone", "wall")))
+    limits = Limits(*(fields.pop(f"limit_{name}") for name in ("wall", "memory", "disk")))
+    file, sha256, size = (fields.pop(f"dataset_{name}") for name in ("file", "sha256", "bytes"))
+    dataset = Dataset(file, sha256, size) if file is not None else None
+    return Job(**fields | {"status": Status(fields["status"]), "reached": reached, "limits": limits,
+                           "dataset": dataset})

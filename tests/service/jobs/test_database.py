@@ -1,0 +1,58 @@
+"""The tables: made and upgraded by migrations, alike on each database, refused if of another version."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.runtime.migration import MigrationContext
+from sqlalchemy import create_engine, text
+
+from service.jobs import Database
+from service.jobs.migrations import WrongSchema
+from service.jobs.tables import metadata
+
+
+def test_the_migrations_make_the_tables_that_the_code_knows(database):
+    with database.engine.connect() as connection:
+        context = MigrationContext.configure(connection, opts={"compare_type": True})
+        assert compare_metadata(context, metadata) == []
+
+
+def test_many_processes_may_open_a_new_database_at_once(url):
+    opened: list[Database] = []
+    threads = [threading.Thread(target=lambda: opened.append(Database(url))) for _ in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(opened) == 6
+    for one in opened:
+        one.close()
+
+
+def test_a_registry_of_a_newer_version_is_refused(database, url):
+    with database.engine.begin() as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    with pytest.raises(WrongSchema, match="newer hockle"):
+        Database(url)
+
+
+def test_a_registry_from_before_the_migrations_is_refused(url):
+    engine = create_engine(url)
+    with engine.begin() as connection:
+        connection.execute(text("CREATE TABLE schema_version (version INTEGER)"))
+    engine.dispose()
+    with pytest.raises(WrongSchema, match="another data directory"):
+        Database(url)
+
+
+def test_what_fails_in_its_middle_changes_nothing(registry):
+    from service.jobs import NewJob
+    from service.jobs.registry import insert_job
+
+    with pytest.raises(ZeroDivisionError), registry.database.writing() as transaction:
+        insert_job(transaction, NewJob({}))
+        raise ZeroDivisionError
+    assert registry.page(1).jobs == []

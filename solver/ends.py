@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from solver.methods.box.ends import LOAD, LOAD_LAB, RATE, RATE_LAB
 from solver.rod import Array
 from solver.scene import Condition, End
+
+RATE, LOAD, RATE_LAB, LOAD_LAB = 0, 1, 2, 3
+"""Kinds of a condition on a translation component; a rotation component is RATE or LOAD."""
+
+Kinds = NDArray[np.int64]
 
 
 def _smoothstep(x: float) -> float:

@@ -3,8 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from solver.rod import Array
+
+
+class Fields(NamedTuple):
+    """What is known along the rod at one time; see `Frame` for shapes, frames and units."""
+
+    v: Array
+    omega: Array
+    f: Array
+    kappa: Array
+    q: Array
+    r: Array
+    orientation: Array
 
 
 @dataclass(frozen=True)

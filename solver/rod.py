@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -88,3 +89,23 @@ class Rod:
     def with_properties(self, **properties: object) -> Rod:
         """The same rod with some of its properties given directly."""
         return replace(self, **properties)  # type: ignore[arg-type]
+
+
+class Section(NamedTuple):
+    """Section properties at n arclengths: stiffness (n, 3), mass (n,), inertia (n, 3), diameter (n,), kappa0 (n, 3)."""
+
+    stiffness: Array
+    mass: Array
+    inertia: Array
+    diameter: Array
+    kappa0: Array
+
+
+def sample(rod: Rod, s: Array) -> Section:
+    """The rod's section properties at arclengths s (n,)."""
+
+    def columns(profiles: tuple) -> Array:  # type: ignore[type-arg]
+        return np.ascontiguousarray(np.stack([p(s) for p in profiles], axis=1))
+
+    return Section(columns(rod.stiffness), np.array(rod.mass(s)), columns(rod.inertia),
+                   np.array(rod.diameter(s)), columns(rod.kappa0))  # fmt: skip

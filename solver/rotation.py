@@ -64,6 +64,17 @@ def turn(quaternion: Array, theta: Array, turned: Array) -> None:
 
 
 @kernel
+def multiply(left: Array, right: Array, product: Array) -> None:
+    """Write the quaternion left * right into `product` (4,): first `right`, then `left`."""
+    a, b, c, d = left[0], left[1], left[2], left[3]
+    w, x, y, z = right[0], right[1], right[2], right[3]
+    product[0] = a * w - b * x - c * y - d * z
+    product[1] = a * x + b * w + c * z - d * y
+    product[2] = a * y - b * z + c * w + d * x
+    product[3] = a * z + b * y - c * x + d * w
+
+
+@kernel
 def right_jacobian(theta: Array, scale: float, J: Array) -> None:
     """Write scale * J_r(theta) into `J` (3, 3): delta psi = J_r(theta) delta theta.
 

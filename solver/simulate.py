@@ -9,7 +9,8 @@ from time import process_time
 from solver.frame import Frame, Statistics
 from solver.measures.accounts import Accounts
 from solver.methods.box.method import BoxMethod
-from solver.methods.box.newton import CONVERGED, LOST_DIGITS, SINGULAR
+from solver.methods.method import Method
+from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
 from solver.rod import Array, Rod
 from solver.scene import Contact, End, Fluid, Initial, Numerics, Scene
@@ -17,6 +18,9 @@ from solver.step_control import CONSISTENT_STEPS, StepControl
 
 FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
 """Outcomes that a shorter step does not avert."""
+
+
+METHODS: dict[str, type[BoxMethod]] = {"box": BoxMethod}
 
 
 def simulate(scene: Scene) -> Simulation:
@@ -29,7 +33,7 @@ class Simulation:
 
     def __init__(self, scene: Scene) -> None:
         self._scene = scene
-        self._method = BoxMethod(scene)
+        self._method: Method = METHODS[scene.numerics.method](scene)
         self._accounts = Accounts(scene, self._method)
         count = round(scene.t_end / scene.output_interval)
         self._outputs = [min(k * scene.output_interval, scene.t_end) for k in range(1, count + 1)]
@@ -37,7 +41,8 @@ class Simulation:
             self._outputs.append(scene.t_end)
         ends = self._method.start.corners() + self._method.end.corners()
         self._control = StepControl(
-            scene.numerics, self._method.shortest_step, ends + self._method.applied.corners(), self._outputs
+            scene.numerics, self._method.increment_order, self._method.shortest_step,
+            ends + self._method.applied.corners(), self._outputs
         )
         self._switches = sorted({c.since for e in (scene.start, scene.end)
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
@@ -56,7 +61,7 @@ class Simulation:
         yield frame
         for output in self._outputs:
             while t < output:
-                t = self._advance(t, *self._control.step_from(t, self._method.contact.step_limit))
+                t = self._advance(t, *self._control.step_from(t, self._method.step_limit()))
             self.statistics.cpu_time += process_time() - started
             before, frame = frame, self._accounts.frame(output)
             if self._scene.contact is not None and _has_crossed(before, frame):
@@ -71,7 +76,7 @@ class Simulation:
             status, iterations = self._method.try_step(0.0, dt, consistent=True)
             self.statistics.newton_iterations += iterations
             if status == CONVERGED:
-                self._take(0.0, dt, dt, iterations)
+                self._take(0.0, dt, iterations)
                 return self._advance(dt, dt, 2 * dt, consistent=True)
             self.statistics.failed_steps += 1
         refusal, outcome = self._judge(status, 0.0)
@@ -92,7 +97,7 @@ class Simulation:
             self._control.rejected(dt)
             dt *= 0.5
             target = t + dt
-        self._take(t, dt, target, iterations)
+        self._take(t, dt, iterations)
         if not consistent:
             self._control.accepted(dt, increment, iterations)
         if self._switches and self._switches[0] <= target + 1e-12:
@@ -111,13 +116,13 @@ class Simulation:
             return "Newton's iteration stalled", Outcome.STEP_TOO_SMALL
         if self._control.too_coarse(increment):
             return "the motion is faster than the step", Outcome.STEP_TOO_SMALL
-        return self._method.contact.refusal(self._method.trial), Outcome.ROD_CROSSED_ITSELF
+        return self._method.refusal(), Outcome.ROD_CROSSED_ITSELF
 
-    def _take(self, t: float, dt: float, target: float, iterations: int) -> None:
+    def _take(self, t: float, dt: float, iterations: int) -> None:
         """Make the step that was tried the state, and enter it in the books."""
         self._method.take_step(t, dt)
         self.statistics.steps += 1
-        self._accounts.after_step(target, dt, iterations)
+        self._accounts.after_step(dt, iterations)
 
 
 def _has_crossed(before: Frame, frame: Frame) -> bool:
@@ -137,4 +142,4 @@ def warm() -> None:
     simulation = Simulation(scene)
     simulation._begin()
     simulation._accounts.frame(0.0)
-    simulation._method.contact.compile()
+    simulation._method.compile()

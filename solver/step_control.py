@@ -21,8 +21,10 @@ class StepControl:
     """Chooses steps that end exactly on every corner and output time."""
 
     def __init__(
-        self, numerics: Numerics, shortest: float, corners: Iterable[float], outputs: Iterable[float]
+        self, numerics: Numerics, order: float, shortest: float, corners: Iterable[float], outputs: Iterable[float]
     ) -> None:
+        """`order`: power of the step with which a step's relative increment falls."""
+        self._exponent = 1.0 / order
         self._dt_max = numerics.dt_max
         self._tolerance = numerics.increment_tolerance
         self._first = max(numerics.dt_max * FIRST_STEP, shortest)
@@ -52,7 +54,8 @@ class StepControl:
         grown = GROWTH * (self._wanted if 2.0 * dt >= self._wanted else taken)
         longest = grown if iterations <= 4 else (taken if iterations <= 7 else 0.7 * taken)
         if relative_increment > 0.0:
-            longest = min(longest, max(0.5 * taken, 0.9 * dt * (self._tolerance / relative_increment) ** 0.5))
+            accurate = 0.9 * dt * (self._tolerance / relative_increment) ** self._exponent
+            longest = min(longest, max(0.5 * taken, accurate))
         self._wanted = min(self._dt_max, longest)
 
     def too_coarse(self, relative_increment: float) -> bool:

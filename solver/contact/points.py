@@ -10,8 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.kernel import kernel
-from solver.methods.box.fields import Section
-from solver.rod import Array
+from solver.rod import Array, Section
 from solver.scene import Contact
 
 

@@ -18,8 +18,8 @@ from solver.contact.search import (
     total_bending,
 )
 from solver.kernel import kernel
-from solver.methods.box.fields import Section, State
-from solver.rod import Array
+from solver.methods.box.fields import State
+from solver.rod import Array, Section
 from solver.rotation import tangents_of
 from solver.scene import Contact
 

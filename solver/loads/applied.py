@@ -3,26 +3,51 @@
 from __future__ import annotations
 
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
 from solver.curve import Curve
-from solver.methods.box.fields import Loads, Section
-from solver.rod import Array
+from solver.rod import Array, Section
 from solver.scene import DistributedLoad, PointLoad, Scene
 
 
-class AppliedLoads:
-    """The loads of a scene at the nodes `s` (n,), at any time."""
+class Loads(NamedTuple):
+    """Loads per length at n arclengths, at one time.
 
-    def __init__(self, scene: Scene, section: Section, s: Array) -> None:
+    `lab` and `material` (n, 6): force and moment; `follows`: whether `material` is not zero; `turns`: whether
+    `lab` has moments;
+    `damping` c (1/s); `added_mass`, `drag_normal`, `drag_tangential` (n,): Ca rho_w A, 0.5 rho_w D Cdn,
+    0.5 rho_w pi D Cdt; `current` (3,); `wet`: whether there is a fluid.
+    """
+
+    lab: Array
+    material: Array
+    follows: bool
+    turns: bool
+    damping: float
+    added_mass: Array
+    drag_normal: Array
+    drag_tangential: Array
+    current: Array
+    wet: bool
+
+
+class AppliedLoads:
+    """The loads of a scene at any time, as densities at arclengths `s` (n,).
+
+    The density at s[i] acts on a length `lengths[i]` about `centres[i]`; by default that of a node of the box scheme.
+    """
+
+    def __init__(self, scene: Scene, section: Section, s: Array, acting: tuple[Array, Array] | None = None) -> None:
         n, fluid = len(s), scene.fluid
+        centres, lengths = acting or nodes_act(s)
         self.weight = effective_weight(scene, section)
-        """(rho_c - rho_w) A g at the nodes (n, 3), N/m, lab."""
+        """(rho_c - rho_w) A g (n, 3), N/m, lab."""
         self._distributed = [(load, _profiles(load, s)) for load in scene.distributed]
-        at_ends = tuple(load for load in scene.points if load.s in (s[0], s[-1]))
+        at_ends = tuple(load for load in scene.points if load.s in (0.0, scene.rod.length))
         inside = tuple(load for load in scene.points if load not in at_ends)
-        self._points = [(load, point_weights(load.s, s)) for load in inside]
+        self._points = [(load, point_weights(load.s, centres, lengths)) for load in inside]
         self._at_ends = at_ends
         self._given = scene.distributed + inside
         area = 0.25 * pi * section.diameter**2
@@ -83,19 +108,25 @@ def effective_weight(scene: Scene, section: Section) -> Array:
     return np.outer(mass, np.array(scene.gravity, dtype=float))
 
 
-def point_weights(at: float, s: Array) -> Array:
-    """Densities at the nodes (n,) in 1/m that act like a unit point load at arclength `at`.
+def nodes_act(s: Array) -> tuple[Array, Array]:
+    """Where, and on what length, a density at each of the nodes `s` (n,) acts through the means over its intervals.
 
-    A density at a node acts, through the means over its intervals, at the node's centre of action: the node itself,
-    or the middle of the first or last interval for an end node. Two neighbouring nodes are weighted so that force
-    and moment are those of the point.
+    The node itself, or the middle of the first or last interval for an end node.
     """
     centres, lengths = s.copy(), np.gradient(s)
     centres[0], centres[-1] = 0.5 * (s[0] + s[1]), 0.5 * (s[-2] + s[-1])
     lengths[0], lengths[-1] = 0.5 * (s[1] - s[0]), 0.5 * (s[-1] - s[-2])
-    i = int(np.clip(np.searchsorted(centres, at) - 1, 0, len(s) - 2))
+    return centres, lengths
+
+
+def point_weights(at: float, centres: Array, lengths: Array) -> Array:
+    """Densities (n,) in 1/m that act like a unit point load at arclength `at`.
+
+    Two neighbours are weighted so that force and moment are those of the point.
+    """
+    i = int(np.clip(np.searchsorted(centres, at) - 1, 0, len(centres) - 2))
     share = (at - centres[i]) / (centres[i + 1] - centres[i])
-    weights = np.zeros_like(s)
+    weights = np.zeros_like(centres)
     weights[i], weights[i + 1] = (1.0 - share) / lengths[i], share / lengths[i + 1]
     return weights
 

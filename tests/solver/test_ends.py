@@ -9,8 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Condition, Curve, End, Initial, Scene, simulate
-from solver.ends import DrivenEnd
-from solver.methods.box.ends import LOAD, LOAD_LAB, RATE, RATE_LAB
+from solver.ends import LOAD, LOAD_LAB, RATE, RATE_LAB, DrivenEnd
 from solver.scene import FIXED, FREE
 from solver.step_control import CONSISTENT_STEPS
 from tests.solver.scenes import ARC, ARC_ROD, ROD, fixed_steps, last, moved_clamp, turned_clamp

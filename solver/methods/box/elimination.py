@@ -14,10 +14,10 @@ import numpy as np
 
 from solver.kernel import inlined, kernel
 from solver.methods.box.augmented import wide_panel, wide_start
-from solver.methods.box.fields import Linear, Nodes, Section
+from solver.methods.box.fields import Linear, Nodes
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.space import BOX
-from solver.rod import Array
+from solver.rod import Array, Section
 
 
 @inlined

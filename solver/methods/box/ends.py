@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
+from solver.ends import LOAD, RATE, RATE_LAB, Kinds
 from solver.kernel import kernel
-from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, Section, V
-from solver.rod import Array
-
-RATE, LOAD, RATE_LAB, LOAD_LAB = 0, 1, 2, 3
-"""Kinds of a condition on a translation component; a rotation component is RATE or LOAD."""
-
-Kinds = NDArray[np.int64]
+from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, V
+from solver.rod import Array, Section
 
 
 @kernel

@@ -12,31 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.methods.box.space import BOX, SpaceScheme
-from solver.rod import Array, Rod
+from solver.rod import Array
 
 V, OMEGA, KAPPA, F = 0, 3, 6, 9
 """First column of each unknown in Y (n, 12)."""
 UNKNOWNS = 12
-
-
-class Section(NamedTuple):
-    """Section properties at the nodes: stiffness (n, 3), mass (n,), inertia (n, 3), diameter (n,), kappa0 (n, 3)."""
-
-    stiffness: Array
-    mass: Array
-    inertia: Array
-    diameter: Array
-    kappa0: Array
-
-
-def sample(rod: Rod, s: Array) -> Section:
-    """The rod's section properties at arclengths s (n,)."""
-
-    def columns(profiles: tuple) -> Array:  # type: ignore[type-arg]
-        return np.ascontiguousarray(np.stack([p(s) for p in profiles], axis=1))
-
-    return Section(columns(rod.stiffness), np.array(rod.mass(s)), columns(rod.inertia),
-                   np.array(rod.diameter(s)), columns(rod.kappa0))  # fmt: skip
 
 
 class State(NamedTuple):
@@ -88,27 +68,6 @@ class Nodes(NamedTuple):
         """Zeros for n nodes."""
         shapes = {"scratch": (3, 3)} | dict.fromkeys(("T", "P", "q", "W"), (n, 3))
         return cls(*(np.zeros(shapes.get(name, (n, 3, 3))) for name in cls._fields))
-
-
-class Loads(NamedTuple):
-    """Loads at the nodes at the end of the step, per length.
-
-    `lab` and `material` (n, 6): force and moment; `follows`: whether `material` is not zero; `turns`: whether
-    `lab` has moments;
-    `damping` c (1/s); `added_mass`, `drag_normal`, `drag_tangential` (n,): Ca rho_w A, 0.5 rho_w D Cdn,
-    0.5 rho_w pi D Cdt; `current` (3,); `wet`: whether there is a fluid.
-    """
-
-    lab: Array
-    material: Array
-    follows: bool
-    turns: bool
-    damping: float
-    added_mass: Array
-    drag_normal: Array
-    drag_tangential: Array
-    current: Array
-    wet: bool
 
 
 class Wide(NamedTuple):

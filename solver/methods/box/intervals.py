@@ -21,9 +21,9 @@ from __future__ import annotations
 import numpy as np
 
 from solver.kernel import inlined, kernel
-from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, Section, State, V
+from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, State, V
 from solver.methods.box.space import SpaceScheme
-from solver.rod import Array
+from solver.rod import Array, Section
 from solver.rotation import tangent_of
 
 MEANS = 5

@@ -9,15 +9,17 @@ from scipy.linalg import solveh_banded
 
 from solver.contact.self_contact import SelfContact
 from solver.ends import DrivenEnd
+from solver.frame import Fields
 from solver.initial import nodes_at_rest
-from solver.loads.applied import AppliedLoads
-from solver.measures.energies import powers
-from solver.methods.box.fields import KAPPA, OMEGA, F, Loads, Section, State, V, sample
+from solver.loads.applied import AppliedLoads, Loads
+from solver.measures.energies import Energies
+from solver.methods.box.energies import energies, powers
+from solver.methods.box.fields import KAPPA, OMEGA, F, State, V
 from solver.methods.box.generalized_alpha import BACKWARD_EULER, Scheme, rescale_aux
 from solver.methods.box.intervals import measure_stretch
 from solver.methods.box.newton import EndValues, Scales, Work, step
 from solver.methods.box.space import SpaceScheme
-from solver.rod import Array
+from solver.rod import Array, Section, sample
 from solver.rotation import relative_rotation, rotate_back, tangents_of
 from solver.scene import Initial, Scene
 
@@ -33,6 +35,8 @@ SMALL_MOTION = 1e-6
 
 class BoxMethod:
     """Generalized-alpha in time and in space on the unknowns V, omega, kappa, F at the nodes."""
+
+    increment_order = 2.0
 
     def __init__(self, scene: Scene) -> None:
         numerics = scene.numerics
@@ -58,6 +62,7 @@ class BoxMethod:
         self._last_dt, self._taken_dt, self._consistent = 0.0, 0.0, False
         self._F_rate = np.zeros((len(self.s), 3))
         self.loads: Loads = self.applied.at(0.0)
+        self._power, self._power_before = np.zeros(4), np.zeros(4)
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt into `trial`; how it ended and the Newton iterations.
@@ -109,9 +114,57 @@ class BoxMethod:
         motion = float(np.abs(self.trial.r - self.state.r).max())
         return dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1]))
 
-    def power(self, out: Array) -> None:
-        """Write the power of ends, loads and dissipation at the state just taken into `out` (3,)."""
-        powers(self.state, self.work.nodes, self.section, self.loads, self.applied.weight, self.h, out)
+    def refusal(self) -> str:
+        """Why contact does not let the trial be trusted, or nothing."""
+        return self.contact.refusal(self.trial)
+
+    def step_limit(self) -> float:
+        """The longest next step (s) that contact allows."""
+        return self.contact.step_limit
+
+    def flows(self, dt: float) -> Array:
+        """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, into contact.
+
+        By the trapezoidal rule on the powers at the ends of the step.
+        """
+        self._power, self._power_before = self._power_before, self._power
+        powers(self.state, self.work.nodes, self.section, self.loads, self.applied.weight, self.h, self._power[:3])
+        self._power[3], rubbed = self.contact.power()
+        self._power[2] += rubbed
+        return np.asarray(0.5 * dt * (self._power + self._power_before))
+
+    def fields(self) -> Fields:
+        """The state along the rod."""
+        Y, quaternion = self.state.Y, self.state.quaternion
+        kappa = Y[:, KAPPA : KAPPA + 3].copy()
+        return Fields(
+            v=self.velocity(), omega=Y[:, OMEGA : OMEGA + 3].copy(), f=rotate_back(quaternion, Y[:, F:].copy()),
+            kappa=kappa, q=self.section.stiffness * (kappa - self.section.kappa0), r=self.state.r.copy(),
+            orientation=quaternion.copy(),
+        )  # fmt: skip
+
+    def energies(self) -> Energies:
+        """The energies of the state, but for contact."""
+        tangent = np.empty((len(self.s), 3))
+        tangents_of(self.state.quaternion, tangent)
+        return energies(self.state, self.section, self.loads, self.applied.weight, tangent, self.h)
+
+    def twist(self) -> float:
+        """Tw of the state, in turns."""
+        twist = self.state.Y[:, KAPPA + 2]
+        return float(np.sum(0.5 * (twist[1:] + twist[:-1])) * self.h / (2 * np.pi))
+
+    def smallest_gap(self) -> float:
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
+        return self.contact.smallest_gap(self.state)
+
+    def pressing(self) -> int:
+        """Number of pairs of points that press on each other."""
+        return self.contact.pressing
+
+    def compile(self) -> None:
+        """Have every kernel compiled that a run may need."""
+        self.contact.compile()
 
     def _guess(self, dt: float, consistent: bool) -> None:
         self.trial.Y[:] = self.state.Y

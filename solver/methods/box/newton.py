@@ -7,20 +7,20 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.contact.coupling import Touch, add_contact, allowed_fraction, solve_with_contact
+from solver.ends import Kinds
 from solver.kernel import kernel
+from solver.loads.applied import Loads
 from solver.methods.box.augmented import take_auxiliary, wide_residuals
 from solver.methods.box.elimination import factor, solve
-from solver.methods.box.ends import Kinds, end_conditions
-from solver.methods.box.fields import KAPPA, F, Linear, Loads, Nodes, Section, State
+from solver.methods.box.ends import end_conditions
+from solver.methods.box.fields import KAPPA, F, Linear, Nodes, State
 from solver.methods.box.generalized_alpha import Scheme, finish, history
 from solver.methods.box.intervals import interval_residuals
 from solver.methods.box.nodes import balance_rotation, balance_translation, place_nodes
 from solver.methods.box.shooting import LARGEST_GROWTH, shoot
 from solver.methods.box.space import SpaceScheme
-from solver.rod import Array
-
-CONVERGED, STALLED, SINGULAR, LOST_DIGITS = 0, 1, 2, 3
-"""How an iteration ended."""
+from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR, STALLED
+from solver.rod import Array, Section
 
 LARGEST_ITERATIONS = 12
 LARGEST_INCREMENT = 1e8

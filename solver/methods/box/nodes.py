@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from solver.kernel import kernel
+from solver.loads.applied import Loads
 from solver.loads.fluid import add_added_mass, add_drag
-from solver.methods.box.fields import KAPPA, OMEGA, Loads, Nodes, Section, State, V
-from solver.rod import Array
+from solver.methods.box.fields import KAPPA, OMEGA, Nodes, State, V
+from solver.rod import Array, Section
 from solver.rotation import matrix_of, right_jacobian, turn
 
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from solver.kernel import kernel
-from solver.methods.box.fields import Linear, Nodes, Section
+from solver.methods.box.fields import Linear, Nodes
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.space import BOX
-from solver.rod import Array
+from solver.rod import Array, Section
 
 LARGEST_GROWTH = 1e12
 """Beyond it fewer than four digits are left and Newton's iteration cannot be trusted."""

@@ -20,8 +20,8 @@ from solver.contact.search import (
     smallest_distance,
     total_bending,
 )
-from solver.methods.box.fields import KAPPA, sample
-from solver.rod import Array, Rod
+from solver.methods.box.fields import KAPPA
+from solver.rod import Array, Rod, sample
 from solver.scene import Contact
 
 LENGTH, INTERVALS = 1.0, 40

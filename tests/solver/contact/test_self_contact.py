@@ -15,8 +15,8 @@ from solver import Contact, Curve, DistributedLoad, End, Initial, Outcome, Rod, 
 from solver.contact.self_contact import SelfContact
 from solver.curve import constant_vector
 from solver.initial import nodes_at_rest
-from solver.methods.box.fields import KAPPA, State, sample
-from solver.rod import Array
+from solver.methods.box.fields import KAPPA, State
+from solver.rod import Array, sample
 from solver.step_control import StepControl
 from tests.solver.scenes import fixed_steps, moved_clamp
 

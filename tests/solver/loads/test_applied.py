@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from solver import Curve, DistributedLoad, End, Fluid, Initial, PointLoad, Rod, Scene, constant_vector
-from solver.loads.applied import AppliedLoads, effective_weight, point_weights
-from solver.methods.box.fields import sample
-from solver.rod import Array
+from solver.loads.applied import AppliedLoads, effective_weight, nodes_act, point_weights
+from solver.rod import Array, sample
 
 LENGTH, INTERVALS = 2.0, 8
 S = np.linspace(0.0, LENGTH, INTERVALS + 1)
@@ -48,25 +47,25 @@ def force_and_moment_at_the_root(density: Array) -> tuple[float, float]:
 
 @given(st.floats(0.0, LENGTH))
 def test_a_point_load_acts_with_its_force_and_its_moment_wherever_it_is(at: float) -> None:
-    force, moment = force_and_moment_at_the_root(point_weights(at, S))
+    force, moment = force_and_moment_at_the_root(point_weights(at, *nodes_act(S)))
     assert force == pytest.approx(1.0, abs=1e-14)
     assert moment == pytest.approx(at, abs=1e-13)
 
 
 @pytest.mark.parametrize("at", [0.0, 0.1 * H, 0.5 * H, 0.9 * H, LENGTH - 0.5 * H, LENGTH - 0.01 * H, LENGTH])
 def test_a_point_load_near_an_end_is_as_exact_as_elsewhere(at: float) -> None:
-    assert_allclose(force_and_moment_at_the_root(point_weights(at, S)), (1.0, at), atol=1e-14)
+    assert_allclose(force_and_moment_at_the_root(point_weights(at, *nodes_act(S))), (1.0, at), atol=1e-14)
 
 
 def test_a_point_load_on_a_node_is_that_nodes_alone() -> None:
-    weights = point_weights(float(S[3]), S)
+    weights = point_weights(float(S[3]), *nodes_act(S))
     assert weights[3] == pytest.approx(1.0 / H)
     assert np.count_nonzero(np.abs(weights) > 1e-12) == 1
 
 
 def test_a_point_load_moves_smoothly_along_the_rod() -> None:
     along = np.linspace(0.0, LENGTH, 2001)
-    weights = np.array([point_weights(float(at), S) for at in along])
+    weights = np.array([point_weights(float(at), *nodes_act(S)) for at in along])
     # piecewise linear: a step of 1 mm may change a weight by 1e-3 m / (H/2) / (H/2)
     assert np.abs(np.diff(weights, axis=0)).max() <= 1e-3 / (0.5 * H) ** 2 * (1 + 1e-9)
 
@@ -103,7 +102,7 @@ def test_loads_add_up() -> None:
     one = DistributedLoad(force=constant_vector((1.0, 0.0, 0.0)))
     point = PointLoad(1.0, force=(Curve.constant(5.0), ZERO[1], ZERO[2]))
     now = applied(distributed=(one, one), points=(point, point)).at(0.0)
-    assert_allclose(now.lab[:, 0], 2.0 + 10.0 * point_weights(1.0, S))
+    assert_allclose(now.lab[:, 0], 2.0 + 10.0 * point_weights(1.0, *nodes_act(S)))
 
 
 def test_a_point_load_at_an_end_is_the_ends_and_no_density() -> None:

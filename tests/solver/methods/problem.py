@@ -11,14 +11,15 @@ from solver.contact.coupling import _node_forces
 from solver.contact.self_contact import SelfContact
 from solver.curve import Curve
 from solver.kernel import kernel
+from solver.loads.applied import Loads
 from solver.methods.box.augmented import wide_panel, wide_start
-from solver.methods.box.fields import Loads, Section, State, sample
+from solver.methods.box.fields import State
 from solver.methods.box.generalized_alpha import Scheme, history
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.method import _initial_state
 from solver.methods.box.newton import EndValues, Scales, Work, assemble, set_scales
 from solver.methods.box.space import SpaceScheme
-from solver.rod import Array
+from solver.rod import Array, Section, sample
 from solver.scene import End
 
 LENGTH = 0.4

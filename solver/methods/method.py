@@ -1,0 +1,68 @@
+"""What a method is to the simulation: a state of the rod, and steps that are tried and then taken."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from solver.ends import DrivenEnd
+from solver.frame import Fields
+from solver.loads.applied import AppliedLoads
+from solver.measures.energies import Energies
+from solver.rod import Array
+
+
+class Method(Protocol):
+    """A discretization in space and time of one scene.
+
+    `s` (n,): arclengths of the nodes (m); `start`, `end`: the driven ends; `applied`: the given loads; `shortest_step`
+    (s): no shorter step is possible; `increment_order`: power of dt with which `relative_increment` falls.
+    """
+
+    s: Array
+    start: DrivenEnd
+    end: DrivenEnd
+    applied: AppliedLoads
+    shortest_step: float
+    increment_order: float
+
+    def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
+        """Try to go from t to t + dt; how it ended (see `status`) and the Newton iterations.
+
+        `consistent`: dt is tiny, and what is wanted is accelerations and forces.
+        """
+
+    def relative_increment(self, dt: float) -> float:
+        """The trial's local error relative to its motion."""
+
+    def refusal(self) -> str:
+        """Why contact does not let the trial be trusted, or nothing."""
+
+    def take_step(self, t: float, dt: float) -> None:
+        """Make the trial the state."""
+
+    def switch_ends(self, t: float) -> None:
+        """Put in force the end conditions that hold from t on."""
+
+    def step_limit(self) -> float:
+        """The longest next step (s) that contact allows."""
+
+    def flows(self, dt: float) -> Array:
+        """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, into contact."""
+
+    def fields(self) -> Fields:
+        """The state along the rod."""
+
+    def energies(self) -> Energies:
+        """The energies of the state, but for contact."""
+
+    def twist(self) -> float:
+        """Tw of the state, in turns."""
+
+    def smallest_gap(self) -> float:
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
+
+    def pressing(self) -> int:
+        """Number of pairs of points that press on each other."""
+
+    def compile(self) -> None:
+        """Have every kernel compiled that a run may need."""

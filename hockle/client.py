@@ -22,9 +22,14 @@ class Client:
     """Talks to one server. Every method raises Failure with the sentence for the user."""
 
     def __init__(self, server: str | None = None) -> None:
-        """`server` is an address such as http://127.0.0.1:8000, by default that of HOCKLE_SERVER."""
+        """`server` is an address such as http://127.0.0.1:8000, by default that of HOCKLE_SERVER.
+
+        The API key is that of HOCKLE_KEY, if there is one.
+        """
         self.server = (server or os.environ.get("HOCKLE_SERVER") or DEFAULT_SERVER).rstrip("/")
-        self._http = httpx.Client(base_url=self.server, timeout=30.0, trust_env=False)
+        key = os.environ.get("HOCKLE_KEY")
+        headers = {"Authorization": f"Bearer {key}"} if key else {}
+        self._http = httpx.Client(base_url=self.server, headers=headers, timeout=30.0, trust_env=False)
 
     def __enter__(self) -> Self:
         return self
@@ -32,9 +37,9 @@ class Client:
     def __exit__(self, *_: object) -> None:
         self._http.close()
 
-    def submit(self, case: dict[str, Any]) -> dict[str, Any]:
-        """Hand in a case; gives the accepted job."""
-        return self._ask("POST", "/v1/jobs", json=case)
+    def submit(self, case: dict[str, Any], label: str = "", again: bool = False) -> dict[str, Any]:
+        """Hand in a case; gives the accepted job, or one that has run the same case, unless it shall run `again`."""
+        return self._ask("POST", "/v1/jobs", json={"case": case, "label": label, "reuse": not again})
 
     def job(self, job_id: str) -> dict[str, Any]:
         """How a job is doing."""
@@ -104,7 +109,7 @@ def _failure(response: httpx.Response) -> Failure:
 
 
 def _place(fault: dict[str, Any]) -> str:
-    return fault.get("pointer") or fault.get("parameter") or "the case"
+    return fault.get("pointer", "").removeprefix("/case") or fault.get("parameter") or "the case"
 
 
 def _safe(job_id: str) -> str:

@@ -50,7 +50,7 @@ def _run(services: Services, client: Client, path: Path) -> None:
     from hockle.progress import show
     from service.cases import load_case
 
-    job = client.submit(load_case(CASE))
+    job = client.submit(load_case(CASE), again=True)
     print(f"submitted {CASE}: {services.address}/v1/jobs/{job['id']}", flush=True)
     print("(the very first run compiles the solver before it starts, which takes about a minute)", flush=True)
     job = show(_looked_after(services, client, job["id"]))

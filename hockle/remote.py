@@ -14,6 +14,8 @@ def register(subparsers: Any) -> None:
     submit_parser.add_argument("case", metavar="CASE", help="a shipped name or a file")
     submit_parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="settings",
                                help="change a value of the case, as numerics.intervals=400")
+    submit_parser.add_argument("--label", default="", help="a word of yours, to find the job by")
+    submit_parser.add_argument("--again", action="store_true", help="run it even if the same case has run before")
     submit_parser.add_argument("--wait", action="store_true", help="follow the job to its end")
     submit_parser.set_defaults(run=submit)
     status_parser = subparsers.add_parser("status", help="how a job is doing")
@@ -36,7 +38,7 @@ def submit(told: argparse.Namespace) -> int:
 
     case = read_case(told.case, told.settings)
     with Client(told.server) as client:
-        job = client.submit(case)
+        job = client.submit(case, told.label, told.again)
         print(job["id"], flush=True)
         if not told.wait:
             return 0

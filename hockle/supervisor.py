@@ -20,6 +20,7 @@ from typing import Any
 from hockle.broker import answers, redis_binary, redis_child
 from hockle.children import Child
 from hockle.failure import Failure
+from service.access import has_keys
 from service.api.listening import listen
 from service.settings import Settings, from_environment
 
@@ -32,7 +33,8 @@ class Services:
 
     def __init__(self, settings: Settings, host: str = "127.0.0.1", port: int = 8000,
                  workers: int = 1) -> None:
-        """Nothing is started yet. Port 0 is any free one. Raises Failure if `host` is not loopback."""
+        """Nothing is started yet. Port 0 is any free one. Raises Failure for a host
+        other than loopback while there is no API key."""
         self.settings, self._workers = settings, workers
         self._host, self._port = host, port
         self._cleanup = ExitStack()
@@ -80,7 +82,8 @@ class Services:
 
     def _start(self) -> None:
         try:
-            listening = self._cleanup.enter_context(listen(self._host, self._port))
+            keys = has_keys(self.settings, time.time())
+            listening = self._cleanup.enter_context(listen(self._host, self._port, keys))
         except (OSError, ValueError) as error:
             raise Failure(f"cannot listen on {self._host} port {self._port}: {error}") from None
         self._port = listening.getsockname()[1]
@@ -136,7 +139,7 @@ class Services:
         import httpx
 
         try:
-            return httpx.get(f"{self.address}/healthz", timeout=1.0, trust_env=False).status_code == 200
+            return httpx.get(f"{self.address}/readyz", timeout=1.0, trust_env=False).status_code == 200
         except httpx.TransportError:
             return False
 
@@ -151,7 +154,7 @@ class Services:
 def register(subparsers: Any) -> None:
     """Add `hockle serve`."""
     parser = subparsers.add_parser("serve", help="run API, worker and broker until Ctrl-C")
-    parser.add_argument("--host", default="127.0.0.1", help="a loopback address")
+    parser.add_argument("--host", default="127.0.0.1", help="any other than loopback needs API keys")
     parser.add_argument("--port", type=int, default=8000, help="0 for any free one")
     parser.add_argument("--data", type=Path, help="directory of all it keeps (default HOCKLE_DATA, or ./var)")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="jobs at the same time")

@@ -48,6 +48,9 @@ class Settings:
     checkpoints, empty for `data`; several hosts share it.
     `lease`: how long a silent worker keeps its job. `attempts`: how often a job is tried that gets no
     farther. `checkpoint`: how much running a lost worker may cost.
+    `longest_run`: the most computing that a case may ask for, by its estimate. Of one owner: `quota`, the most
+    unfinished jobs; `rate`, the requests a second. `require_keys`: ask for API keys on loopback too, as behind a
+    proxy. `hosts`: names by which clients know the service, with commas between.
     """
 
     data: Path = Path("var")
@@ -57,6 +60,11 @@ class Settings:
     lease: Annotated[float, Positive] = 30.0
     attempts: Annotated[int, Positive] = 3
     checkpoint: Annotated[float, Positive] = 10.0
+    longest_run: Annotated[float, Positive] = 86400.0
+    quota: Annotated[int, Positive] = 10_000
+    rate: Annotated[float, Positive] = 100.0
+    require_keys: bool = False
+    hosts: str = ""
 
     @property
     def database_url(self) -> str:

@@ -1,15 +1,17 @@
-"""`python -m service.api`: the API in this process, on loopback only."""
+"""`python -m service.api`: the API in this process; on loopback, or anywhere once there are API keys."""
 
 from __future__ import annotations
 
 import argparse
 import socket
+import time
 
 import uvicorn
 
+from service.access import has_keys
 from service.api.app import create_app
-from service.api.listening import listen
-from service.settings import from_environment
+from service.api.listening import listen, on_loopback
+from service.settings import Settings, from_environment
 
 
 def main() -> None:
@@ -19,9 +21,17 @@ def main() -> None:
     parser.add_argument("--port", type=int, default=8000)
     parser.add_argument("--fd", type=int, help="serve on this inherited socket instead")
     told = parser.parse_args()
-    listening = socket.socket(fileno=told.fd) if told.fd is not None else listen(told.host, told.port)
-    config = uvicorn.Config(create_app(from_environment()), log_level="warning", server_header=False)
+    settings = from_environment()
+    listening = _socket(told, settings)
+    app = create_app(settings, keyed=settings.require_keys or not on_loopback(listening))
+    config = uvicorn.Config(app, log_level="warning", server_header=False)
     uvicorn.Server(config).run(sockets=[listening])
+
+
+def _socket(told: argparse.Namespace, settings: Settings) -> socket.socket:
+    if told.fd is not None:
+        return socket.socket(fileno=told.fd)
+    return listen(told.host, told.port, has_keys(settings, time.time()))
 
 
 if __name__ == "__main__":

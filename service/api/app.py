@@ -8,33 +8,52 @@ from importlib.metadata import version
 
 from fastapi import FastAPI
 
-from service.api import cases, datasets, front, jobs, problems
-from service.api.guard import LoopbackGuard
+from service.access import KeyStore
+from service.access.limits import RateLimit
+from service.api import cases, datasets, events, front, jobs, problems, submitting
+from service.api.description import describe
+from service.api.feed import Feed
+from service.api.gate import Gate
 from service.api.parts import Parts
 from service.jobs import Database, Registry
 from service.jobs.doorbell import Doorbell
-from service.jobs.reconciler import Reconciler
+from service.jobs.reconciler import Reconciler, ring_for_all
+from service.jobs.submissions import Submissions
 from service.settings import Settings
 
+TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
+        {"name": "results", "description": "Datasets, whole or in part."},
+        {"name": "cases", "description": "What can be simulated, and what it would cost."},
+        {"name": "service", "description": "Whether it lives, and how it does."}]
+BURST = 10.0  # s of an owner's rate that may be spent at once
 
-def create_app(settings: Settings) -> FastAPI:
-    """The API over the registry that `settings` name; it also reconciles while it runs."""
+
+def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
+    """The API over the registry that `settings` name; it also reconciles while it runs.
+
+    `keyed`: whether every request needs an API key.
+    """
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         settings.make_directories()
         database = Database(settings.database_url)
-        parts = Parts(settings, Registry(database), Doorbell(settings))
-        app.state.parts = parts
-        with Reconciler(database, parts.doorbell, settings):
-            yield
-        parts.doorbell.close()
+        registry, doorbell = Registry(database), Doorbell(settings)
+        with (Reconciler(database, doorbell, settings),
+              Submissions(database, settings.quota, lambda: ring_for_all(database, doorbell)) as submissions):
+            async with Feed(registry).running() as feed:
+                limit = RateLimit(settings.rate, int(settings.rate * BURST))
+                app.state.parts = Parts(settings, registry, doorbell, KeyStore(database), limit, submissions, feed)
+                yield
+        doorbell.close()
         database.close()
 
-    app = FastAPI(title="hockle", version=version("hockle"), lifespan=lifespan,
+    app = FastAPI(title="hockle", version=version("hockle"), lifespan=lifespan, openapi_tags=TAGS,
                   openapi_url="/v1/openapi.json", docs_url=None, redoc_url=None, redirect_slashes=False)
-    app.add_middleware(LoopbackGuard)
+    app.openapi = lambda: describe(app)  # type: ignore[method-assign]
+    hosts = {name.strip().lower() for name in settings.hosts.split(",")} - {""}
+    app.add_middleware(Gate, keyed=keyed, hosts=hosts)
     problems.install(app)
-    for part in (cases, jobs, datasets, front):
+    for part in (submitting, jobs, events, datasets, cases, front):
         app.include_router(part.router)
     return app

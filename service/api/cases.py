@@ -4,87 +4,57 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends
+from fastapi import APIRouter, Path
 from pydantic import BaseModel
 
-from service.api.bodies import json_object
+from service.api.description import CASE_BODY, problems
+from service.api.parts import InParts, Reader, Submitter
 from service.api.problems import Problem
-from service.cases import (
-    CaseError,
-    CaseSpec,
-    FieldError,
-    apply_settings,
-    case_schema,
-    load_case,
-    parse_case,
-    shipped_cases,
-)
+from service.api.requests import SHIPPED, InWanted
+from service.cases import case_schema, check_cost, load_case, shipped_cases
 
 router = APIRouter(prefix="/v1", tags=["cases"])
 
-SHIPPED_WITH_SETTINGS = {
-    "type": "object",
-    "title": "A shipped case, with settings by dotted key",
-    "properties": {"case": {"type": "string"}, "set": {"type": "object"}},
-    "required": ["case"],
-    "additionalProperties": False,
-    "examples": [{"case": "goyal-2003", "set": {"t_end": 34, "numerics.intervals": 400}}],
-}
-WHOLE_CASE = {"type": "object", "title": "A whole case", "description": "As /v1/cases/schema tells."}
-CASE_BODY = {"requestBody": {"required": True, "content": {"application/json": {
-    "schema": {"oneOf": [WHOLE_CASE, SHIPPED_WITH_SETTINGS]}}}}}
+
+class CostDocument(BaseModel):
+    """An estimate made before the run: `seconds` of one core, `bytes` before compression."""
+
+    nodes: int
+    frames: int
+    steps: int
+    seconds: float
+    bytes: int
 
 
 class Verdict(BaseModel):
-    """A case that could be run: as it was understood, and how much it would store."""
+    """A case that could be run: as it was understood, and what it would cost."""
 
     case: dict[str, Any]
-    nodes: int
-    frames: int
+    cost: CostDocument
 
 
-def told_case(body: Annotated[dict[str, Any], Depends(json_object)]) -> CaseSpec:
-    """The case in a request: a whole one, or {"case": a shipped name, "set": {dotted key: value}}.
-
-    Raises CaseError.
-    """
-    return parse_case(_shipped_with_settings(body) if "case" in body else body)
-
-
-@router.post("/validate", openapi_extra=CASE_BODY)
-def validate(spec: Annotated[CaseSpec, Depends(told_case)]) -> Verdict:
-    """Look at a case as a submission would, and say what it asks for."""
-    return Verdict(case=spec.document(), nodes=spec.numerics.intervals + 1, frames=spec.frames)
+@router.post("/validate", openapi_extra=CASE_BODY, responses=problems(400, 413, 415, 422))
+def validate(_: Submitter, wanted: InWanted, parts: InParts) -> Verdict:
+    """Look at a case as a submission would, and say what it would cost."""
+    cost = check_cost(wanted.spec, parts.settings.longest_run)
+    return Verdict(case=wanted.spec.document(), cost=CostDocument(**vars(cost)))
 
 
 @router.get("/cases")
-def list_cases() -> dict[str, str]:
+def list_cases(_: Reader) -> dict[str, str]:
     """Name and title of each shipped case."""
     return shipped_cases()
 
 
 @router.get("/cases/schema")
-def schema() -> dict[str, Any]:
+def schema(_: Reader) -> dict[str, Any]:
     """The JSON schema of a case."""
     return case_schema()
 
 
-@router.get("/cases/{name}")
-def shipped_case(name: str) -> dict[str, Any]:
+@router.get("/cases/{name}", responses=problems(404))
+def shipped_case(name: Annotated[str, Path(examples=list(SHIPPED))], _: Reader) -> dict[str, Any]:
     """A shipped case, ready to be changed and submitted."""
-    if name not in shipped_cases():  # a name only: never a path
+    if name not in SHIPPED:  # a name only: never a path
         raise Problem(404, "unknown_case", f"there is no shipped case {name[:80]!r}: see /v1/cases")
     return load_case(name)
-
-
-def _shipped_with_settings(body: dict[str, Any]) -> dict[str, Any]:
-    name, settings = body["case"], body.get("set", {})
-    faults = [FieldError(f"/{key}", None, "is not a field beside case and set")
-              for key in body if key not in ("case", "set")]
-    if not (isinstance(name, str) and name in shipped_cases()):
-        faults.append(FieldError("/case", name, f"must be one of {', '.join(shipped_cases())}"))
-    if not isinstance(settings, dict):
-        faults.append(FieldError("/set", settings, "must be an object of dotted keys and values"))
-    if faults:
-        raise CaseError(faults)
-    return apply_settings(load_case(name), settings)

@@ -10,12 +10,18 @@ from fastapi.responses import FileResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.responses import MalformedRangeHeader, RangeNotSatisfiable
 
-from service.api.parts import InParts, Parts, matches
+from service.api.description import NOT_MODIFIED, problems
+from service.api.parts import InParts, Jobs, Parts, matches
 from service.api.problems import Problem
-from service.jobs import ENDED, Dataset
+from service.jobs import ENDED, Dataset, Registry
 from service.results import SubsetTooLarge, UnknownVariable, subset
 
 NETCDF = "application/x-netcdf"
+BINARY = {NETCDF: {"schema": {"type": "string", "format": "binary"}}}
+FILE: dict[int | str, dict[str, Any]] = {
+    200: {"description": "The file", "content": BINARY},
+    206: {"description": "A range of it", "content": BINARY | {"multipart/byteranges": {"schema": {"type": "string"}}}},
+}
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
 
@@ -47,20 +53,20 @@ class DatasetFile(FileResponse):
 
 
 @router.head("/dataset", include_in_schema=False)
-@router.get("/dataset", response_class=FileResponse)
-def dataset(job_id: str, request: Request, parts: InParts) -> Response:
+@router.get("/dataset", response_class=FileResponse, responses={**FILE, **NOT_MODIFIED, **problems(404, 409, 416)})
+def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Response:
     """The NetCDF file, whole or by byte ranges; xarray opens it by this address with #mode=bytes."""
-    path, published = _published(job_id, parts)
+    path, published = _published(job_id, parts, jobs)
     headers = {"ETag": f'"{published.sha256}"', "Cache-Control": "private, immutable"}
     if matches(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     return DatasetFile(path, headers=headers, media_type=NETCDF, filename=f"{job_id}.nc")
 
 
-@router.get("/data")
-def data(job_id: str, part: Annotated[Part, Query()], parts: InParts) -> dict[str, Any]:
+@router.get("/data", responses=problems(404, 409, 422))
+def data(job_id: str, part: Annotated[Part, Query()], parts: InParts, jobs: Jobs) -> dict[str, Any]:
     """Some variables over a range of time and arclength, as JSON."""
-    path, _ = _published(job_id, parts)
+    path, _ = _published(job_id, parts, jobs)
     told = part.model_dump()
     names = [name.strip() for name in told.pop("variables").split(",")]
     try:
@@ -71,9 +77,9 @@ def data(job_id: str, part: Annotated[Part, Query()], parts: InParts) -> dict[st
         raise Problem(422, "unknown_variable", str(error)) from None
 
 
-def _published(job_id: str, parts: Parts) -> tuple[Path, Dataset]:
+def _published(job_id: str, parts: Parts, jobs: Registry) -> tuple[Path, Dataset]:
     """The job's file. Raises Problem 404 or 409, UnknownJob."""
-    job = parts.registry.get(job_id)
+    job = jobs.get(job_id)
     if job.dataset is None and job.status not in ENDED:
         raise Problem(409, "not_finished", f"job {job.id} is {job.status}: its dataset comes at its end",
                       {"Retry-After": "1"})

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from datetime import UTC, datetime
 
+from fastapi.responses import JSONResponse
 from pydantic import BaseModel
 
-from service.jobs import Job, Status
+from service.jobs import ENDED, Job, Status
+
+POLL_AFTER = "1"
 
 
 class DatasetDocument(BaseModel):
@@ -21,8 +25,11 @@ class JobDocument(BaseModel):
     """A job. `progress` goes from 0 to 1, `t` is simulated seconds; `message` says what to do next."""
 
     id: str
+    owner: str
     status: Status
     title: str
+    label: str
+    priority: int
     progress: float
     t: float
     outcome: str
@@ -47,18 +54,27 @@ class JobsDocument(BaseModel):
 def document(job: Job) -> JobDocument:
     """A job as its readers see it."""
     here = address(job.id)
-    links = {"self": here}
+    links = {"self": here, "events": f"{here}/events", "case": f"{here}/case"}
     dataset = None
     if job.dataset is not None:
         links |= {"dataset": f"{here}/dataset", "data": f"{here}/data"}
         dataset = DatasetDocument(href=links["dataset"], sha256=job.dataset.sha256, bytes=job.dataset.bytes)
     return JobDocument(
-        id=job.id, status=job.status, title=job.title, progress=job.progress, t=job.t, outcome=job.outcome,
+        id=job.id, owner=job.owner, status=job.status, title=job.title, label=job.label, priority=job.priority,
+        progress=job.progress, t=job.t, outcome=job.outcome,
         message=job.message, cancel_requested=job.cancel_requested, attempts=job.attempts,
         created=_instant(job.created), started=job.started and _instant(job.started),
         finished=job.finished and _instant(job.finished), case_sha256=job.case_sha256,
         dataset=dataset, links=links,
     )
+
+
+def answer(job: Job, status: int = 200, headers: Mapping[str, str] | None = None) -> JSONResponse:
+    """A job as an answer: with its ETag, where it is found, and when to ask again."""
+    told = {"ETag": f'"{job.version}"', "Cache-Control": "no-cache", "Location": address(job.id)} | dict(headers or {})
+    if job.status not in ENDED:
+        told["Retry-After"] = POLL_AFTER
+    return JSONResponse(document(job).model_dump(mode="json"), status, told)
 
 
 def address(job_id: str) -> str:

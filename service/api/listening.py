@@ -6,16 +6,25 @@ import ipaddress
 import socket
 
 
-def listen(host: str, port: int) -> socket.socket:
-    """A listening socket on loopback. Raises ValueError for any other host, OSError if the port is taken."""
-    if not is_loopback(host):
-        raise ValueError(f"host must be a loopback address, as there are no API keys yet, got {host!r}")
+def listen(host: str, port: int, keys: bool = False) -> socket.socket:
+    """A listening socket; on any other host than loopback only if there are API keys.
+
+    Raises ValueError for a host that is refused, OSError if the port is taken.
+    """
+    if not (is_loopback(host) or keys):
+        raise ValueError(f"host must be a loopback address while there is no API key, got {host!r}: "
+                         "make one with hockle keys create")
     family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     listening = socket.socket(family, socket.SOCK_STREAM)
     listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     listening.bind(address)
     listening.listen(2048)
     return listening
+
+
+def on_loopback(listening: socket.socket) -> bool:
+    """Whether only this machine can reach the socket."""
+    return is_loopback(listening.getsockname()[0])
 
 
 def is_loopback(host: str) -> bool:

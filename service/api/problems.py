@@ -15,6 +15,8 @@ from starlette.exceptions import HTTPException
 
 from service.cases import CaseError
 from service.jobs import UnknownJob
+from service.jobs.submission import KeyReused, QuotaReached
+from service.jobs.submissions import InFlight
 
 LONGEST_VALUE = 200
 log = logging.getLogger(__name__)
@@ -43,6 +45,9 @@ def install(app: FastAPI) -> None:
     app.exception_handler(RequestValidationError)(_parameters)
     app.exception_handler(CaseError)(_case)
     app.exception_handler(UnknownJob)(_unknown_job)
+    app.exception_handler(KeyReused)(_key_reused)
+    app.exception_handler(InFlight)(_in_flight)
+    app.exception_handler(QuotaReached)(_quota)
     app.exception_handler(Exception)(_bug)
 
 
@@ -79,6 +84,20 @@ async def _case(_: Request, error: CaseError) -> JSONResponse:
 
 async def _unknown_job(_: Request, error: Exception) -> JSONResponse:
     return Problem(404, "unknown_job", f"there is no job {str(error)[:40]!r}").response()
+
+
+async def _key_reused(_: Request, error: Exception) -> JSONResponse:
+    detail = f"the Idempotency-Key {str(error)[:80]!r} came with another body before: use a new one"
+    return Problem(422, "idempotency_key_reused", detail).response()
+
+
+async def _in_flight(_: Request, error: Exception) -> JSONResponse:
+    detail = f"the submission with the Idempotency-Key {str(error)[:80]!r} is still being written: ask again"
+    return Problem(409, "in_flight", detail, {"Retry-After": "1"}).response()
+
+
+async def _quota(_: Request, error: Exception) -> JSONResponse:
+    return Problem(429, "quota_reached", f"{error}: wait for some of them, or cancel them").response()
 
 
 async def _bug(request: Request, error: Exception) -> JSONResponse:

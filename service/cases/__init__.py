@@ -2,16 +2,20 @@
 
 from service.cases.build import build_scene
 from service.cases.case import CaseSpec
+from service.cases.cost import Cost, check_cost, estimate
 from service.cases.errors import CaseError, FieldError
 from service.cases.library import apply_settings, case_schema, load_case, parse_case, shipped_cases
 
 __all__ = [
     "CaseError",
     "CaseSpec",
+    "Cost",
     "FieldError",
     "apply_settings",
     "build_scene",
     "case_schema",
+    "check_cost",
+    "estimate",
     "load_case",
     "parse_case",
     "shipped_cases",

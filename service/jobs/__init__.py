@@ -3,7 +3,7 @@
 from service.jobs.database import Database
 from service.jobs.job import Dataset, Job, Limits, NewJob, Reached, new_id
 from service.jobs.lifecycle import ENDED, Status
-from service.jobs.registry import Page, Registry, UnknownJob
+from service.jobs.registry import Event, Page, Registry, Selection, UnknownJob
 
-__all__ = ["ENDED", "Database", "Dataset", "Job", "Limits", "NewJob", "Page", "Reached", "Registry", "Status",
-           "UnknownJob", "new_id"]
+__all__ = ["ENDED", "Database", "Dataset", "Event", "Job", "Limits", "NewJob", "Page", "Reached", "Registry",
+           "Selection", "Status", "UnknownJob", "new_id"]

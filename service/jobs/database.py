@@ -75,7 +75,7 @@ class Database:
     def writing(self) -> Iterator[Transaction]:
         """A transaction, committed to the disk when the block ends."""
         with self.engine.begin() as connection:
-            yield Transaction(connection, self._clock())
+            yield Transaction(connection, round(self._clock(), 6))  # as finely as times are shown
 
     def close(self) -> None:
         """Close every connection."""

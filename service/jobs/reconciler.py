@@ -91,6 +91,12 @@ def waiting(database: Database) -> int:
         return connection.scalar(select(func.count()).select_from(some)) or 0
 
 
+def ring_for_all(database: Database, doorbell: Doorbell) -> None:
+    """Have a message lie for each job that waits, up to AT_ONCE."""
+    if wanted := waiting(database):
+        doorbell.leave(wanted)
+
+
 class Reconciler:
     """A thread that reconciles a few times within each lease, while no other process does."""
 
@@ -117,8 +123,7 @@ class Reconciler:
             log.warning("job %s, epoch %d: its worker has fallen silent", lost.job_id, lost.epoch)
             take_back(self._database, lost, self._attempts)
         dismiss_cancelled(self._database)
-        if wanted := waiting(self._database):
-            self._doorbell.leave(wanted)
+        ring_for_all(self._database, self._doorbell)
 
     def _run(self) -> None:
         while True:

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from sqlalchemy import insert, select
+from sqlalchemy import ColumnElement, insert, select, true
 from sqlalchemy.dialects import postgresql, sqlite
 
+from service.jobs.audit import Actor, note
 from service.jobs.database import Database, Transaction
 from service.jobs.job import Job, NewJob
 from service.jobs.lifecycle import Status
-from service.jobs.tables import JOB_COLUMNS, job_of, jobs, owners
+from service.jobs.tables import JOB_COLUMNS, events, job_of, jobs, owners
 
 
-class UnknownJob(Exception):
+class UnknownJob(LookupError):
     """No job has this id."""
 
 
@@ -25,56 +29,120 @@ class Page:
     next: str | None
 
 
-class Registry:
-    """The jobs in a database."""
+@dataclass(frozen=True)
+class Selection:
+    """Which jobs a page holds: all those that meet what is given. Times are Unix seconds of submission."""
 
-    def __init__(self, database: Database) -> None:
-        self.database = database
+    after: str | None = None  # older than this id
+    status: Status | None = None
+    label: str | None = None
+    owner: str | None = None
+    since: float | None = None
+    until: float | None = None
+
+
+@dataclass(frozen=True)
+class Event:
+    """What happened to a job. `seq` is the job's version after it, `time` Unix seconds."""
+
+    seq: int
+    time: float
+    kind: str
+    data: dict[str, Any]
+
+
+class Registry:
+    """The jobs in a database: those of one owner, or everybody's."""
+
+    def __init__(self, database: Database, owner: str | None = None) -> None:
+        """`owner`: whose jobs are seen; all others are not there. None: everybody's."""
+        self.database, self.owner = database, owner
+
+    def of(self, owner: str | None) -> Registry:
+        """The registry as this owner sees it."""
+        return Registry(self.database, owner)
 
     def submit(self, new: NewJob) -> Job:
         """Write an accepted job; when this returns, it is on disk."""
         with self.database.writing() as transaction:
-            insert_job(transaction, new)
+            insert_jobs(transaction, [new])
         return self.get(new.id)
 
     def get(self, job_id: str) -> Job:
         """One job, by a point read. Raises UnknownJob."""
         with self.database.reading() as connection:
-            row = connection.execute(select(*JOB_COLUMNS).where(jobs.c.id == job_id)).mappings().first()
+            row = connection.execute(select(*JOB_COLUMNS).where(jobs.c.id == job_id, self._seen)).mappings().first()
         if row is None:
             raise UnknownJob(job_id)
         return job_of(row)
 
-    def page(self, limit: int, after: str | None = None, status: Status | None = None) -> Page:
-        """At most `limit` jobs, newest first, those older than the job `after` only."""
-        query = select(*JOB_COLUMNS).order_by(jobs.c.id.desc()).limit(limit + 1)
-        if after is not None:
-            query = query.where(jobs.c.id < after)
-        if status is not None:
-            query = query.where(jobs.c.status == status)
+    def case(self, job_id: str) -> dict[str, Any]:
+        """The case of a job. Raises UnknownJob."""
+        with self.database.reading() as connection:
+            told = connection.scalar(select(jobs.c.case_json).where(jobs.c.id == job_id, self._seen))
+        if told is None:
+            raise UnknownJob(job_id)
+        case: dict[str, Any] = json.loads(told)
+        return case
+
+    def page(self, limit: int, selection: Selection = Selection()) -> Page:
+        """At most `limit` jobs of a selection, newest first."""
+        query = select(*JOB_COLUMNS).where(self._seen).order_by(jobs.c.id.desc()).limit(limit + 1)
+        wanted = {jobs.c.status: selection.status, jobs.c.label: selection.label, jobs.c.owner: selection.owner}
+        query = query.where(*(column == value for column, value in wanted.items() if value is not None))
+        if selection.after is not None:
+            query = query.where(jobs.c.id < selection.after)
+        if selection.since is not None:
+            query = query.where(jobs.c.created >= selection.since)
+        if selection.until is not None:
+            query = query.where(jobs.c.created < selection.until)
         with self.database.reading() as connection:
             found = [job_of(row) for row in connection.execute(query).mappings()]
         return Page(found[:limit], found[limit - 1].id if len(found) > limit else None)
 
-    def cancel(self, job_id: str) -> Job:
+    def cancel(self, job_id: str, actor: Actor | None = None) -> Job:
         """Dismiss a job that waits; tell the worker of one that runs. Raises UnknownJob."""
         with self.database.writing() as transaction:
-            this = jobs.c.id == job_id
+            this = (jobs.c.id == job_id, self._seen)
             open_ = jobs.c.status.in_([Status.ACCEPTED, Status.RUNNING])
-            transaction.change(this, open_, ~jobs.c.cancel_requested, event="cancel_requested", cancel_requested=True)
-            transaction.change(this, jobs.c.status == Status.ACCEPTED, event="ended", status=Status.DISMISSED,
+            if transaction.change(*this, open_, ~jobs.c.cancel_requested, event="cancel_requested",
+                                  cancel_requested=True) and actor is not None:
+                note(transaction, actor, "job_cancelled", job_id)
+            transaction.change(*this, jobs.c.status == Status.ACCEPTED, event="ended", status=Status.DISMISSED,
                                outcome="cancelled", message="cancelled before it started")
         return self.get(job_id)
 
+    def versions(self, job_ids: Collection[str]) -> dict[str, int]:
+        """The versions of some jobs, by id."""
+        with self.database.reading() as connection:
+            found = connection.execute(select(jobs.c.id, jobs.c.version).where(jobs.c.id.in_(job_ids), self._seen))
+            return {row.id: row.version for row in found}
 
-def insert_job(transaction: Transaction, new: NewJob) -> None:
-    """Write an accepted job, its owner if he is new, and its first event."""
-    dialect = postgresql if transaction.connection.dialect.name == "postgresql" else sqlite
-    transaction.connection.execute(dialect.insert(owners).values(name=new.owner).on_conflict_do_nothing())
-    transaction.connection.execute(insert(jobs), {
-        "id": new.id, "owner": new.owner, "status": Status.ACCEPTED.value, "title": new.title, "label": new.label,
-        "priority": new.priority, "case_json": new.case_json, "case_sha256": new.case_sha256,
-        "created": transaction.now, "limit_wall": new.limits.wall, "limit_memory": new.limits.memory,
-        "limit_disk": new.limits.disk,
-    })
-    transaction.note(new.id, 1, "accepted", {"status": Status.ACCEPTED.value})
+    def events(self, job_id: str, after: int = 0) -> list[Event]:
+        """What happened to a job since its version `after`, oldest first."""
+        query = select(events.c.seq, events.c.time, events.c.kind, events.c.data).order_by(events.c.seq)
+        query = query.join(jobs, jobs.c.id == events.c.job_id).where(jobs.c.id == job_id, self._seen)
+        with self.database.reading() as connection:
+            found = connection.execute(query.where(events.c.seq > after))
+            return [Event(row.seq, row.time, row.kind, json.loads(row.data)) for row in found]
+
+    @property
+    def _seen(self) -> ColumnElement[bool]:
+        return true() if self.owner is None else jobs.c.owner == self.owner
+
+
+def insert_jobs(transaction: Transaction, new: Sequence[NewJob]) -> None:
+    """Write accepted jobs, the owners that are new, and the jobs' first events."""
+    connection = transaction.connection
+    dialect = postgresql if connection.dialect.name == "postgresql" else sqlite
+    for owner in {job.owner for job in new}:
+        connection.execute(dialect.insert(owners).values(name=owner).on_conflict_do_nothing())
+    connection.execute(insert(jobs), [{
+        "id": job.id, "owner": job.owner, "status": Status.ACCEPTED.value, "title": job.title, "label": job.label,
+        "priority": job.priority, "case_json": job.case_json, "case_sha256": job.case_sha256,
+        "created": transaction.now, "limit_wall": job.limits.wall, "limit_memory": job.limits.memory,
+        "limit_disk": job.limits.disk,
+    } for job in new])  # fmt: skip
+    first = json.dumps({"status": Status.ACCEPTED.value})
+    connection.execute(insert(events), [{"job_id": job.id, "seq": 1, "time": transaction.now, "kind": "accepted",
+                                         "data": first} for job in new])  # fmt: skip

@@ -92,6 +92,40 @@ idempotency_keys = Table(
     Column("created", Double, nullable=False, index=True),
 )
 
+api_keys = Table(
+    "api_keys",  # who may use the service; of a secret only its hash is kept
+    metadata,
+    Column("prefix", String(12), primary_key=True),
+    Column("owner", String(64), nullable=False),
+    Column("scopes", String(80), nullable=False),
+    Column("sha256", String(64), nullable=False),
+    Column("created", Double, nullable=False),
+    Column("expires", Double, nullable=False),
+    Column("revoked", Double),
+)
+
+audit = Table(
+    "audit",  # who did what; rows are only ever added
+    metadata,
+    Column("id", BigInteger().with_variant(Integer, "sqlite"), primary_key=True, autoincrement=True),
+    Column("time", Double, nullable=False),
+    Column("owner", String(64), nullable=False),
+    Column("key", String(12), nullable=False),
+    Column("action", String(32), nullable=False),
+    Column("subject", String(26), nullable=False),
+)
+
+webhooks = Table(
+    "webhooks",  # whom to tell of a job's end; `due` is the time of the next try, none after the last
+    metadata,
+    Column("job_id", String(26), ForeignKey("jobs.id"), primary_key=True),
+    Column("url", Text, nullable=False),
+    Column("key", String(12), ForeignKey("api_keys.prefix"), nullable=False),
+    Column("tries", Integer, nullable=False, default=0),
+    Column("due", Double, index=True),
+    Column("answer", Text, nullable=False, default=""),
+)
+
 JOB_COLUMNS = [column for column in jobs.columns if column.name not in ("case_json", "checkpoint_steps")]
 
 

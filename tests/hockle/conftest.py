@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import secrets
 import signal
 import subprocess
 import sys
@@ -100,14 +101,14 @@ def client(server: Server) -> Iterator[Client]:
 
 @pytest.fixture
 def quick() -> dict[str, Any]:
-    """A case of a moment."""
-    return apply_settings(load_case("goyal-2003"), QUICK)
+    """A case of a moment, which nobody has run before."""
+    return apply_settings(load_case("goyal-2003"), QUICK | {"description": secrets.token_hex()})
 
 
 @pytest.fixture
 def slow() -> dict[str, Any]:
-    """A case of some seconds."""
-    return apply_settings(load_case("goyal-2003"), SLOW)
+    """A case of some seconds, which nobody has run before."""
+    return apply_settings(load_case("goyal-2003"), SLOW | {"description": secrets.token_hex()})
 
 
 @pytest.fixture

@@ -83,7 +83,13 @@ def test_a_faulty_case_is_refused_with_a_pointer_to_each_fault(client, case, nam
     ({"case": "../service/cases/shipped/goyal-2003"}, "/case"),
     ({"case": "/etc/passwd"}, "/case"),
     ({"case": 1}, "/case"),
-    ({"case": {}}, "/case"),
+    ({"case": {}}, "/case/rod"),
+    ({"case": "goyal-2003", "set": {"t_end": 1e9}}, "/output/interval"),
+    ({"case": "goyal-2003", "label": "a\nb"}, "/label"),
+    ({"case": "goyal-2003", "priority": 0.5}, "/priority"),
+    ({"case": "goyal-2003", "priority": 1000}, "/priority"),
+    ({"case": "goyal-2003", "reuse": "no"}, "/reuse"),
+    ({"case": "goyal-2003", "webhook": "file:///etc/passwd"}, "/webhook"),
     ({"case": "goyal-2003", "set": []}, "/set"),
     ({"case": "goyal-2003", "sets": {}}, "/sets"),
     ({"case": "goyal-2003", "set": {"t_end": "x"}}, "/t_end"),
@@ -122,7 +128,7 @@ def test_an_unknown_job_is_told_so(client, job_id, what):
 @pytest.mark.parametrize(("method", "path", "status"), [
     ("DELETE", "/v1/jobs/nobody", 404), ("GET", "/v2/jobs", 404), ("GET", "/v1/jobs/", 404),
     ("GET", "/v1/cases/nothing", 404), ("GET", "/v1/cases/..%2f..%2fx", 404), ("PUT", "/v1/jobs", 405),
-    ("POST", "/v1/jobs/nobody", 405), ("POST", "/healthz", 405), ("DELETE", "/v1/cases", 405),
+    ("POST", "/v1/jobs/nobody", 405), ("POST", "/readyz", 405), ("DELETE", "/v1/cases", 405),
 ])
 def test_what_is_not_there_or_not_allowed_is_a_problem(client, method, path, status):
     answer = client.request(method, path)
@@ -143,7 +149,7 @@ def test_a_foreign_host_is_refused(client, host):
 
 @pytest.mark.parametrize("host", ["localhost:8000", "127.0.0.1", "[::1]:8000", "LOCALHOST"])
 def test_every_name_of_this_machine_is_welcome(client, host):
-    assert client.get("/healthz", headers={"Host": host}).status_code == 200
+    assert client.get("/readyz", headers={"Host": host}).status_code == 200
 
 
 @pytest.mark.parametrize("origin", ["https://evil.example", "null", "http://127.0.0.1:9999"])

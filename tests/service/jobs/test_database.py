@@ -50,9 +50,9 @@ def test_a_registry_from_before_the_migrations_is_refused(url):
 
 def test_what_fails_in_its_middle_changes_nothing(registry):
     from service.jobs import NewJob
-    from service.jobs.registry import insert_job
+    from service.jobs.registry import insert_jobs
 
     with pytest.raises(ZeroDivisionError), registry.database.writing() as transaction:
-        insert_job(transaction, NewJob({}))
+        insert_jobs(transaction, [NewJob({})])
         raise ZeroDivisionError
     assert registry.page(1).jobs == []

@@ -7,7 +7,7 @@ import json
 import pytest
 from sqlalchemy import select, text
 
-from service.jobs import ENDED, Job, Limits, NewJob, Registry, Status, UnknownJob, new_id
+from service.jobs import ENDED, Job, Limits, NewJob, Registry, Selection, Status, UnknownJob, new_id
 from service.jobs.held import claim
 from service.jobs.lifecycle import TRANSITIONS, allowed_before
 from service.jobs.tables import events
@@ -74,13 +74,13 @@ def test_pages_go_from_the_newest_to_the_oldest_without_gap_or_repeat(registry):
     registry.cancel(made[3])
     seen, after = [], None
     while True:
-        page = registry.page(3, after)
+        page = registry.page(3, Selection(after))
         seen += [job.id for job in page.jobs]
         if page.next is None:
             break
         after = page.next
     assert seen == made
-    assert [job.id for job in registry.page(3, status=Status.DISMISSED).jobs] == [made[3]]
+    assert [job.id for job in registry.page(3, Selection(status=Status.DISMISSED)).jobs] == [made[3]]
 
 
 @pytest.mark.parametrize("url", ["sqlite"], indirect=True)

@@ -1,0 +1,95 @@
+"""The OpenAPI document: what FastAPI finds, with the problems and the case's schema that it cannot know of."""
+
+from __future__ import annotations
+
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic.json_schema import models_json_schema
+
+from service.api.requests import JobRequest
+from service.cases import CaseSpec
+
+PROBLEM = {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}
+ANYWHERE = (421,)
+WITH_A_KEY = (401, 403, 429)
+REF = "#/components/schemas/{model}"
+NOT_OURS = ("HTTPValidationError", "ValidationError")
+
+NOT_MODIFIED: dict[int | str, dict[str, Any]] = {304: {"description": "Unchanged since the ETag in If-None-Match"}}
+
+SUMMARY = """\
+Simulations of elastic rods as jobs: submit a case, follow the job, fetch its NetCDF dataset.
+
+Every error is a problem (RFC 9457); where a case or a parameter is refused, `errors` says which, and by what rule.
+Where a key is required, send `Authorization: Bearer hk_...`: a key sees its owner's jobs, and others' are not there."""
+
+CASE_BODY = {"requestBody": {"required": True, "content": {"application/json": {
+    "schema": {"anyOf": [{"$ref": "#/components/schemas/CaseSpec"}, {"$ref": "#/components/schemas/JobRequest"}]},
+    "examples": {
+        "shipped": {"summary": "a shipped case, changed",
+                    "value": {"case": "elastica", "set": {"t_end": 5, "numerics.intervals": 50}, "label": "first"}},
+    }}}}}
+
+
+class Fault(BaseModel):
+    """One refused value: where (in the body by `pointer`, or a `parameter`), what it was, and the rule."""
+
+    pointer: str | None = Field(None, description="RFC 6901 pointer into the body")
+    parameter: str | None = None
+    value: Any = None
+    rule: str
+
+
+class ProblemDocument(BaseModel):
+    """An error (RFC 9457)."""
+
+    model_config = ConfigDict(title="Problem")
+    type: str = Field(examples=["urn:hockle:problem:invalid_case"])
+    title: str
+    status: int
+    detail: str = Field(description="what is wrong, and what to do")
+    errors: list[Fault] | None = None
+
+
+def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The answers by which an operation refuses, for its `responses`."""
+    return {status: {"description": HTTPStatus(status).phrase, "content": PROBLEM} for status in statuses}
+
+
+def describe(app: FastAPI) -> dict[str, Any]:
+    """The document of `app`, made once."""
+    if app.openapi_schema is None:
+        told = get_openapi(title=app.title, version=app.version, description=SUMMARY, routes=app.routes,
+                           tags=app.openapi_tags)
+        schemas = told.setdefault("components", {}).setdefault("schemas", {})
+        _, ours = models_json_schema([(model, "validation") for model in (CaseSpec, JobRequest, ProblemDocument)],
+                                     ref_template=REF)
+        schemas |= ours["$defs"]
+        schemas["Problem"] = schemas.pop("ProblemDocument")
+        for name in NOT_OURS:
+            schemas.pop(name, None)
+        for operations in told["paths"].values():
+            for operation in operations.values():
+                _complete(operation)
+        app.openapi_schema = told
+    return app.openapi_schema
+
+
+def _complete(operation: dict[str, Any]) -> None:
+    """Add the problems that the gate and the scopes make, and those of faulty parameters."""
+    answers = operation["responses"]
+    if "422" in answers:
+        answers |= _named(problems(422))
+    keyed = "security" in operation
+    if keyed:
+        operation["security"].append({})  # on loopback no key is needed
+    answers |= _named(problems(*ANYWHERE, *(WITH_A_KEY if keyed else ())))
+    operation["responses"] = dict(sorted(answers.items()))
+
+
+def _named(answers: dict[int | str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    return {str(status): answer for status, answer in answers.items()}

@@ -1,0 +1,117 @@
+"""What every request passes before any route: Host, Origin, API key, rate limit."""
+
+from __future__ import annotations
+
+import ipaddress
+import logging
+import time
+from collections.abc import Collection
+from math import ceil
+from typing import TYPE_CHECKING
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.access import Caller, Refused, authenticate
+from service.access.limits import Grant
+from service.api.listening import is_loopback
+from service.api.problems import Problem
+
+if TYPE_CHECKING:
+    from service.api.parts import Parts
+
+READING = ("GET", "HEAD", "OPTIONS")
+OPEN_TO_ALL = frozenset({"/", "/livez", "/readyz", "/v1/openapi.json"})
+log = logging.getLogger(__name__)
+
+
+class Gate:
+    """Refuses a foreign Host (DNS rebinding), a write from another site's page, a bad key, and haste.
+
+    What passes has its caller in `scope["caller"]`. `keyed`: whether a key is required;
+    `hosts`: the names of this service beside its addresses.
+    """
+
+    def __init__(self, app: ASGIApp, keyed: bool, hosts: Collection[str]) -> None:
+        self._app, self._keyed, self._hosts = app, keyed, hosts
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer with a problem, or pass the request on."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        try:
+            grant = self._let_in(scope, Headers(scope=scope))
+        except Problem as problem:
+            log.info("refused", extra={"problem": problem.name, "method": scope["method"], "path": scope["path"]})
+            await problem.response()(scope, receive, send)
+        else:
+            await self._app(scope, receive, _telling(send, grant) if grant else send)
+
+    def _let_in(self, scope: Scope, headers: Headers) -> Grant | None:
+        self._check_host(headers.get("host", ""))
+        _check_origin(scope["method"], headers.get("host", ""), headers.get("origin"))
+        if scope["path"] in OPEN_TO_ALL:
+            return None
+        parts: Parts = scope["app"].state.parts
+        scope["caller"] = caller = _caller(headers.get("authorization"), parts, self._keyed)
+        if not caller.key:
+            return None
+        grant = parts.rate.ask(caller.owner)
+        if grant.wait > 0:
+            raise Problem(429, "too_many_requests", f"{caller.owner} asks too often: wait {grant.wait:.2f} s",
+                          {"Retry-After": str(ceil(grant.wait)), **_limits(grant)})
+        return grant
+
+    def _check_host(self, host: str) -> None:
+        name = _name_in(f"//{host}")
+        if is_loopback(name) or name in self._hosts or (self._keyed and _is_address(name)):
+            return
+        told = "a name of this service (HOCKLE_HOSTS)" if self._keyed else "a loopback address"
+        raise Problem(421, "foreign_host", f"Host must be {told}, got {host[:80]!r}")
+
+
+def _check_origin(method: str, host: str, origin: str | None) -> None:
+    if method not in READING and origin not in (None, f"http://{host}", f"https://{host}"):
+        raise Problem(403, "foreign_origin", f"Origin must be that of {host}, got {origin[:80]!r}")
+
+
+def _caller(authorization: str | None, parts: Parts, keyed: bool) -> Caller:
+    try:
+        return authenticate(authorization, parts.keys.find, keyed, time.time())
+    except Refused as refused:
+        raise Problem(401, "not_authenticated", str(refused), {"WWW-Authenticate": "Bearer"}) from None
+
+
+def _telling(send: Send, grant: Grant) -> Send:
+    """Send with the RateLimit headers in the answer."""
+
+    async def tell(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            MutableHeaders(scope=message).update(_limits(grant))
+        await send(message)
+
+    return tell
+
+
+def _limits(grant: Grant) -> dict[str, str]:
+    """As draft-ietf-httpapi-ratelimit-headers-10 spells them."""
+    return {"RateLimit-Policy": f'"owner";q={grant.burst};w={ceil(grant.window)}',
+            "RateLimit": f'"owner";r={grant.remaining};t={ceil(grant.reset)}'}
+
+
+def _name_in(url: str) -> str:
+    try:
+        return urlsplit(url).hostname or ""
+    except ValueError:
+        return ""
+
+
+def _is_address(name: str) -> bool:
+    """Whether it is an address: only names can be rebound to another one."""
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True

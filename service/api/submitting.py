@@ -1,0 +1,75 @@
+"""POST /v1/jobs: a case is handed in."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import json
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Header, Response
+
+from service.access import Caller
+from service.api.bodies import json_object
+from service.api.description import CASE_BODY, problems
+from service.api.documents import JobDocument, answer
+from service.api.parts import InParts, Parts, Submitter
+from service.api.preferences import wait_preferred
+from service.api.problems import Problem
+from service.api.requests import Wanted, wanted
+from service.cases import check_cost
+from service.jobs import ENDED, Job, NewJob
+from service.jobs.submission import Submission
+
+router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
+
+IdempotencyKey = Annotated[
+    str | None, Header(alias="Idempotency-Key", min_length=1, max_length=255, pattern="^[ -~]+$")
+]
+ANSWERS: dict[int | str, dict[str, Any]] = {
+    202: {"model": JobDocument, "description": "Accepted: the job is on disk, and will be run."},
+    200: {"model": JobDocument, "description": "Ended: it was run before, or within the time of Prefer: wait."},
+}
+
+
+@router.post("", status_code=202, response_model=JobDocument, openapi_extra=CASE_BODY,
+             responses={**ANSWERS, **problems(400, 409, 413, 415, 422)})
+async def submit(
+    parts: InParts, caller: Submitter, body: Annotated[dict[str, Any], Depends(json_object)],
+    idempotency_key: IdempotencyKey = None,
+    prefer: Annotated[str | None, Header(alias="Prefer", description="`wait=SECONDS`, up to 60")] = None,
+) -> Response:
+    """Accept a case to be run; the job is on disk when the answer comes.
+
+    With an Idempotency-Key a submission may be sent again after a lost answer: the same key and body give the same
+    job for a day. A job of one's own that has run the same case is given instead of a new one, unless `reuse` is
+    false.
+    """
+    submission = told_submission(wanted(body), body, parts, caller, idempotency_key or "")
+    with parts.submissions.put(submission) as future:
+        job = await asyncio.wrap_future(future)
+    seconds = wait_preferred(prefer)
+    job = await until_ended(job, seconds, parts)
+    headers = {} if seconds is None else {"Preference-Applied": f"wait={seconds}"}
+    return answer(job, 200 if job.status in ENDED else 202, headers)
+
+
+def told_submission(wanted: Wanted, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
+    """What the registry is asked for. Raises CaseError if it would cost too much, Problem for its webhook."""
+    spec, told = wanted.spec, wanted.told
+    check_cost(spec, parts.settings.longest_run)
+    if told.webhook is not None and not caller.key:
+        raise Problem(422, "webhook_needs_key", "a webhook is signed with the API key that asks for it: send one")
+    new = NewJob(spec.document(), spec.title or spec.name, caller.owner, told.label, told.priority)
+    digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest() if key else ""
+    return Submission(new, caller.actor, key, digest, told.reuse, told.webhook or "")
+
+
+async def until_ended(job: Job, seconds: int | None, parts: Parts) -> Job:
+    """The job when it has ended, or as it is after so many seconds."""
+    loop = asyncio.get_running_loop()
+    end = loop.time() + (seconds or 0)
+    while job.status not in ENDED and (left := end - loop.time()) > 0:
+        if await parts.feed.changed(job, left):
+            job = parts.registry.get(job.id)
+    return job

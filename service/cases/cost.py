@@ -1,0 +1,56 @@
+"""What a case would cost, told before it runs.
+
+    steps   = t_end / dt_max, and no fewer than frames
+    seconds = steps (STEP + STEP_NODE n) + frames (FRAME + FRAME_NODE n + WRITHE n^2)        n nodes
+    bytes   = 8 frames n (components of the stored fields), before compression
+
+The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
+a step from goyal-2003 to 32 s (about two Newton iterations a step, contact included), WRITHE from the table of writhe.
+Real runs take more steps where the motion is fast, and fewer seconds on a faster core: it is an estimate,
+and what is refused by it is far beyond what one run should be.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+from service.cases.case import CaseSpec
+from service.cases.errors import CaseError, FieldError
+
+STEP, STEP_NODE = 130e-6, 6.1e-6
+FRAME, FRAME_NODE = 100e-6, 4e-6
+WRITHE = 5.9e-9
+COMPONENTS = {"orientation": 4}  # the others are vectors of three
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a case asks for; `seconds` of one core, `bytes` of the fields along the rod."""
+
+    nodes: int
+    frames: int
+    steps: int
+    seconds: float
+    bytes: int
+
+
+def estimate(spec: CaseSpec) -> Cost:
+    """The cost of a case, by the model above."""
+    nodes, frames = spec.numerics.intervals + 1, spec.frames
+    steps = max(ceil(spec.t_end / spec.numerics.dt_max), frames - 1)
+    frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
+    seconds = steps * (STEP + STEP_NODE * nodes) + frames * frame
+    components = sum(COMPONENTS.get(name, 3) for name in spec.output.fields)
+    return Cost(nodes, frames, steps, seconds, 8 * frames * nodes * components)
+
+
+def check_cost(spec: CaseSpec, most: float) -> Cost:
+    """The cost of a case. Raises CaseError if it is more than `most` seconds."""
+    cost = estimate(spec)
+    if cost.seconds > most:
+        rule = (f"must leave at most {most:,.0f} s of computing, not about {cost.seconds:,.0f} s "
+                f"({cost.steps:,} steps of {cost.nodes:,} nodes, {cost.frames:,} frames): end earlier, "
+                "or use fewer intervals, longer steps or a longer output.interval")
+        raise CaseError([FieldError("/t_end", spec.t_end, rule)])
+    return cost

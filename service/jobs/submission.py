@@ -1,0 +1,145 @@
+"""What comes of a submission: a new job, the one that its idempotency key stands for, or one that has run it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+from sqlalchemy import delete, func, insert, select, tuple_
+
+from service.jobs.audit import Actor, note
+from service.jobs.database import Database, Transaction
+from service.jobs.job import Job, NewJob
+from service.jobs.lifecycle import Status
+from service.jobs.registry import insert_jobs
+from service.jobs.tables import JOB_COLUMNS, idempotency_keys, job_of, jobs, webhooks
+
+REMEMBERED = 86400.0
+"""How long (s) an idempotency key is remembered."""
+
+UNFINISHED = (Status.ACCEPTED, Status.RUNNING)
+
+
+class KeyReused(Exception):
+    """The idempotency key came with another body before."""
+
+
+class QuotaReached(Exception):
+    """The owner has as many unfinished jobs as one may have."""
+
+
+@dataclass(frozen=True)
+class Submission:
+    """A job that somebody wants, and on what terms.
+
+    `key`: with the same one and the same `body_sha256` the same job is given again. `reuse`: a job of the same
+    owner that has run the same case is as good. `webhook`: whom to tell of the end.
+    """
+
+    new: NewJob
+    actor: Actor
+    key: str = ""
+    body_sha256: str = ""
+    reuse: bool = False
+    webhook: str = ""
+
+    @property
+    def mark(self) -> tuple[str, str]:
+        """What the idempotency key is known by."""
+        return self.new.owner, self.key
+
+
+def submit_all(database: Database, submissions: Sequence[Submission], quota: int) -> list[Job | Exception]:
+    """Write what is new of some submissions in one transaction; gives the job of each, or why there is none.
+
+    `quota`: the most unfinished jobs of one owner.
+    """
+    with database.writing() as transaction:
+        desk = _Desk(transaction, submissions, quota)
+        verdicts = [desk.judge(submission) for submission in submissions]
+        desk.write()
+        ids = [verdict for verdict in verdicts if isinstance(verdict, str)]
+        rows = transaction.connection.execute(select(*JOB_COLUMNS).where(jobs.c.id.in_(ids))).mappings()
+        now = {row["id"]: job_of(row) for row in rows}
+    return [now[verdict] if isinstance(verdict, str) else verdict for verdict in verdicts]
+
+
+class _Desk:
+    """What is known when some submissions are judged, one after the other, and what is to be written of them."""
+
+    def __init__(self, transaction: Transaction, submissions: Sequence[Submission], quota: int) -> None:
+        self._transaction, self._quota = transaction, quota
+        self._known = _known(transaction, {one.mark for one in submissions if one.key})
+        self._alike = _alike(transaction, {one.new.case_sha256 for one in submissions if one.reuse})
+        self._unfinished = _unfinished(transaction, {one.new.owner for one in submissions})
+        self._made: list[Submission] = []
+        self._keys: list[dict[str, object]] = []
+
+    def judge(self, one: Submission) -> str | Exception:
+        """The id of the job that a submission is answered with."""
+        if one.key and one.mark in self._known:
+            body_sha256, job_id = self._known[one.mark]
+            return job_id if body_sha256 == one.body_sha256 else KeyReused(one.key)
+        verdict = self._alike.get((one.new.owner, one.new.case_sha256)) if one.reuse else None
+        if verdict is None:
+            many = self._unfinished[one.new.owner]
+            if many >= self._quota:
+                return QuotaReached(f"{one.new.owner} has {many} unfinished jobs, and may have {self._quota}")
+            self._unfinished[one.new.owner] += 1
+            self._made.append(one)
+            verdict = one.new.id
+        if one.key:
+            self._known[one.mark] = one.body_sha256, verdict
+            self._keys.append({"owner": one.new.owner, "key": one.key, "body_sha256": one.body_sha256,
+                               "job_id": verdict, "created": self._transaction.now})
+        return verdict
+
+    def write(self) -> None:
+        """Write the jobs that are new, and what belongs to them."""
+        connection = self._transaction.connection
+        if self._made:
+            insert_jobs(self._transaction, [one.new for one in self._made])
+        for actor in {one.actor for one in self._made}:
+            note(self._transaction, actor, "job_submitted", *(one.new.id for one in self._made if one.actor == actor))
+        if self._keys:
+            connection.execute(insert(idempotency_keys), self._keys)
+        hooks = [{"job_id": one.new.id, "url": one.webhook, "key": one.actor.key, "due": 0.0}
+                 for one in self._made if one.webhook]  # fmt: skip
+        if hooks:
+            connection.execute(insert(webhooks), hooks)
+
+
+def _known(transaction: Transaction, marks: Collection[tuple[str, str]]) -> dict[tuple[str, str], tuple[str, str]]:
+    """Body and job of the idempotency keys that came before."""
+    if not marks:
+        return {}
+    table = idempotency_keys.c
+    connection = transaction.connection
+    connection.execute(delete(idempotency_keys).where(table.created < transaction.now - REMEMBERED))
+    found = connection.execute(
+        select(table.owner, table.key, table.body_sha256, table.job_id).where(tuple_(table.owner, table.key).in_(marks))
+    )
+    return {(row.owner, row.key): (row.body_sha256, row.job_id) for row in found}
+
+
+def _alike(transaction: Transaction, hashes: Collection[str]) -> dict[tuple[str, str], str]:
+    """The newest successful job of each case, by owner and hash."""
+    if not hashes:
+        return {}
+    found = transaction.connection.execute(
+        select(jobs.c.owner, jobs.c.case_sha256, func.max(jobs.c.id).label("id"))
+        .where(jobs.c.case_sha256.in_(hashes), jobs.c.status == Status.SUCCESSFUL)
+        .group_by(jobs.c.owner, jobs.c.case_sha256)
+    )
+    return {(row.owner, row.case_sha256): row.id for row in found}
+
+
+def _unfinished(transaction: Transaction, owners: Collection[str]) -> Counter[str]:
+    """How many unfinished jobs each of the owners has."""
+    found = transaction.connection.execute(
+        select(jobs.c.owner, func.count().label("many"))
+        .where(jobs.c.owner.in_(owners), jobs.c.status.in_(UNFINISHED))
+        .group_by(jobs.c.owner)
+    )
+    return Counter({row.owner: row.many for row in found})

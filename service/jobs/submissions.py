@@ -1,0 +1,111 @@
+"""Submissions from many clients in few transactions: a commit takes as long for a hundred jobs as for one."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import contextmanager
+
+from service.jobs.database import Database
+from service.jobs.job import Job
+from service.jobs.submission import Submission, submit_all
+
+AT_ONCE = 200
+
+Waiting = tuple[Submission, "Future[Job]"]
+
+
+class InFlight(Exception):
+    """A submission with this idempotency key has not been answered yet."""
+
+
+class Submissions:
+    """Takes submissions from any thread, and commits together those that wait. A context: it has two threads.
+
+    After a commit `committed` is called, by a thread that does nothing else: nobody waits for it.
+    """
+
+    def __init__(self, database: Database, quota: int, committed: Callable[[], object]) -> None:
+        """`quota`: the most unfinished jobs of one owner."""
+        self._database, self._quota, self._committed = database, quota, committed
+        self._waiting: queue.SimpleQueue[Waiting | None] = queue.SimpleQueue()
+        self._in_flight: set[tuple[str, str]] = set()
+        self._lock = threading.Lock()
+        self._news: queue.SimpleQueue[bool] = queue.SimpleQueue()
+        self._threads = [threading.Thread(target=work, name=work.__name__, daemon=True)
+                         for work in (self._commit, self._tell)]  # fmt: skip
+
+    def __enter__(self) -> Submissions:
+        for thread in self._threads:
+            thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._waiting.put(None)
+        for thread in self._threads:
+            thread.join()
+
+    @contextmanager
+    def put(self, submission: Submission) -> Iterator[Future[Job]]:
+        """The job that comes of a submission, once it is on disk; its key is in flight while the block runs.
+
+        Raises InFlight. The future may raise KeyReused, QuotaReached, or what the database raises.
+        """
+        with self._lock:
+            if submission.key and submission.mark in self._in_flight:
+                raise InFlight(submission.key)
+            self._in_flight.add(submission.mark)
+        try:
+            future: Future[Job] = Future()
+            self._waiting.put((submission, future))
+            yield future
+        finally:
+            with self._lock:
+                self._in_flight.discard(submission.mark)
+
+    def _commit(self) -> None:
+        while (first := self._waiting.get()) is not None:
+            self._settle([one for one in (first, *self._more()) if one[1].set_running_or_notify_cancel()])
+            self._news.put(True)
+        self._news.put(False)
+
+    def _more(self) -> list[Waiting]:
+        """All that waits besides, up to a bound."""
+        found: list[Waiting] = []
+        while len(found) < AT_ONCE:
+            try:
+                item = self._waiting.get_nowait()
+            except queue.Empty:
+                break
+            if item is None:  # the end, for the next look
+                self._waiting.put(None)
+                break
+            found.append(item)
+        return found
+
+    def _settle(self, batch: list[Waiting], again: bool = True) -> None:
+        """Answer a batch. If it fails, each is tried once more by itself: one may be at fault, or another process
+        may have written the same idempotency key in the meantime."""
+        try:
+            results = submit_all(self._database, [submission for submission, _ in batch], self._quota)
+        except Exception as error:
+            for one in batch:
+                if again:
+                    self._settle([one], again=False)
+                else:
+                    one[1].set_exception(error)
+            return
+        for (_, future), result in zip(batch, results, strict=True):
+            if isinstance(result, Job):
+                future.set_result(result)
+            else:
+                future.set_exception(result)
+
+    def _tell(self) -> None:
+        while self._news.get():
+            while not self._news.empty():
+                if not self._news.get():
+                    return
+            self._committed()

@@ -1,0 +1,185 @@
+"""Nobody gets in without a key, past its scopes, or to another owner's jobs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.access import KeyStore, Scope
+from service.api.app import create_app
+from service.api.gate import OPEN_TO_ALL
+from service.api.listening import listen
+from service.jobs import Database
+from service.jobs.audit import trail
+from service.settings import Settings
+
+HOUR = 3600.0
+FILLED = {"{job_id}": "", "{name}": "elastica"}
+SCOPE = {"GET": "read", "POST": "submit", "DELETE": "submit"}
+OPERATORS = {"/metrics", "/v1/audit"}
+
+
+def operations() -> list[tuple[str, str]]:
+    """Every route of the interface that needs a key, and how it is asked."""
+    paths = create_app(Settings()).openapi()["paths"]
+    return [(method.upper(), path) for path, told in paths.items() if path not in OPEN_TO_ALL for method in told]
+
+
+EVERY = pytest.mark.parametrize(("method", "path"), operations())
+
+
+@pytest.fixture
+def keyed(settings):
+    app = create_app(replace(settings, rate=1e6), keyed=True)
+    with TestClient(app, base_url="http://127.0.0.1:8000", raise_server_exceptions=False) as client:
+        yield client
+
+
+@pytest.fixture
+def store(keyed) -> KeyStore:
+    return keyed.app.state.parts.keys
+
+
+@pytest.fixture
+def key(store):
+    """Headers with a new key of an owner."""
+
+    def make(owner: str, *scopes: str, seconds: float = HOUR) -> dict[str, str]:
+        new = store.create(owner, frozenset(map(Scope, scopes or ("read", "submit"))), seconds)
+        return {"Authorization": f"Bearer {new.text}"}
+
+    return make
+
+
+@pytest.fixture
+def alices(keyed, key, case) -> str:
+    """The id of a job of alice's."""
+    return keyed.post("/v1/jobs", json=case, headers=key("alice")).json()["id"]
+
+
+def ask(client, method, path, headers, job_id="0" * 26, case=None):
+    path = path.replace("{job_id}", job_id).replace("{name}", "elastica").replace("{process_id}", "simulate")
+    path += "?variables=Tw" if path.endswith("/data") else ""
+    return client.request(method, path, headers=headers, json=case if method == "POST" else None)
+
+
+def refused(answer, status, name):
+    assert answer.status_code == status, answer.text
+    assert answer.json()["type"] == f"urn:hockle:problem:{name}"
+
+
+@EVERY
+def test_no_route_answers_without_a_key(keyed, alices, method, path):
+    answer = ask(keyed, method, path, {}, alices)
+    refused(answer, 401, "not_authenticated")
+    assert answer.headers["www-authenticate"] == "Bearer"
+
+
+@EVERY
+def test_no_route_answers_an_expired_a_revoked_or_an_unknown_key(keyed, key, store, alices, method, path):
+    expired, revoked = key("alice", seconds=-1.0), key("alice")
+    store.revoke(revoked["Authorization"].split("_")[1])
+    for headers in (expired, revoked, {"Authorization": "Bearer hk_0123456789ab_" + "x" * 43}):
+        refused(ask(keyed, method, path, headers, alices), 401, "not_authenticated")
+
+
+@EVERY
+def test_no_route_answers_a_key_with_too_few_scopes(keyed, key, alices, method, path):
+    keyed.delete(f"/v1/jobs/{alices}", headers=key("alice"))  # its events come to an end
+    needed = "operate" if path in OPERATORS else SCOPE[method]
+    others = [scope for scope in Scope if scope != needed]
+    refused(ask(keyed, method, path, key("alice", *others), alices), 403, "scope_missing")
+    assert ask(keyed, method, path, key("alice", needed), alices).status_code not in (401, 403)
+
+
+@pytest.mark.parametrize(("method", "path"), [one for one in operations() if "{job_id}" in one[1]])
+def test_what_is_anothers_is_not_there(keyed, key, alices, method, path):
+    answer = ask(keyed, method, path, key("bob"), alices)
+    assert answer.status_code == 404
+    unknown = ask(keyed, method, path, key("bob"), "0" * 26)
+    assert answer.json() == {**unknown.json(), "detail": unknown.json()["detail"].replace("0" * 26, alices)}
+    assert keyed.get(f"/v1/jobs/{alices}", headers=key("alice")).json()["status"] == "accepted"
+
+
+def test_lists_hold_ones_own_jobs_only(keyed, key, case, alices):
+    bobs = keyed.post("/v1/jobs", json=case, headers=key("bob")).json()["id"]
+    for owner, job_id in (("alice", alices), ("bob", bobs)):
+        listed = keyed.get("/v1/jobs", headers=key(owner)).json()["jobs"]
+        assert [(job["id"], job["owner"]) for job in listed] == [(job_id, owner)]
+
+
+def test_asking_for_anothers_list_is_refused_but_to_an_operator(keyed, key, alices):
+    refused(keyed.get("/v1/jobs?owner=alice", headers=key("bob")), 403, "scope_missing")
+    listed = keyed.get("/v1/jobs?owner=alice", headers=key("op", "read", "operate")).json()["jobs"]
+    assert [job["id"] for job in listed] == [alices]
+
+
+def test_an_idempotency_key_or_a_finished_case_of_another_owner_is_nobodys_business(keyed, key, case):
+    ids = {keyed.post("/v1/jobs", json=case, headers=key(owner) | {"Idempotency-Key": "1"}).json()["id"]
+           for owner in ("alice", "bob")}  # fmt: skip
+    assert len(ids) == 2
+
+
+def test_a_key_counts_on_loopback_too(client, case):
+    store = client.app.state.parts.keys
+    new = store.create("alice", frozenset({Scope.READ, Scope.SUBMIT}), HOUR)
+    with_key = {"Authorization": f"Bearer {new.text}"}
+    assert client.post("/v1/jobs", json=case, headers=with_key).json()["owner"] == "alice"
+    assert client.post("/v1/jobs", json=case).json()["owner"] == "local"
+    assert client.get("/v1/jobs", headers={"Authorization": "Bearer wrong"}).status_code == 401
+
+
+def test_too_many_requests_are_refused_with_the_time_to_wait(settings, case):
+    with TestClient(create_app(replace(settings, rate=0.1), keyed=True), base_url="http://127.0.0.1") as client:
+        new = client.app.state.parts.keys.create("alice", frozenset({Scope.READ}), HOUR)
+        headers = {"Authorization": f"Bearer {new.text}"}
+        first = client.get("/v1/jobs", headers=headers)
+        assert (first.status_code, first.headers["ratelimit-policy"]) == (200, '"owner";q=1;w=10')
+        assert first.headers["ratelimit"].startswith('"owner";r=0;t=')
+        second = client.get("/v1/jobs", headers=headers)
+        refused(second, 429, "too_many_requests")
+        assert 1 <= int(second.headers["retry-after"]) <= 10
+
+
+def test_an_owner_may_have_so_many_unfinished_jobs(settings, case):
+    with TestClient(create_app(replace(settings, quota=2)), base_url="http://127.0.0.1") as client:
+        made = [client.post("/v1/jobs", json=case).json()["id"] for _ in range(2)]
+        refused(client.post("/v1/jobs", json=case), 429, "quota_reached")
+        client.delete(f"/v1/jobs/{made[0]}")
+        assert client.post("/v1/jobs", json=case).status_code == 202
+
+
+def test_the_secret_of_a_key_is_in_no_log(keyed, key, alices, caplog, capfd):
+    caplog.set_level("DEBUG")
+    headers = key("alice")
+    keyed.get("/v1/jobs", headers=headers)
+    keyed.get("/v1/nothing", headers=headers)
+    keyed.get("/v1/jobs", headers={"Authorization": headers["Authorization"] + "x"})
+    secret = headers["Authorization"].rsplit("_", 1)[1]
+    assert secret not in caplog.text and secret not in "".join(capfd.readouterr())
+
+
+def test_the_trail_tells_who_did_what(keyed, key, case, alices, settings):
+    bob = key("bob")
+    bobs = keyed.post("/v1/jobs", json=case, headers=bob).json()["id"]
+    keyed.delete(f"/v1/jobs/{bobs}", headers=bob)
+    database = Database(settings.database_url)
+    told = [(deed.owner, deed.action, deed.subject) for deed in trail(database, 2)]
+    database.close()
+    assert told == [("bob", "job_cancelled", bobs), ("bob", "job_submitted", bobs)]
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example"])
+def test_with_keys_a_host_is_an_address_or_a_name_of_ours(settings, host):
+    with TestClient(create_app(replace(settings, hosts="Hockle.example, rods.example"), keyed=True)) as client:
+        refused(client.get("/livez", headers={"Host": host}), 421, "foreign_host")
+        for ours in ("hockle.example", "rods.example:8000", "10.0.0.7:8000", "[2001:db8::7]", "localhost"):
+            assert client.get("/livez", headers={"Host": ours}).status_code == 200
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "10.0.0.7", "example.org", "::"])
+def test_without_keys_only_loopback_is_served(host):
+    with pytest.raises(ValueError, match="host must be a loopback address"):
+        listen(host, 0)

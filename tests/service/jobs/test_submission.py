@@ -1,0 +1,184 @@
+"""What comes of submissions: new jobs, those of an idempotency key, those that have run; many in one transaction."""
+
+from __future__ import annotations
+
+import threading
+from concurrent.futures import wait
+
+import pytest
+from sqlalchemy import event
+
+from service.jobs import Dataset, Job, NewJob, Reached, Registry, Status
+from service.jobs.audit import Actor, trail
+from service.jobs.held import claim
+from service.jobs.submission import REMEMBERED, KeyReused, QuotaReached, Submission, submit_all
+from service.jobs.submissions import InFlight, Submissions
+
+MANY = 1000
+ALICE = Actor("alice", "0123456789ab")
+
+
+def wanted(case=None, owner="alice", **terms):
+    return Submission(NewJob(case or {"t_end": 1.0}, owner=owner), Actor(owner), **terms)
+
+
+def submit(database, *submissions, quota=MANY):
+    return submit_all(database, submissions, quota)
+
+
+def run(database, job, status=Status.SUCCESSFUL):
+    held = claim(database, job.id, 9.0, "here")
+    assert held.finish(status, "completed", "", Dataset("a.nc", "ab" * 32, 1), Reached(1.0, 1.0))
+
+
+def test_each_submission_becomes_an_accepted_job(database, registry):
+    made = submit(database, wanted(), wanted(), wanted(owner="bob"))
+    assert [job.status for job in made] == [Status.ACCEPTED] * 3
+    assert [registry.get(job.id) for job in made] == made
+    assert [event.kind for event in registry.events(made[0].id)] == ["accepted"]
+
+
+def test_the_same_key_and_body_give_the_same_job(database):
+    [first] = submit(database, wanted(key="k", body_sha256="a"))
+    again = submit(database, wanted(key="k", body_sha256="a"), wanted(key="k", body_sha256="a"))
+    assert [job.id for job in again] == [first.id] * 2
+
+
+def test_the_same_key_twice_in_one_transaction_makes_one_job(database, registry):
+    made = submit(database, wanted(key="k", body_sha256="a"), wanted(key="k", body_sha256="a"))
+    assert made[0] == made[1] and len(registry.page(9).jobs) == 1
+
+
+def test_the_same_key_with_another_body_is_refused(database, registry):
+    submit(database, wanted(key="k", body_sha256="a"))
+    [refused] = submit(database, wanted(key="k", body_sha256="b"))
+    assert isinstance(refused, KeyReused) and len(registry.page(9).jobs) == 1
+
+
+def test_a_key_is_its_owners(database):
+    alice, bob = submit(database, wanted(key="k", body_sha256="a"), wanted(key="k", body_sha256="b", owner="bob"))
+    assert alice.id != bob.id
+
+
+def test_a_key_is_forgotten_after_a_day(database, clock):
+    [first] = submit(database, wanted(key="k", body_sha256="a"))
+    clock.now += REMEMBERED + 1
+    [second] = submit(database, wanted(key="k", body_sha256="b"))
+    assert second.id != first.id
+
+
+def test_a_successful_job_of_the_same_case_is_reused(database):
+    [first] = submit(database, wanted(reuse=True))
+    run(database, first)
+    again, changed, fresh = submit(database, wanted(reuse=True), wanted({"t_end": 2.0}, reuse=True), wanted())
+    assert again.id == first.id and again.status is Status.SUCCESSFUL
+    assert len({first.id, changed.id, fresh.id}) == 3
+
+
+def test_neither_an_unfinished_nor_a_failed_job_nor_anothers_is_reused(database):
+    waiting, failed = submit(database, wanted(reuse=True), wanted(reuse=True))
+    run(database, failed, Status.FAILED)
+    theirs, mine = submit(database, wanted(owner="bob"), wanted(reuse=True))
+    run(database, theirs)
+    [last] = submit(database, wanted(reuse=True))
+    assert len({waiting.id, failed.id, theirs.id, mine.id, last.id}) == 5
+
+
+def test_a_quota_bounds_the_unfinished_jobs_of_an_owner(database):
+    made = submit(database, wanted(), wanted(), wanted(), wanted(owner="bob"), quota=2)
+    assert [type(one) for one in made] == [Job, Job, QuotaReached, Job]
+    run(database, made[0])
+    assert [type(one) for one in submit(database, wanted(), wanted(), quota=2)] == [Job, QuotaReached]
+
+
+def test_the_trail_tells_of_each_job_that_was_made(database):
+    first, again = submit(database, *[Submission(NewJob({}), ALICE, key="k", body_sha256="a")] * 2)
+    assert first == again
+    assert [(deed.owner, deed.key, deed.action, deed.subject) for deed in trail(database, 9)] == [
+        ("alice", ALICE.key, "job_submitted", first.id)
+    ]
+
+
+@pytest.fixture
+def commits(database):
+    """How many transactions have been committed."""
+    seen: list[object] = []
+    event.listen(database.engine, "commit", seen.append)
+    return seen
+
+
+def test_submissions_that_wait_together_share_a_transaction(database, commits):
+    with Submissions(database, MANY, lambda: None) as submissions, database.writing():  # nobody else may write yet
+        puts = [submissions.put(wanted()) for _ in range(50)]
+        futures = [put.__enter__() for put in puts]
+    wait(futures, 60)
+    assert len({future.result().id for future in futures}) == 50
+    assert len(commits) <= 4  # the one that held them up, those that were too early for the crowd, and the crowd
+
+
+def test_a_key_in_flight_is_refused_and_afterwards_gives_its_job(database):
+    with Submissions(database, MANY, lambda: None) as submissions:
+        with submissions.put(wanted(key="k", body_sha256="a")) as first:
+            with pytest.raises(InFlight), submissions.put(wanted(key="k", body_sha256="a")):
+                pass
+            made = first.result(60)
+        with submissions.put(wanted(key="k", body_sha256="a")) as second:
+            assert second.result(60).id == made.id
+
+
+def test_the_same_key_from_many_threads_makes_one_job(database, registry):
+    ids: list[str] = []
+
+    def client(submissions: Submissions) -> None:
+        while True:
+            try:
+                with submissions.put(wanted(key="k", body_sha256="a")) as future:
+                    ids.append(future.result(60).id)
+                    return
+            except InFlight:
+                continue
+
+    with Submissions(database, MANY, lambda: None) as one, Submissions(database, MANY, lambda: None) as other:
+        threads = [threading.Thread(target=client, args=(desk,)) for desk in (one, other) * 4]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert len(ids) == 8 and len(set(ids)) == 1 and len(registry.page(9).jobs) == 1
+
+
+def test_one_that_cannot_be_written_harms_no_other(database):
+    broken = Submission(NewJob({}, title=None), ALICE)
+    with Submissions(database, MANY, lambda: None) as submissions, database.writing():
+        puts = [submissions.put(one) for one in (wanted(), broken, wanted())]
+        futures = [put.__enter__() for put in puts]
+    wait(futures, 60)
+    assert [future.exception() is None for future in futures] == [True, False, True]
+
+
+def test_who_gave_up_before_the_commit_is_no_hindrance(database, registry):
+    with Submissions(database, MANY, lambda: None) as submissions:
+        with database.writing():
+            futures = [submissions.put(wanted()).__enter__() for _ in range(5)]
+            futures[-1].cancel()
+        wait(futures, 60)
+        assert futures[0].result().status is Status.ACCEPTED
+
+
+def test_after_a_commit_it_is_told(database, until):
+    told: list[int] = []
+    with Submissions(database, MANY, lambda: told.append(1)) as submissions, submissions.put(wanted()) as future:
+        future.result(60)
+        until(lambda: told, "the commit is told of")
+
+
+def test_an_owner_sees_no_others_jobs(database, registry):
+    alice, bob = submit(database, wanted(), wanted(owner="bob"))
+    bobs = registry.of("bob")
+    assert [job.id for job in bobs.page(9).jobs] == [bob.id]
+    assert bobs.events(alice.id) == [] and bobs.versions([alice.id, bob.id]) == {bob.id: 1}
+    for method in (bobs.get, bobs.case, bobs.cancel):
+        with pytest.raises(LookupError):
+            method(alice.id)
+    assert registry.get(alice.id) == alice
+    assert isinstance(registry, Registry)

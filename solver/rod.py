@@ -48,6 +48,11 @@ class Rod:
             lowest = float(np.min(profile(s)))
             if not lowest > 0:
                 raise ValueError(f"{name} must be > 0 everywhere along the rod, got {lowest}")
+        for i, profile in enumerate(self.kappa0):
+            values = np.asarray(profile(s))
+            if not np.isfinite(values).all():
+                wrong = values[~np.isfinite(values)][0]
+                raise ValueError(f"kappa0[{i}] must be finite everywhere along the rod, got {wrong}")
 
     @classmethod
     def circular(

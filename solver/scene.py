@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise
+from numbers import Integral
 from typing import Literal
 
 import numpy as np
@@ -18,6 +19,11 @@ from solver.rod import Array, Profile, Profiles, Rod
 
 Frame_ = Literal["material", "lab"]
 ZERO: Vector = constant_vector((0.0, 0.0, 0.0))
+
+
+def _require_finite(name: str, vector: tuple[float, float, float]) -> None:
+    if not np.isfinite(vector).all():
+        raise ValueError(f"{name} must be finite, got {vector}")
 
 
 @dataclass(frozen=True)
@@ -35,6 +41,10 @@ class Initial:
     twist: Profile = field(default_factory=lambda: Curve.constant(0.0))
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for name in ("a1", "velocity", "angular_velocity"):
+            _require_finite(f"initial {name}", getattr(self, name))
 
     @classmethod
     def straight(
@@ -175,6 +185,7 @@ class Fluid:
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0):
                 raise ValueError(f"fluid {name} must be >= 0, got {value}")
+        _require_finite("fluid current", self.current)
 
 
 @dataclass(frozen=True)
@@ -228,8 +239,9 @@ class Numerics:
     increment_tolerance: float = 0.1
 
     def __post_init__(self) -> None:
-        if self.intervals < 2:
-            raise ValueError(f"intervals must be >= 2, got {self.intervals}")
+        intervals: object = self.intervals  # whatever it was promised to be
+        if isinstance(intervals, bool) or not isinstance(intervals, Integral) or int(intervals) < 2:
+            raise ValueError(f"intervals must be a whole number >= 2, got {self.intervals}")
         if not (np.isfinite(self.dt_max) and self.dt_max > 0):
             raise ValueError(f"dt_max must be > 0 s, got {self.dt_max}")
         for name in ("rho_inf", "rho_inf_space"):
@@ -269,6 +281,7 @@ class Scene:
             raise ValueError(f"output_interval must be in (0, t_end], got {self.output_interval}")
         if not (np.isfinite(self.damping) and self.damping >= 0):
             raise ValueError(f"damping must be >= 0 1/s, got {self.damping}")
+        _require_finite("gravity", self.gravity)
         for load in self.points:
             if not 0 <= load.s <= self.rod.length:
                 raise ValueError(f"s of a point load must be in [0, {self.rod.length}] m, got {load.s}")

@@ -93,3 +93,10 @@ def test_a_material_constant_that_is_not_positive_is_refused(name: str, value: A
 def test_a_diameter_of_zero_is_refused() -> None:
     with pytest.raises(ValueError, match="diameter must be > 0"):
         Rod.circular(1.0, 0, 1e7, 5e6, 1500.0)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_natural_curvature_that_is_not_finite_is_refused(value: float) -> None:
+    none = Curve.constant(0.0)
+    with pytest.raises(ValueError, match=rf"^kappa0\[1\] must be finite everywhere along the rod, got {value}$"):
+        Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0, kappa0=(none, lambda s: np.where(s > 0.5, value, 1.0), none))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from math import inf, nan, pi
 from typing import Any
@@ -31,10 +32,11 @@ SCENE = Scene(
         *(("t_end", t, "> 0 s") for t in (0.0, -1.0, nan, inf)),
         *(("output_interval", t, r"in \(0, t_end\]") for t in (0.0, -0.1, 1.5, nan)),
         *(("damping", c, ">= 0 1/s") for c in (-1.0, nan, inf)),
+        *(("gravity", (0.0, 0.0, g), "finite") for g in (nan, inf)),
     ],
 )
 def test_a_scene_refuses(field: str, value: Any, rule: str) -> None:
-    with pytest.raises(ValueError, match=f"^{field} must be {rule}, got {value}"):
+    with pytest.raises(ValueError, match=f"^{field} must be {rule}, got {re.escape(str(value))}"):
         replace(SCENE, **{field: value})
 
 
@@ -47,7 +49,7 @@ def test_a_point_load_off_the_rod_is_refused(s: float) -> None:
 @pytest.mark.parametrize(
     ("field", "value", "rule"),
     [
-        ("intervals", 1, ">= 2"),
+        *(("intervals", n, "a whole number >= 2") for n in (1, 10.5, 10.0, nan, True)),
         *(("dt_max", dt, "> 0 s") for dt in (0.0, -0.1, nan, inf)),
         *(("rho_inf", rho, r"in \[0, 1\]") for rho in (-0.1, 1.1, nan)),
         *(("rho_inf_space", rho, r"in \[0, 1\]") for rho in (-0.1, 1.1, nan)),
@@ -89,6 +91,18 @@ def test_contact_refuses_an_aperture(aperture: float) -> None:
 def test_a_fluid_refuses(field: str, value: Any) -> None:
     with pytest.raises(ValueError, match=f"fluid {field} must be >= 0, got {value}"):
         replace(FLUID, **{field: value})
+
+
+@pytest.mark.parametrize("speed", [nan, inf, -inf])
+def test_a_fluid_refuses_a_current(speed: float) -> None:
+    with pytest.raises(ValueError, match=rf"fluid current must be finite, got \(1.0, {speed}, 0.0\)"):
+        replace(FLUID, current=(1.0, speed, 0.0))
+
+
+@pytest.mark.parametrize("field", ["velocity", "angular_velocity", "a1"])
+def test_a_start_refuses(field: str) -> None:
+    with pytest.raises(ValueError, match=rf"initial {field} must be finite, got \(0.0, {nan}, 1.0\)"):
+        Initial.straight(**{field: (0.0, nan, 1.0)})
 
 
 @pytest.mark.parametrize("within", [0.0, -0.1, nan])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from time import process_time
 
@@ -56,8 +57,10 @@ class Simulation:
     def __iter__(self) -> Iterator[Frame]:
         warm()
         started = process_time()
-        t = self._begin()
         frame = self._accounts.frame(0.0)
+        t = self._begin()
+        # forces are no part of what is given at t = 0, they follow from it
+        frame = replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
         yield frame
         for output in self._outputs:
             while t < output:

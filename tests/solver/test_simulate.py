@@ -77,7 +77,22 @@ def test_the_state_of_a_frame_is_that_of_its_time() -> None:
     for frame in frames:
         assert_allclose(frame.r - np.outer(np.linspace(0.0, 1.0, 11), [0.0, 0.0, 1.0]),
                         np.tile([0.5 * frame.t, 0.0, -frame.t], (11, 1)), atol=1e-9)  # fmt: skip
-    assert_allclose(first.r[0], 0.0, atol=1e-4)
+    assert_allclose(first.r[0], 0.0, atol=1e-15)
+
+
+def test_the_first_frame_of_a_spinning_rod_is_its_start_with_the_force_that_holds_it_together() -> None:
+    spin = 3.0
+    initial = Initial.straight(velocity=(0.5, 0.0, -1.0), angular_velocity=(0.0, spin, 0.0))
+    frame = next(iter(simulate(cantilever(initial=initial, start=End.free()))))
+    s = np.linspace(0.0, LENGTH, 11)
+    arm = s - 0.5 * LENGTH
+    assert_allclose(frame.r, np.outer(s, [0.0, 0.0, 1.0]), atol=1e-15)
+    assert_allclose(frame.v, np.outer(np.ones(11), [0.5, 0.0, -1.0]) + np.outer(arm, [spin, 0.0, 0.0]), atol=1e-14)
+    assert_allclose(frame.omega, np.tile([0.0, spin, 0.0], (11, 1)), atol=1e-15)
+    assert frame.energy_balance == 0.0
+    mass = float(ROD.mass(s)[0])
+    centrifugal = 0.5 * mass * spin**2 * ((0.5 * LENGTH) ** 2 - arm**2)
+    assert_allclose(frame.f[:, 2], centrifugal, rtol=1e-3, atol=1e-9)
 
 
 def test_the_first_frame_is_the_initial_state() -> None:

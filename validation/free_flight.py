@@ -6,8 +6,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from solver import End, Frame, Initial, Scene, simulate
-from solver.methods.box.fields import sample
-from solver.rod import Array
+from solver.rod import Array, sample
 from solver.rotation import rotate
 from validation.rods import LENGTH, fixed_steps, rod_R
 from validation.row import Row, at_most

@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install --no-com
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: demo test serve lint bench validate lock clean
+.PHONY: demo test serve lint bench load fuzz validate lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -26,6 +26,12 @@ lint: .venv/.dev  ## style, types, and who may import whom
 
 bench: .venv/.runtime  ## cost per Newton iteration and per scene
 	$(BIN)/python -m benchmarks
+
+load: .venv/.runtime  ## what the service bears: pollers, submissions, events, a queue of 10,000 jobs
+	$(BIN)/python -m benchmarks.load
+
+fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
+	FUZZ=long $(BIN)/python -m pytest -s tests/service/api/test_fuzz.py
 
 validate: .venv/.runtime  ## published scenes, and what they must show
 	$(BIN)/python -m validation

@@ -25,6 +25,9 @@ from service.api.listening import listen
 from service.settings import Settings, from_environment
 
 START_WITHIN = 120.0
+APIS = 2
+"""Processes that answer requests: one of them may be busy, or dead for a moment."""
+
 DEATHS, WITHIN = 5, 60.0
 
 
@@ -83,21 +86,26 @@ class Services:
     def _start(self) -> None:
         try:
             keys = has_keys(self.settings, time.time())
-            listening = self._cleanup.enter_context(listen(self._host, self._port, keys))
+            sockets = listen(self._host, self._port, keys, APIS)
         except (OSError, ValueError) as error:
             raise Failure(f"cannot listen on {self._host} port {self._port}: {error}") from None
-        self._port = listening.getsockname()[1]
+        for listening in sockets:
+            self._cleanup.enter_context(listening)
+        self._port = sockets[0].getsockname()[1]
         self.settings.make_directories()
         self._hold_data_directory()
         self._start_broker()
-        environment = self.settings.environment()
-        api = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
-        self._add(Child("api", api, self._log("api"), environment, keep_fds=(listening.fileno(),)))
+        # One job, one core; and small matrices are slower on more.
+        environment = self.settings.environment() | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        apis = [f"api-{number}" for number in range(1, APIS + 1)]
+        for name, listening in zip(apis, sockets, strict=True):
+            api = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
+            self._add(Child(name, api, self._log(name), environment, keep_fds=(listening.fileno(),)))
         worker = [sys.executable, "-m", "celery", "--app", "worker.app", "worker", "--loglevel", "INFO",
                   "--concurrency", str(self._workers), "--without-gossip", "--without-mingle"]
-        environment |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # one job, one core
         self._add(Child("worker", worker, self._log("worker"), environment, stop_signal=signal.SIGQUIT))
-        self._await("api", self._api_answers)
+        for name in apis:
+            self._await(name, self._api_answers)
 
     def _start_broker(self) -> None:
         binary = None if self.settings.broker else redis_binary()

@@ -31,7 +31,8 @@ def main() -> None:
 def _socket(told: argparse.Namespace, settings: Settings) -> socket.socket:
     if told.fd is not None:
         return socket.socket(fileno=told.fd)
-    return listen(told.host, told.port, has_keys(settings, time.time()))
+    [listening] = listen(told.host, told.port, has_keys(settings, time.time()))
+    return listening
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from datetime import UTC, datetime
 
-from fastapi.responses import JSONResponse
+from fastapi import Response
 from pydantic import BaseModel
 
 from service.jobs import ENDED, Job, Status
@@ -69,12 +69,12 @@ def document(job: Job) -> JobDocument:
     )
 
 
-def answer(job: Job, status: int = 200, headers: Mapping[str, str] | None = None) -> JSONResponse:
+def answer(job: Job, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
     """A job as an answer: with its ETag, where it is found, and when to ask again."""
     told = {"ETag": f'"{job.version}"', "Cache-Control": "no-cache", "Location": address(job.id)} | dict(headers or {})
     if job.status not in ENDED:
         told["Retry-After"] = POLL_AFTER
-    return JSONResponse(document(job).model_dump(mode="json"), status, told)
+    return Response(document(job).model_dump_json(), status, told, "application/json")
 
 
 def address(job_id: str) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from typing import Annotated, Any
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Query, Request, Response
-from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, BaseModel, BeforeValidator, ConfigDict, Field
 
 from service.access import Scope
 from service.api.description import NOT_MODIFIED, problems
@@ -18,6 +19,18 @@ from service.jobs import Selection, Status
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
 
+INSTANT = re.compile(r"\d{4}-\d\d-\d\d[Tt ]\d\d:\d\d:\d\d(\.\d+)?([Zz]|[+-]\d\d:\d\d)")
+
+
+def _rfc_3339(text: object) -> object:
+    if not (isinstance(text, str) and INSTANT.fullmatch(text)):  # bare numbers would be taken for Unix seconds
+        raise ValueError("must be a time with its offset, as 2026-01-31T12:00:00Z (RFC 3339)")
+    return text
+
+
+Instant = Annotated[AwareDatetime, BeforeValidator(_rfc_3339)]
+
+
 class Listing(BaseModel):
     """Which jobs a list holds."""
 
@@ -27,8 +40,8 @@ class Listing(BaseModel):
     status: Status | None = None
     label: str | None = Field(None, max_length=100)
     owner: str | None = Field(None, max_length=64, description="another than oneself needs the scope operate")
-    since: AwareDatetime | None = Field(None, description="submitted at this time or later")
-    until: AwareDatetime | None = Field(None, description="submitted before this time")
+    since: Instant | None = Field(None, description="submitted at this time or later")
+    until: Instant | None = Field(None, description="submitted before this time")
 
     def selection(self) -> Selection:
         """The same for the registry."""

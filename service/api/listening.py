@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import ipaddress
 import socket
+from typing import Any
 
 
-def listen(host: str, port: int, keys: bool = False) -> socket.socket:
-    """A listening socket; on any other host than loopback only if there are API keys.
+def listen(host: str, port: int, keys: bool = False, many: int = 1) -> list[socket.socket]:
+    """Listening sockets on one port, each with a share of the clients; beyond loopback only if there are API keys.
 
     Raises ValueError for a host that is refused, OSError if the port is taken.
     """
@@ -15,11 +16,24 @@ def listen(host: str, port: int, keys: bool = False) -> socket.socket:
         raise ValueError(f"host must be a loopback address while there is no API key, got {host!r}: "
                          "make one with hockle keys create")
     family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
-    listening = socket.socket(family, socket.SOCK_STREAM)
-    listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    listening.bind(address)
-    listening.listen(2048)
-    return listening
+    with _bound(family, address, shared=False) as alone:  # a shared port may be anybody's of the same user
+        address = alone.getsockname()
+    opened = [_bound(family, address, shared=True) for _ in range(many)]
+    for listening in opened:
+        listening.listen(2048)
+    return opened
+
+
+def _bound(family: int, address: Any, shared: bool) -> socket.socket:
+    made = socket.socket(family, socket.SOCK_STREAM)
+    made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, int(shared))
+    try:
+        made.bind(address)
+    except OSError:
+        made.close()
+        raise
+    return made
 
 
 def on_loopback(listening: socket.socket) -> bool:

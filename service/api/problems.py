@@ -12,6 +12,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 
 from service.cases import CaseError
 from service.jobs import UnknownJob
@@ -19,6 +20,7 @@ from service.jobs.submission import KeyReused, QuotaReached
 from service.jobs.submissions import InFlight
 
 LONGEST_VALUE = 200
+METHODS = ("DELETE", "GET", "HEAD", "PATCH", "POST", "PUT")
 log = logging.getLogger(__name__)
 
 
@@ -68,7 +70,17 @@ async def _problem(_: Request, error: Problem) -> JSONResponse:
 async def _http(request: Request, error: HTTPException) -> JSONResponse:
     name = HTTPStatus(error.status_code).name.lower()
     detail = f"{error.detail}: {request.method} {request.url.path}"
-    return Problem(error.status_code, name, detail, error.headers).response()
+    headers = {"Allow": _allowed(request)} if error.status_code == 405 else error.headers
+    return Problem(error.status_code, name, detail, headers).response()
+
+
+def _allowed(request: Request) -> str:
+    """The methods of every route at this address; each route by itself knows only its own."""
+    def is_there(method: str) -> bool:
+        asked = {**request.scope, "method": method}
+        return any(route.matches(asked)[0] is Match.FULL for route in request.app.routes)
+
+    return ", ".join(filter(is_there, METHODS))
 
 
 async def _parameters(_: Request, error: RequestValidationError) -> JSONResponse:

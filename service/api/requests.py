@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from fastapi import Depends
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError, WithJsonSchema
 
 from service.api.bodies import json_object
 from service.cases import CaseError, CaseSpec, FieldError, apply_settings, load_case, parse_case, shipped_cases
@@ -20,7 +20,9 @@ def _name_or_whole(value: Any) -> str:
 
 
 CaseOrName = Annotated[
-    Annotated[str, Tag("<name>")] | Annotated[dict[str, Any], Tag("<whole>")], Discriminator(_name_or_whole)
+    Annotated[str, Tag("<name>")] | Annotated[dict[str, Any], Tag("<whole>")],
+    Discriminator(_name_or_whole),
+    WithJsonSchema({"anyOf": [{"enum": list(SHIPPED)}, {"$ref": "#/components/schemas/CaseSpec"}]}),
 ]
 
 

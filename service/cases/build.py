@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
@@ -11,10 +12,13 @@ import numpy as np
 from service.cases.case import CaseSpec
 from service.cases.ends import build_end
 from service.cases.errors import CaseError, FieldError
-from solver import Curve, Initial, Rod, Scene
+from service.cases.initial import InitialSpec
+from service.cases.rod import RodSpec
+from solver import Curve, Initial, Rod, Scene, Vector
 from solver.initial import nodes_at_rest
 
 Part = TypeVar("Part")
+KEPT = 64
 
 
 def build_scene(spec: CaseSpec) -> Scene:
@@ -23,15 +27,35 @@ def build_scene(spec: CaseSpec) -> Scene:
     Raises CaseError with the part's pointer where the parts do not fit each other, for example a
     centreline that is not as long as the rod.
     """
-    rod = _part("/rod", spec.rod.build)
-    initial = _part("/initial", lambda: spec.initial.build(spec.rod.length))
-    s = np.linspace(0.0, spec.rod.length, spec.numerics.intervals + 1)
-    _part("/initial", lambda: nodes_at_rest(initial, s[:2]))  # refuses an a1 along the tangent
+    rod = _part("/rod", lambda: _rod(spec.rod))
+    initial = _part("/initial", lambda: _initial(spec.initial, spec.rod.length))
     if spec.rod.kappa0 == "initial":
-        _, _, kappa = nodes_at_rest(initial, s)
-        bend1, bend2, twist = (Curve.table(s, column, "cubic") for column in kappa.T)
-        rod = replace(rod, kappa0=(bend1, bend2, twist))
+        rod = replace(rod, kappa0=_curvature(spec.initial, spec.rod.length, spec.numerics.intervals))
     return _part("", lambda: _scene(spec, rod, initial))
+
+
+# The cases of a sweep share most of their parts: these are kept.
+
+
+@lru_cache(KEPT)
+def _rod(spec: RodSpec) -> Rod:
+    return spec.build()
+
+
+@lru_cache(KEPT)
+def _initial(spec: InitialSpec, length: float) -> Initial:
+    initial = spec.build(length)
+    nodes_at_rest(initial, np.array([0.0, 1e-3 * length]))  # refuses an a1 along the tangent
+    return initial
+
+
+@lru_cache(KEPT)
+def _curvature(spec: InitialSpec, length: float, intervals: int) -> Vector:
+    """Curvature and twist of the initial shape."""
+    s = np.linspace(0.0, length, intervals + 1)
+    _, _, kappa = nodes_at_rest(_initial(spec, length), s)
+    bend1, bend2, twist = (Curve.table(s, column, "cubic") for column in kappa.T)
+    return bend1, bend2, twist
 
 
 def _scene(spec: CaseSpec, rod: Rod, initial: Initial) -> Scene:

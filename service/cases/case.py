@@ -64,7 +64,7 @@ class OutputSpec(Spec):
 class CaseSpec(Spec):
     """One case. All quantities in SI units; s is the arclength from the start, t the time."""
 
-    schema_version: Literal[1]
+    schema_version: Annotated[int, Field(ge=1, le=1)]  # a Literal would take true for 1
     name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=80)] = "unnamed"
     title: Annotated[str, Field(max_length=200)] = ""
     description: Annotated[str, Field(max_length=5000)] = ""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -47,8 +48,9 @@ class Straight(_Motion):
     def _check(self) -> Self:
         if not any(self.direction):
             raise refusal("direction", self.direction, "must not be zero")
-        across = np.linalg.norm(np.cross(self.a1, self.direction))
-        if across <= 1e-6 * np.linalg.norm(self.a1) * np.linalg.norm(self.direction):
+        (a, b, c), (x, y, z) = self.a1, self.direction
+        across = hypot(b * z - c * y, c * x - a * z, a * y - b * x)
+        if across <= 1e-6 * hypot(a, b, c) * hypot(x, y, z):
             raise refusal("a1", self.a1, f"must not be zero or along direction {self.direction}")
         return self
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
@@ -92,7 +93,13 @@ def _positive(profile: float | ProfileTable) -> float | ProfileTable:
     return profile
 
 
-PositiveProfile = Annotated[Profile, AfterValidator(_positive)]
+def _positive_schema(schema: dict[str, Any]) -> None:
+    for kind in schema.get("oneOf", []):
+        if kind.get("type") == "number":
+            kind["exclusiveMinimum"] = 0
+
+
+PositiveProfile = Annotated[Profile, AfterValidator(_positive), Field(json_schema_extra=_positive_schema)]
 """A profile that is > 0; between the points of a table the solver's rod looks."""
 
 Schedule = Annotated[
@@ -107,7 +114,13 @@ ScheduleTriple = tuple[Schedule, Schedule, Schedule]
 
 def curve(given: float | ProfileTable | ScheduleTable) -> Curve:
     """A profile or schedule as the solver's curve."""
-    return Curve.constant(given) if isinstance(given, (int, float)) else given.curve()
+    return Curve.constant(given) if isinstance(given, (int, float)) else _table(given)
+
+
+@lru_cache(64)
+def _table(given: ProfileTable | ScheduleTable) -> Curve:
+    """A table's curve; those used last are kept, as the cases of a sweep share most of theirs."""
+    return given.curve()
 
 
 def curves(given: ProfileTriple | ScheduleTriple) -> Vector:

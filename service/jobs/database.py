@@ -62,7 +62,7 @@ class Database:
     def __init__(self, url: str, clock: Callable[[], float] = time.time) -> None:
         """Open it, making or upgrading its tables. Raises WrongSchema if a newer hockle has written it."""
         self.engine = _engine(url)
-        self._reading = self.engine.execution_options(isolation_level="AUTOCOMMIT")
+        self._reading = _engine(url, reading=True)
         self._clock = clock
         with self.engine.begin() as connection:
             migrate(connection)
@@ -80,14 +80,18 @@ class Database:
     def close(self) -> None:
         """Close every connection."""
         self.engine.dispose()
+        self._reading.dispose()
 
 
-def _engine(url: str) -> Engine:
+def _engine(url: str, reading: bool = False) -> Engine:
+    """Reads have connections of their own: to change the level of one costs as much as a read itself."""
+    told: dict[str, Any] = {"isolation_level": "AUTOCOMMIT"} if reading else {}
     if not url.startswith("sqlite"):
-        return create_engine(url, pool_pre_ping=True, pool_timeout=BUSY)
-    engine = create_engine(url, connect_args={"timeout": BUSY}, pool_timeout=BUSY)
+        return create_engine(url, pool_pre_ping=True, pool_timeout=BUSY, **told)
+    engine = create_engine(url, connect_args={"timeout": BUSY}, pool_timeout=BUSY, **told)
     event.listen(engine, "connect", _set_up_sqlite)
-    event.listen(engine, "begin", _begin_sqlite)
+    if not reading:
+        event.listen(engine, "begin", _begin_sqlite)
     return engine
 
 
@@ -99,5 +103,4 @@ def _set_up_sqlite(connection: Any, _record: object) -> None:
 
 def _begin_sqlite(connection: Connection) -> None:
     """Writers queue where they begin: one that first reads cannot be refused in its middle."""
-    if connection.get_execution_options().get("isolation_level") != "AUTOCOMMIT":
-        connection.exec_driver_sql("BEGIN IMMEDIATE")
+    connection.exec_driver_sql("BEGIN IMMEDIATE")

@@ -123,5 +123,5 @@ def test_another_host_than_loopback_is_refused(tmp_path):
 def test_without_redis_messages_lie_as_files_and_jobs_end_all_the_same(quick, tmp_path, monkeypatch):
     monkeypatch.setattr("hockle.supervisor.redis_binary", lambda: None)
     with Services(Settings(tmp_path), port=0) as services, Client(services.address) as client:
-        assert sorted(services.children) == ["api", "worker"]
+        assert sorted(services.children) == ["api-1", "api-2", "worker"]
         assert end_of(client, client.submit(quick)["id"])["status"] == "successful"

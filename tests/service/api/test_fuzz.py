@@ -1,0 +1,154 @@
+"""The running interface against whatever is sent: schemathesis with all checks, and malformed cases by the thousand.
+
+`make fuzz` does the same for longer: FUZZ=long.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from fastapi.testclient import TestClient
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from service.api.app import create_app
+from service.api.listening import listen
+from service.cases import load_case, shipped_cases
+from service.settings import Settings
+
+HERE = Path(__file__).parent
+LONG = os.environ.get("FUZZ") == "long"
+MALFORMED = 10_000 if LONG else 500
+SCHEMATHESIS = ["--max-examples", "100"] if LONG else ["--max-examples", "8", "--phases", "examples,fuzzing,stateful"]
+DISMISSED = "use_after_free"  # DELETE dismisses a job, as in OGC API Processes: it can still be read
+SEED = os.environ.get("FUZZ_SEED", "20260101")
+
+NOWHERE_VALID: list[Any] = [{"nonsense": 1}, [[]], True, "\u2603 \u0000", 10**400, [None]]
+NEVER_NUMBERS: list[Any] = [*NOWHERE_VALID, "1", -(10**400), None, []]
+REQUIRED = ["/schema_version", "/rod", "/rod/length", "/rod/diameter", "/initial", "/initial/shape", "/ends",
+            "/ends/start", "/ends/end", "/t_end", "/output", "/output/interval"]  # fmt: skip
+POSITIVE = ["/rod/length", "/t_end", "/output/interval", "/numerics/dt_max", "/numerics/increment_tolerance"]
+FREE_TEXT = ("/title", "/description")
+CASES = [load_case(name) for name in shipped_cases()]
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory, until_ready) -> Iterator[str]:
+    """A running service, in a process of its own."""
+    [listening] = listen("127.0.0.1", 0)
+    with listening:
+        command = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
+        environment = {**os.environ, "HOCKLE_DATA": str(tmp_path_factory.mktemp("data")), "REDIS_URL": ""}
+        process = subprocess.Popen(command, env=environment, pass_fds=[listening.fileno()])
+        try:
+            address = f"http://127.0.0.1:{listening.getsockname()[1]}"
+            until_ready(f"{address}/readyz", process)
+            yield address
+        finally:
+            process.terminate()
+            process.wait(60)
+
+
+@pytest.fixture(scope="module")
+def until_ready():
+    def wait(url: str, process: subprocess.Popen[bytes]) -> None:
+        while process.poll() is None:
+            try:
+                httpx.get(url, timeout=60.0, trust_env=False).raise_for_status()
+                return
+            except httpx.HTTPError:
+                continue
+        pytest.fail("the service did not start")
+
+    return wait
+
+
+def test_schemathesis_finds_nothing(address, tmp_path):
+    command = [str(Path(sys.executable).with_name("schemathesis")), "--config-file", str(HERE / "schemathesis.toml"),
+               "run", f"{address}/v1/openapi.json", "--checks", "all", "--exclude-checks", DISMISSED,
+               "--seed", SEED, "--no-color", "--generation-database", "none", *SCHEMATHESIS]  # fmt: skip
+    told = subprocess.run(command, capture_output=True, text=True, timeout=3000, cwd=tmp_path)
+    assert told.returncode == 0, told.stdout[-20_000:] + told.stderr
+    print(told.stdout[-1500:])
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    app = create_app(Settings(data=tmp_path_factory.mktemp("malformed")))
+    with TestClient(app, base_url="http://127.0.0.1:8000", raise_server_exceptions=False) as client:
+        yield client
+
+
+def places(value: Any, pointer: str = "") -> Iterator[tuple[str, Any]]:
+    """Every place in a document, with what stands there."""
+    yield pointer, value
+    if isinstance(value, dict):
+        for key, below in value.items():
+            yield from places(below, f"{pointer}/{key}")
+    elif isinstance(value, list):
+        for i, below in enumerate(value):
+            yield from places(below, f"{pointer}/{i}")
+
+
+def changed(document: Any, pointer: str, change: Any) -> Any:
+    """A copy of a document in which `change` was made to the parent of a place: called with parent and key."""
+    copy = json.loads(json.dumps(document))
+    *parents, last = pointer.split("/")[1:]
+    parent = copy
+    for part in parents:
+        parent = parent[int(part) if isinstance(parent, list) else part]
+    change(parent, int(last) if isinstance(parent, list) else last)
+    return copy
+
+
+@st.composite
+def malformed(draw: st.DrawFn) -> tuple[dict[str, Any], str]:
+    """A case with one fault, and the pointer to it."""
+    case = draw(st.sampled_from(CASES))
+    found = [(pointer, value) for pointer, value in places(case) if pointer and pointer not in FREE_TEXT]
+    kind = draw(st.sampled_from(["type", "number", "unknown", "missing"]))
+    if kind == "type":
+        pointer, value = draw(st.sampled_from(found))
+        number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        never = NEVER_NUMBERS if number else [bad for bad in NOWHERE_VALID if type(bad) is not type(value)]
+        bad = draw(st.sampled_from(never))
+        return changed(case, pointer, lambda parent, key: parent.__setitem__(key, bad)), pointer
+    if kind == "number":
+        here = [pointer for pointer in POSITIVE if pointer in dict(found)]
+        pointer, bad = draw(st.sampled_from(here)), -draw(st.floats(0, 1e300))
+        return changed(case, pointer, lambda parent, key: parent.__setitem__(key, bad)), pointer
+    if kind == "unknown":
+        objects = [pointer for pointer, value in places(case) if isinstance(value, dict)]
+        name = "~" + draw(st.text(st.characters(codec="utf-8", exclude_characters="~/"), max_size=20))
+        pointer = draw(st.sampled_from(objects)) + f"/{name}"
+        return changed(case, pointer, lambda parent, key: parent.__setitem__(key, 1)), pointer.replace("~", "~0")
+    pointer = draw(st.sampled_from([one for one in REQUIRED if one in dict(found)]))
+    return changed(case, pointer, lambda parent, key: parent.__delitem__(key)), pointer
+
+
+def test_a_malformed_case_is_refused_with_a_pointer_to_its_fault_and_makes_no_job(client):
+    seen = 0
+
+    @settings(max_examples=MALFORMED, deadline=None, database=None, derandomize=True,
+              suppress_health_check=list(HealthCheck))  # fmt: skip
+    @given(malformed())
+    def refused(one: tuple[dict[str, Any], str]) -> None:
+        nonlocal seen
+        case, pointer = one
+        answer = client.post("/v1/jobs", content=json.dumps(case), headers={"Content-Type": "application/json"})
+        assert answer.status_code == 422, answer.text
+        told = [error["pointer"] for error in answer.json()["errors"]]
+        assert any(f"{one}/".startswith(f"{pointer}/") for one in told), (pointer, told)
+        seen += 1
+
+    refused()
+    assert client.get("/v1/jobs").json()["jobs"] == []
+    print(f"{seen} malformed cases refused")

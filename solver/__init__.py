@@ -2,6 +2,7 @@
 
 from solver.curve import Curve, Vector, constant_vector
 from solver.frame import Frame, Statistics
+from solver.kernel import code_digest
 from solver.outcome import REMEDY, Outcome, RunFailed
 from solver.rod import Rod
 from solver.scene import (
@@ -22,5 +23,5 @@ from solver.simulate import Simulation, simulate, warm
 __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
     "Initial", "Numerics", "Outcome", "PointLoad", "Rod", "RunFailed", "Scene", "Simulation", "Statistics",
-    "Vector", "constant_vector", "simulate", "warm",
+    "Vector", "code_digest", "constant_vector", "simulate", "warm",
 ]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import os
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,13 +20,19 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 _OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "fastmath": {"contract"}}
 
 
-def cache_folder() -> Path:
-    """The folder of this version's compiled kernels, below the user's cache."""
+@cache
+def code_digest() -> str:
+    """What tells this version of the solver from every other: a digest of its sources."""
     digest = hashlib.sha256()
     for source in sorted(Path(__file__).parent.rglob("*.py")):
         digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def cache_folder() -> Path:
+    """The folder of this version's compiled kernels, below the user's cache."""
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return home / "hockle" / f"kernels-{digest.hexdigest()[:16]}"
+    return home / "hockle" / f"kernels-{code_digest()}"
 
 
 if "NUMBA_CACHE_DIR" not in os.environ:

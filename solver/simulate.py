@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cache
 from time import process_time
+from typing import Any
 
+from solver.checkpoint import Saved, restore, saved
 from solver.frame import Frame, Statistics
 from solver.measures.accounts import Accounts
 from solver.methods.box.method import BoxMethod
@@ -48,6 +50,8 @@ class Simulation:
         self._switches = sorted({c.since for e in (scene.start, scene.end)
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
         self.statistics = Statistics()
+        self.t = 0.0
+        self._frames, self._turns = 0, 0.0
 
     @property
     def s(self) -> Array:
@@ -55,22 +59,57 @@ class Simulation:
         return self._method.s
 
     def __iter__(self) -> Iterator[Frame]:
-        warm()
+        while not self.finished:
+            frame = self.advance()
+            if frame is not None:
+                yield frame
+
+    @property
+    def finished(self) -> bool:
+        """Whether the last frame has been given."""
+        return self._frames > len(self._outputs)
+
+    def advance(self) -> Frame | None:
+        """Take one step; give the frame where it ends, if one is due there. The first one starts, at t = 0."""
+        if self._frames == 0:
+            warm()
         started = process_time()
+        frame = self._first_frame() if self._frames == 0 else self._next_frame()
+        self.statistics.cpu_time += process_time() - started
+        return frame
+
+    def checkpoint(self) -> Saved:
+        """All that this run remembers, as arrays and numbers by name."""
+        return saved(self)
+
+    def restore(self, checkpoint: Mapping[str, Any]) -> None:
+        """Go on where a run of the same scene, by the same code, was: bit by bit as it would have.
+
+        That scene and code are the same is for the caller to know; ValueError is raised where it shows.
+        """
+        restore(self, checkpoint)
+
+    def _first_frame(self) -> Frame:
         frame = self._accounts.frame(0.0)
-        t = self._begin()
+        self.t = self._begin()
+        self._frames = 1
+        self._turns = frame.Tw + frame.Wr - frame.Lk
         # forces are no part of what is given at t = 0, they follow from it
-        frame = replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
-        yield frame
-        for output in self._outputs:
-            while t < output:
-                t = self._advance(t, *self._control.step_from(t, self._method.step_limit()))
-            self.statistics.cpu_time += process_time() - started
-            before, frame = frame, self._accounts.frame(output)
-            if self._scene.contact is not None and _has_crossed(before, frame):
-                raise RunFailed(Outcome.ROD_CROSSED_ITSELF, t, self.statistics.steps, "Tw + Wr - Lk jumped")
-            yield frame
-            started = process_time()
+        return replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
+
+    def _next_frame(self) -> Frame | None:
+        output = self._outputs[self._frames - 1]
+        if self.t < output:
+            self.t = self._advance(self.t, *self._control.step_from(self.t, self._method.step_limit()))
+        if self.t < output:
+            return None
+        frame = self._accounts.frame(output)
+        self._frames += 1
+        before, self._turns = self._turns, frame.Tw + frame.Wr - frame.Lk
+        if self._scene.contact is not None and abs(self._turns - before) > 1.0:
+            # a rod that passes through itself makes Tw + Wr - Lk jump by 2
+            raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, "Tw + Wr - Lk jumped")
+        return frame
 
     def _begin(self) -> float:
         """Two tiny steps that find consistent accelerations and forces; return the time they reach."""
@@ -126,12 +165,6 @@ class Simulation:
         self._method.take_step(t, dt)
         self.statistics.steps += 1
         self._accounts.after_step(dt, iterations)
-
-
-def _has_crossed(before: Frame, frame: Frame) -> bool:
-    """Whether the rod has passed through itself between two frames: Tw + Wr - Lk then jumps by 2."""
-    jump = (frame.Tw + frame.Wr - frame.Lk) - (before.Tw + before.Wr - before.Lk)
-    return abs(jump) > 1.0
 
 
 @cache

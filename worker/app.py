@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
-import sys
 from functools import cache
 from typing import Any
 
@@ -40,12 +38,10 @@ def run_next() -> None:
 def prepare(**_: Any) -> None:
     """Before the first fork: directories, and the compiled kernels, which the children then share."""
     settings.make_directories()
-    if hasattr(solver, "warm"):
-        solver.warm()
+    solver.warm()
 
 
 @worker_process_init.connect
 def start_child(**_: Any) -> None:
-    """In each child: end when the worker ends, and hand the job back when told to stop."""
+    """In each child: end when the worker ends."""
     die_with_parent(main_process)
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))

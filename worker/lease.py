@@ -71,17 +71,8 @@ class Lease:
         if self._verdict is not None:
             raise self._verdict
 
-    def _put_off(self, since: float) -> None:
-        fence.arm(since + FENCE * self._seconds - time.monotonic())
-
-    def _keep(self) -> None:
-        while not self._stopped.wait(min(RENEWAL, self._seconds / 4)):
-            try:
-                self._renew()
-            except Exception:
-                log.exception("job %s: its lease could not be renewed, trying again", self._held.job.id)
-
-    def _renew(self) -> None:
+    def renew(self) -> None:
+        """Lengthen the lease now, and tell the row what was reached. Raises what the database raises."""
         asked, reached = time.monotonic(), self.reached
         cancelled = self._held.renew(self._seconds, reached)
         if cancelled is None:
@@ -92,3 +83,13 @@ class Lease:
             self._verdict = Cancelled(self._held.job.id)
         elif reached.wall > self._held.job.limits.wall:
             self._verdict = OutOfTime(self._held.job.id)
+
+    def _put_off(self, since: float) -> None:
+        fence.arm(since + FENCE * self._seconds - time.monotonic())
+
+    def _keep(self) -> None:
+        while not self._stopped.wait(min(RENEWAL, self._seconds / 4)):
+            try:
+                self.renew()
+            except Exception:
+                log.exception("job %s: its lease could not be renewed, trying again", self._held.job.id)

@@ -25,6 +25,10 @@ class Dataset:
     bytes: int
 
 
+LEAST_MEMORY = 64_000_000
+"""Bytes; below, the libraries that compile and solve end the process themselves, without a name for it."""
+
+
 @dataclass(frozen=True)
 class Limits:
     """What a job may use before it is ended by name: seconds of running, bytes of memory and of disk."""
@@ -32,6 +36,11 @@ class Limits:
     wall: float = 7 * 86400.0
     memory: int = 4 * 10**9
     disk: int = 20 * 10**9
+
+    def __post_init__(self) -> None:
+        for name, least in (("wall", 0.0), ("memory", LEAST_MEMORY), ("disk", 0)):
+            if not getattr(self, name) >= least:
+                raise ValueError(f"{name} must be >= {least}, got {getattr(self, name)}")
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -15,8 +16,9 @@ from numpy.typing import NDArray
 
 from service.cases import CaseSpec
 from service.results import netcdf
+from service.results.durable import scratch, sha256_of, sync
 from service.results.schema import stored_variables
-from service.results.segments import Segments, sync
+from service.results.segments import Segment, Segments
 from solver import Frame, Statistics
 
 
@@ -32,13 +34,17 @@ class DatasetWriter:
     """Writes one dataset; under `path` there is nothing, or what was there, until it is complete.
 
     `with DatasetWriter(path, spec, s) as writer:` append the frames, then publish. Whatever way the
-    block is left, what is not published is discarded.
+    block is left, what is not published is discarded; but not in a `directory` that is given, where a
+    later writer may go on from the segments that were `written`.
     """
 
-    def __init__(self, path: Path, spec: CaseSpec, s: NDArray[np.float64]) -> None:
+    def __init__(self, path: Path, spec: CaseSpec, s: NDArray[np.float64], directory: Path | None = None,
+                 written: Sequence[Segment] = ()) -> None:
         self._path, self._spec, self._s = path.absolute(), spec, s
         self._variables = stored_variables(spec)
-        self._segments = Segments(self._path, self._variables)
+        self._cleanup = ExitStack()
+        self._directory = directory or self._cleanup.enter_context(scratch(self._path))
+        self._segments = Segments(self._directory, self._variables, path.stem, written)
 
     def __enter__(self) -> Self:
         return self
@@ -49,11 +55,16 @@ class DatasetWriter:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        self.discard()
+        self._cleanup.close()
 
     def append(self, frame: Frame) -> None:
         """Take one frame. Raises OSError where it cannot be kept."""
         self._segments.append(frame)
+
+    def flush(self) -> list[Segment]:
+        """Bring all frames so far to the disk, and tell where they are. Raises OSError."""
+        self._segments.flush()
+        return list(self._segments.written)
 
     def publish(self, outcome: str, message: str, statistics: Statistics) -> Published:
         """Write the dataset beside its place, read it back, and give it its name.
@@ -62,21 +73,16 @@ class DatasetWriter:
         nothing is left under the name that was not there before.
         """
         self._segments.flush()
-        beside = self._segments.directory / "dataset.nc"
+        beside = self._directory / f"{self._path.name}.part"
         attributes = self._attributes(outcome, message, statistics)
         blocks = self._segments.blocks
         netcdf.write(beside, self._variables, self._s, self._segments.frames, blocks, attributes)
         netcdf.verify(beside, blocks)
         sync(beside)
-        published = Published(_sha256(beside), beside.stat().st_size)
+        published = Published(sha256_of(beside), beside.stat().st_size)
         beside.replace(self._path)
         sync(self._path.parent)
-        self.discard()
         return published
-
-    def discard(self) -> None:
-        """Remove what is not published; nothing happens the second time."""
-        self._segments.remove()
 
     def _attributes(self, outcome: str, message: str, statistics: Statistics) -> dict[str, Any]:
         """The global attributes: CF, ACDD, and what a reader needs to run the case again."""
@@ -103,8 +109,3 @@ class DatasetWriter:
             "newton_iterations": statistics.newton_iterations,
             **netcdf.versions(),
         }
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

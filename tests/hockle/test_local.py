@@ -15,7 +15,7 @@ import service.cases
 import solver
 from hockle.cli import main
 from service.cases import load_case
-from service.results import open_dataset, segments
+from service.results import durable, open_dataset
 from solver import Frame, Outcome, RunFailed, Scene, Simulation
 
 QUICK = ["--set", "t_end=0.5", "--set", "numerics.intervals=20", "--set", "output.interval=0.1"]
@@ -96,7 +96,7 @@ def test_a_full_disk_is_told_and_leaves_nothing(
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with monkeypatch.context() as disk:
-        disk.setattr(segments.os, "fsync", full)
+        disk.setattr(durable.os, "fsync", full)
         assert run(path) == 1
     assert f"the disk is full, nothing was written to {path}" in capsys.readouterr().err
     assert list(path.parent.iterdir()) == []

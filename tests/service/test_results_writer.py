@@ -18,7 +18,7 @@ import xarray as xr
 
 from service.cases import CaseSpec, parse_case
 from service.cases.case import FieldName
-from service.results import VARIABLES, DatasetWriter, Published, netcdf, open_dataset, segments
+from service.results import VARIABLES, DatasetWriter, Published, durable, netcdf, open_dataset, segments
 from solver import Statistics
 from tests.service.frames import frames, nodes, small_spec
 
@@ -183,7 +183,7 @@ def hdf_error(*args: Any, **kwargs: Any) -> None:
         (np, "savez", no_space),
         (netCDF4, "Dataset", hdf_error),
         (netcdf, "verify", no_space),
-        (segments.os, "fsync", no_space),
+        (durable.os, "fsync", no_space),
         (Path, "replace", no_space),
     ],
 )
@@ -274,3 +274,34 @@ def test_a_run_that_lives_is_left_alone_by_the_next_one(path: Path):
         first.publish("completed", "", STATISTICS)
     with open_dataset(path) as dataset:
         assert dataset.sizes["time"] == 2
+
+
+def test_a_run_goes_on_from_the_segments_of_one_that_was_killed(path: Path):
+    spec = small_spec()
+    work = path.parent / "work"
+    work.mkdir()
+    all_frames = list(frames(spec, 9))
+    with DatasetWriter(path.with_name("x.1.nc"), spec, nodes(spec), work) as first:
+        for frame in all_frames[:4]:
+            first.append(frame)
+        written = first.flush()
+        first.append(all_frames[4])  # lost with its writer
+    assert all(segment.is_whole(work) for segment in written)
+    with DatasetWriter(path.with_name("x.2.nc"), spec, nodes(spec), work, written) as second:
+        for frame in all_frames[4:]:
+            second.append(frame)
+        second.publish("completed", "", STATISTICS)
+    write(path, spec, 9)
+    with open_dataset(path) as one, open_dataset(path.with_name("x.2.nc")) as other:
+        xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
+
+
+def test_a_torn_segment_is_known_for_one(path: Path):
+    with DatasetWriter(path, small_spec(), nodes(small_spec()), path.parent) as writer:
+        writer.append(next(frames(small_spec(), 1)))
+        [segment] = writer.flush()
+    file = path.parent / segment.name
+    file.write_bytes(file.read_bytes()[:-1])
+    assert not segment.is_whole(path.parent)
+    file.unlink()
+    assert not segment.is_whole(path.parent)

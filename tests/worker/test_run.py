@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import errno
 import hashlib
+import itertools
 import logging
+import os
+import signal
 import time
 from pathlib import Path
 
@@ -13,12 +16,12 @@ from sqlalchemy.exc import OperationalError
 
 from service.cases import apply_settings, load_case
 from service.jobs import Database, Job, Limits, NewJob, Registry, Status
-from service.jobs.held import HeldJob
+from service.jobs.held import HeldJob, claim
 from service.jobs.reconciler import beats, take_back
 from service.results import DatasetWriter, open_dataset
 from service.settings import Settings
 from solver import Outcome, RunFailed, simulate
-from worker import lease, run
+from worker import attempt, lease, run
 from worker.lock import job_lock
 
 SMALL = apply_settings(
@@ -49,27 +52,26 @@ def ended(job: Job, registry: Registry, settings: Settings) -> Job:
 
 
 def left_over(settings: Settings) -> list[Path]:
-    return [*settings.datasets.iterdir(), *settings.locks.iterdir()]
+    return [*settings.datasets.iterdir(), *settings.locks.iterdir(), *settings.work.iterdir()]
 
 
 def simulation_that(does, at_frame: int = 2):
     """The real simulation, to which something happens at one of its frames."""
 
-    def simulate_until(scene):
+    def begin(scene):
         real = simulate(scene)
+        advance, number = real.advance, itertools.count()
 
-        class Simulation:
-            s, statistics = real.s, real.statistics
+        def watched():
+            frame = advance()
+            if frame is not None and next(number) == at_frame:
+                does()
+            return frame
 
-            def __iter__(self):
-                for i, frame in enumerate(real):
-                    if i == at_frame:
-                        does()
-                    yield frame
+        real.advance = watched
+        return real
 
-        return Simulation()
-
-    return simulate_until
+    return begin
 
 
 def raising(error: BaseException):
@@ -123,7 +125,7 @@ def test_a_lock_file_that_its_holder_removed_meanwhile_locks_nothing(settings):
 
 def test_a_run_that_fails_keeps_its_frames_and_tells_the_remedy(job, registry, settings, monkeypatch):
     failure = RunFailed(Outcome.STEP_TOO_SMALL, 0.02, 7, "stuck")
-    monkeypatch.setattr(run, "simulate", simulation_that(raising(failure)))
+    monkeypatch.setattr(attempt, "simulate", simulation_that(raising(failure)))
     done = ended(job, registry, settings)
     assert (done.status, done.outcome, done.message) == (Status.FAILED, "step_too_small", str(failure))
     with open_dataset(settings.datasets / done.dataset.file) as dataset:
@@ -145,7 +147,7 @@ def test_a_job_cancelled_while_it_runs_leaves_nothing(job, registry, settings, m
 
     monkeypatch.setattr(lease, "RENEWAL", 0.01)
     monkeypatch.setattr(HeldJob, "renew", watched)
-    monkeypatch.setattr(run, "simulate", simulation_that(cancel))
+    monkeypatch.setattr(attempt, "simulate", simulation_that(cancel))
     done = ended(job, registry, settings)
     assert (done.status, done.outcome, done.dataset) == (Status.DISMISSED, "cancelled", None)
     assert left_over(settings) == []
@@ -159,7 +161,7 @@ def test_a_job_that_runs_too_long_ends_by_name(registry, settings, monkeypatch, 
         time.sleep(0.1)
 
     monkeypatch.setattr(lease, "RENEWAL", 0.01)
-    monkeypatch.setattr(run, "simulate", simulation_that(dawdle))
+    monkeypatch.setattr(attempt, "simulate", simulation_that(dawdle))
     done = ended(job, registry, settings)
     assert (done.status, done.outcome) == (Status.FAILED, "wall_time_exceeded")
 
@@ -196,7 +198,7 @@ def test_another_fault_of_the_disk_is_not_called_full(job, registry, settings, m
 
 
 def test_a_bug_is_told_without_its_traceback_which_is_logged(job, registry, settings, monkeypatch, caplog):
-    monkeypatch.setattr(run, "simulate", raising(ZeroDivisionError("secret detail")))
+    monkeypatch.setattr(attempt, "simulate", raising(ZeroDivisionError("secret detail")))
     with caplog.at_level(logging.ERROR):
         done = ended(job, registry, settings)
     assert (done.status, done.outcome) == (Status.FAILED, "internal_error")
@@ -205,7 +207,7 @@ def test_a_bug_is_told_without_its_traceback_which_is_logged(job, registry, sett
 
 
 def test_too_little_memory_has_a_name(job, registry, settings, monkeypatch):
-    monkeypatch.setattr(run, "simulate", raising(MemoryError()))
+    monkeypatch.setattr(attempt, "simulate", raising(MemoryError()))
     assert ended(job, registry, settings).outcome == "out_of_memory"
 
 
@@ -215,13 +217,17 @@ def test_a_case_that_this_version_refuses_fails_with_its_faults(registry, settin
     assert "t_end" in done.message
 
 
-def test_a_worker_told_to_stop_hands_its_job_back(job, registry, settings, monkeypatch):
-    monkeypatch.setattr(run, "simulate", simulation_that(raising(SystemExit(0))))
-    with pytest.raises(SystemExit):
-        run.run_next(registry.database, settings)
+def test_a_worker_told_to_stop_hands_its_job_back_and_the_next_one_goes_on(job, registry, settings, monkeypatch):
+    with monkeypatch.context() as interrupted:
+        interrupted.setattr(attempt, "simulate", simulation_that(lambda: os.kill(os.getpid(), signal.SIGTERM)))
+        with pytest.raises(SystemExit):
+            run.run_next(registry.database, settings)
     waiting = registry.get(job.id)
     assert (waiting.status, waiting.attempts) == (Status.ACCEPTED, 0)
-    assert left_over(settings) == []
+    assert list(settings.datasets.iterdir()) == []
+    done = ended(job, registry, settings)
+    assert (done.status, done.attempts, done.reached.steps_redone) == (Status.SUCCESSFUL, 1, 0)
+    assert left_over(settings) == [settings.datasets / done.dataset.file]
 
 
 def test_a_worker_that_lost_its_job_writes_nothing_for_it(job, registry, settings, monkeypatch):
@@ -229,18 +235,21 @@ def test_a_worker_that_lost_its_job_writes_nothing_for_it(job, registry, setting
         for beat in beats(registry.database):
             take_back(registry.database, beat, 3)
 
-    monkeypatch.setattr(run, "simulate", simulation_that(give_away))
+    monkeypatch.setattr(attempt, "simulate", simulation_that(give_away))
     run.run_next(registry.database, settings)
     held = registry.get(job.id)
     assert (held.status, held.epoch, held.dataset) == (Status.ACCEPTED, 2, None)
+    assert left_over(settings) == [settings.work / job.id]  # for who has it next
+
+
+def test_what_was_left_of_a_job_that_ended_without_a_worker_is_removed(job, registry, settings):
+    (settings.work / job.id).mkdir()
+    (settings.work / job.id / "checkpoint-1.1").write_bytes(b"x")
+    (settings.locks / f"{job.id}.lock").touch()
+    claim(registry.database, job.id, 9.0, "here")
+    (settings.datasets / f"{job.id}.1.nc").write_bytes(b"published, but never told")
+    registry.cancel(job.id)
+    for beat in beats(registry.database):
+        take_back(registry.database, beat, 3)
+    run.run_next(registry.database, settings)
     assert left_over(settings) == []
-
-
-def test_what_a_killed_attempt_left_is_removed_by_the_next(job, registry, settings):
-    stale = settings.datasets / f"{job.id}.7.nc"
-    stale.write_bytes(b"half")
-    work = settings.datasets / f".{job.id}.7.nc.work-abc"
-    work.mkdir()
-    (work / "segment").write_bytes(b"x")
-    done = ended(job, registry, settings)
-    assert left_over(settings) == [settings.datasets / done.dataset.file]

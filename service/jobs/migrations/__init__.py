@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+
 from alembic import command
 from alembic.config import Config
 from alembic.util import CommandError
@@ -9,6 +11,9 @@ from sqlalchemy import Connection, inspect, text
 
 ONE_AT_A_TIME = 0x686F636B6C65
 """The name of the lock under which PostgreSQL lets one process migrate."""
+
+
+logging.getLogger("alembic").setLevel(logging.WARNING)  # it tells of every opening
 
 
 class WrongSchema(Exception):

@@ -39,6 +39,11 @@ def test_a_submitted_job_waits_with_all_that_was_told(registry):
     assert registry.get(job.id) == job
 
 
+def test_a_limit_that_nothing_could_keep_is_refused():
+    with pytest.raises(ValueError, match="memory must be >= 64000000, got 1"):
+        Limits(memory=1)
+
+
 def test_equal_cases_share_a_hash_whatever_the_order_of_their_fields():
     assert NewJob({"a": 1, "b": 2}).case_sha256 == NewJob({"b": 2, "a": 1}).case_sha256
     assert NewJob({"a": 1}).case_sha256 != NewJob({"a": 2}).case_sha256

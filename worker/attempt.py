@@ -1,0 +1,121 @@
+"""One attempt at a job: from its newest checkpoint, if it has one, to its dataset."""
+
+from __future__ import annotations
+
+import logging
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from sqlalchemy.exc import DBAPIError
+
+from service.cases import build_scene, parse_case
+from service.jobs import Dataset, Job, Reached, Status
+from service.jobs.held import HeldJob
+from service.results import DatasetWriter
+from service.results.durable import size_of
+from service.settings import Settings
+from solver import Outcome, RunFailed, Scene, Simulation, code_digest, simulate
+from worker import stopping
+from worker.checkpoints import Checkpoint, Checkpoints
+from worker.endings import Ending, OutOfDisk
+from worker.lease import Lease
+from worker.lock import JobLock
+
+log = logging.getLogger(__name__)
+
+SHARE = 0.05
+"""The part of the running time that checkpoints may take."""
+
+
+def dataset_file(job: Job) -> str:
+    """The name of what this attempt publishes: no attempt writes over another's file."""
+    return f"{job.id}.{job.epoch}.nc"
+
+
+def work_directory(settings: Settings, job_id: str) -> Path:
+    """Where the attempts at a job leave what they have reached."""
+    return settings.work / job_id
+
+
+class Attempt:
+    """Runs a held job. The lease is told of every step, the lock's next holder too, should this one die."""
+
+    def __init__(self, held: HeldJob, lease: Lease, lock: JobLock, settings: Settings) -> None:
+        self._held, self._lease, self._lock = held, lease, lock
+        self._interval = settings.checkpoint
+        self._path = settings.datasets / dataset_file(held.job)
+        self._directory = work_directory(settings, held.job.id)
+        self._directory.mkdir(mode=0o700, parents=True, exist_ok=True)
+        key = f"{held.job.case_sha256} {code_digest()}"
+        self._checkpoints = Checkpoints(self._directory, held.job.epoch, key)
+        self._redone = 0
+        self._due = 0.0
+
+    def run(self) -> Ending:
+        """Compute the frames, write and publish the dataset. Raises whatever else ends a run."""
+        spec = parse_case(self._held.case)
+        scene = build_scene(spec)
+        simulation = simulate(scene)
+        found = self._checkpoints.newest()
+        if found is not None:
+            simulation.restore(found.state)
+        self._tell_lost(found)
+        segments = found.segments if found else ()
+        with DatasetWriter(self._path, spec, simulation.s, self._directory, segments) as writer:
+            status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED.value, ""
+            try:
+                self._compute(simulation, scene, writer)
+            except RunFailed as failure:
+                status, outcome, message = Status.FAILED, failure.outcome.value, str(failure)
+            writer.flush()
+            self._check_size()
+            published = writer.publish(outcome, message, simulation.statistics)
+        return Ending(status, outcome, message, Dataset(self._path.name, published.sha256, published.bytes))
+
+    def _compute(self, simulation: Simulation, scene: Scene, writer: DatasetWriter) -> None:
+        self._due = time.monotonic() + self._interval
+        while not simulation.finished:
+            frame = simulation.advance()
+            if frame is not None:
+                writer.append(frame)
+            steps = simulation.statistics.steps
+            self._lock.mark(steps)
+            self._lease.tell(Reached(min(simulation.t / scene.t_end, 1.0), simulation.t, steps, self._redone))
+            try:
+                stopping.check()
+            except stopping.Stopping:
+                self._save(simulation, writer)
+                raise
+            if time.monotonic() >= self._due:
+                self._save(simulation, writer)
+
+    def _save(self, simulation: Simulation, writer: DatasetWriter) -> None:
+        """Write a checkpoint, and put off the next one the longer the longer it took.
+
+        A run whose checkpoint cannot be written goes on: it may still come to its end.
+        """
+        began = time.monotonic()
+        try:
+            segments = tuple(writer.flush())
+            self._checkpoints.save(Checkpoint(simulation.statistics.steps, simulation.checkpoint(), segments))
+            self._held.checkpointed(self._lease.reached)
+        except (OSError, DBAPIError) as error:
+            log.warning("job %s: no checkpoint could be written: %s", self._held.job.id, error)
+        self._check_size()
+        now = time.monotonic()
+        self._due = now + max(self._interval, (now - began) / SHARE)
+
+    def _check_size(self) -> None:
+        if size_of(self._directory) > self._held.job.limits.disk:
+            raise OutOfDisk
+
+    def _tell_lost(self, found: Checkpoint | None) -> None:
+        """Tell of the steps that were taken already, but after the checkpoint: they are lost with their worker."""
+        before = self._held.job.reached
+        steps = found.steps if found else 0
+        self._redone = before.steps_redone + max(before.steps, self._lock.left) - steps
+        if self._held.job.epoch > 1:
+            self._lock.mark(steps)
+            self._lease.tell(replace(before, steps=steps, steps_redone=self._redone))
+            self._lease.renew()

@@ -1,0 +1,91 @@
+"""What a job has reached, on the disk: the full state of its solver, and the segments of its frames so far."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from service.results.durable import write_whole
+from service.results.segments import Segment
+
+KEPT = 2
+DIGEST = 32
+HEAD = "head"
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Checkpoint:
+    """After `steps` steps: the solver's arrays and numbers by name, and the segments that hold all frames."""
+
+    steps: int
+    state: Mapping[str, Any]
+    segments: tuple[Segment, ...]
+
+
+class Checkpoints:
+    """The checkpoints of one job in `directory`, of which the newest two are kept.
+
+    A file is the SHA-256 of the rest, then NumPy's npz: the state's arrays, and the other things as
+    JSON. `key` tells what must be the same for a run to go on: the case and the solver's code.
+    """
+
+    def __init__(self, directory: Path, epoch: int, key: str) -> None:
+        self._directory, self._epoch, self._key = directory, epoch, key
+
+    def save(self, checkpoint: Checkpoint) -> None:
+        """Write a checkpoint, to the disk. Raises OSError where that cannot be done."""
+        write_whole(self._directory / f"checkpoint-{checkpoint.steps:012d}.{self._epoch}",
+                    _packed(checkpoint, self._key))
+        for path in self._files()[KEPT:]:
+            if int(path.suffix[1:]) <= self._epoch:  # another attempt's files are its own
+                path.unlink(missing_ok=True)
+
+    def newest(self) -> Checkpoint | None:
+        """The farthest checkpoint that is whole, with all of its segments; None to begin anew."""
+        for path in self._files():
+            try:
+                checkpoint = _unpacked(path.read_bytes(), self._key)
+            except (OSError, ValueError) as error:
+                log.warning("%s is passed over: %s", path, error)
+                continue
+            if all(segment.is_whole(self._directory) for segment in checkpoint.segments):
+                return checkpoint
+            log.warning("%s is passed over: a segment is damaged", path)
+        return None
+
+    def _files(self) -> list[Path]:
+        found = self._directory.glob("checkpoint-*")
+        return sorted((path for path in found if path.suffix != ".part"), reverse=True)
+
+
+def _packed(checkpoint: Checkpoint, key: str) -> bytes:
+    arrays = {name: value for name, value in checkpoint.state.items() if isinstance(value, np.ndarray)}
+    numbers = {name: value for name, value in checkpoint.state.items() if name not in arrays}
+    head = {"key": key, "steps": checkpoint.steps, "numbers": numbers,
+            "segments": [asdict(segment) for segment in checkpoint.segments]}
+    content = BytesIO()
+    arrays[HEAD] = np.frombuffer(json.dumps(head).encode(), np.uint8)
+    np.savez(content, **arrays)  # type: ignore[arg-type]  # nothing is named allow_pickle
+    return hashlib.sha256(content.getbuffer()).digest() + content.getvalue()
+
+
+def _unpacked(packed: bytes, key: str) -> Checkpoint:
+    digest, content = packed[:DIGEST], packed[DIGEST:]
+    if hashlib.sha256(content).digest() != digest:
+        raise ValueError("it is damaged")
+    with np.load(BytesIO(content)) as file:
+        state = {name: file[name] for name in file.files}
+    head = json.loads(state.pop(HEAD).tobytes())
+    if head["key"] != key:
+        raise ValueError("it is of another case, or of another version of the solver")
+    return Checkpoint(head["steps"], state | head["numbers"], tuple(Segment(**told) for told in head["segments"]))

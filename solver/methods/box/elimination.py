@@ -1,28 +1,27 @@
-"""Block elimination of an almost block diagonal system, O(N): the production solve.
+"""The almost block diagonal system: factored and solved, in O(N).
 
-Each interval's panel has the rows carried from the left and the interval's own, and as columns the unknowns of its
-two nodes. The left node's columns are eliminated with row pivoting, the remaining rows are carried on. In the manner of
-de Boor & Weiss 1980 (SOLVEBLOK) and Diaz, Fairweather & Keast 1983 (COLROW). Backward stable.
-
-The box scheme has 12 unknowns a node and carries 6 rows; as constants they let the compiler unroll, which halves the
-time. The same code with 24 unknowns serves generalized-alpha in space, see augmented.py.
+The box scheme's by condensation.py. That of generalized-alpha in space, with 24 unknowns a node, see augmented.py, by
+panels of the rows carried from the left and the interval's own: the left node's columns are eliminated with row
+pivoting, the remaining rows are carried on (de Boor & Weiss 1980, SOLVEBLOK; Diaz, Fairweather & Keast 1983, COLROW).
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from solver.kernel import inlined, kernel
+from solver.kernel import kernel
 from solver.methods.box.augmented import wide_panel, wide_start
-from solver.methods.box.fields import Linear, Nodes
+from solver.methods.box.condensation import backward, forward, reduce_interval
+from solver.methods.box.fields import Linear, Nodes, Wide
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.space import BOX
 from solver.rod import Array, Section
 
 
-@inlined
-def _eliminate_columns(size: int, W: Array, swaps: Array) -> bool:
-    """Factor the first `size` columns of W (rows, 2 size) in place; `swaps` (size,) says where each pivot came from."""
+@kernel
+def _eliminate(W: Array, swaps: Array) -> bool:
+    """Factor the left half of the columns of W in place; `swaps` says where each pivot came from."""
+    size = len(swaps)
     for k in range(size):
         pivot, largest = k, abs(W[k, k])
         for i in range(k + 1, len(W)):
@@ -46,16 +45,6 @@ def _eliminate_columns(size: int, W: Array, swaps: Array) -> bool:
 
 
 @kernel
-def _eliminate(W: Array, swaps: Array) -> bool:
-    return bool(_eliminate_columns(12, W, swaps))
-
-
-@kernel
-def _eliminate_wide(W: Array, swaps: Array) -> bool:
-    return bool(_eliminate_columns(W.shape[1] // 2, W, swaps))
-
-
-@kernel
 def _forward(W: Array, swaps: Array, y: Array) -> None:
     for k in range(len(swaps)):
         pivot = swaps[k]
@@ -65,29 +54,35 @@ def _forward(W: Array, swaps: Array, y: Array) -> None:
             y[i] -= W[i, k] * y[k]
 
 
-@inlined
-def _substitute_columns(size: int, panels: Array, swaps: Array, last: Array, last_swaps: Array, y: Array,
-                        b_start: Array, b: Array, b_end: Array, x: Array) -> None:  # fmt: skip
-    N, carried = len(panels), len(b_start)
+@kernel
+def _close(last: Array, last_swaps: Array, b_end: Array, x: Array) -> None:
+    """Solve for the last node's `x`, which holds the right-hand sides carried there."""
+    size, carried = len(x), len(x) - len(b_end)
+    for i in range(len(b_end)):
+        x[carried + i] = b_end[i]
+    _forward(last, last_swaps, x)
+    for i in range(size - 1, -1, -1):
+        for k in range(i + 1, size):
+            x[i] -= last[i, k] * x[k]
+        x[i] /= last[i, i]
+
+
+@kernel
+def _substitute_wide(wide: Wide, b_end: Array) -> None:
+    panels, y, x, size = wide.panels, wide.y, wide.x, len(wide.last)
+    N, carried = len(panels), len(wide.rhs_start)
     for i in range(carried):
-        y[0, i] = b_start[i]
+        y[0, i] = wide.rhs_start[i]
     for j in range(N):
         for i in range(size):
-            y[j, carried + i] = b[j, i]
-        _forward(panels[j], swaps[j], y[j])
+            y[j, carried + i] = wide.rhs[j, i]
+        _forward(panels[j], wide.swaps[j], y[j])
         for i in range(carried):
             if j + 1 < N:
                 y[j + 1, i] = y[j, size + i]
             else:
                 x[N, i] = y[j, size + i]
-    for i in range(size - carried):
-        x[N, carried + i] = b_end[i]
-    _forward(last, last_swaps, x[N])
-    for i in range(size - 1, -1, -1):
-        total = x[N, i]
-        for k in range(i + 1, size):
-            total -= last[i, k] * x[N, k]
-        x[N, i] = total / last[i, i]
+    _close(wide.last, wide.last_swaps, b_end, x[N])
     for j in range(N - 1, -1, -1):
         for i in range(size - 1, -1, -1):
             total = y[j, i]
@@ -103,23 +98,14 @@ def factor(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system
     """Factor the system of the iterate `Y` (n, 12), making each panel when its turn comes; False if it is singular."""
     if len(system.wide.A) > 0:
         return bool(_factor_wide(Y, c0, h, nodes, section, system))
-    N = len(system.panels)
-    W, mean = system.panel, system.mean
-    W[:6, :12] = system.start
-    W[:6, 12:] = 0.0
-    for j in range(N):
-        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, W, 6)
-        if not _eliminate(W, system.swaps[j]):
+    carried, panel = system.carried, system.panel
+    carried[:, :] = system.start
+    for j in range(len(system.panels)):
+        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, system.mean, panel, 0)
+        if not reduce_interval(carried, panel, system.swept[j], system.by_swept[j], system.panels[j], system.swaps[j]):
             return False
-        for i in range(18):
-            for k in range(24):
-                system.panels[j, i, k] = W[i, k]
-        for i in range(6):
-            for k in range(12):
-                W[i, k] = W[12 + i, 12 + k]
-                W[i, 12 + k] = 0.0
     system.last[:, :] = 0.0
-    system.last[:6, :12] = W[:6, :12]
+    system.last[:6, :12] = carried
     system.last[6:, :12] = system.end
     return bool(_eliminate(system.last, system.last_swaps))
 
@@ -135,12 +121,12 @@ def _factor_wide(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, 
             W[:18, :24] = wide.panels[j - 1, 24:, 24:]
             W[:18, 24:] = 0.0
         wide_panel(j, Y, c0, h, nodes, section, system, mean, W)
-        if not _eliminate_wide(W, wide.swaps[j]):
+        if not _eliminate(W, wide.swaps[j]):
             return False
     wide.last[:, :] = 0.0
     wide.last[:18, :24] = wide.panels[len(wide.panels) - 1, 24:, 24:]
     wide.last[18:, :12] = system.end
-    return bool(_eliminate_wide(wide.last, wide.last_swaps))
+    return bool(_eliminate(wide.last, wide.last_swaps))
 
 
 @kernel
@@ -151,8 +137,15 @@ def solve(system: Linear, scale: float, b: Array, x: Array) -> None:
         system.rhs_start[i] = scale * system.b_start[i]
         system.rhs_end[i] = scale * system.b_end[i]
     if len(wide.A) == 0:
-        _substitute_columns(12, system.panels, system.swaps, system.last, system.last_swaps, system.rhs,
-                            system.rhs_start, b, system.rhs_end, x)  # fmt: skip
+        N, y = len(b), system.rhs
+        for j in range(N):
+            forward(system.rhs_start, b[j], system.swept[j], system.by_swept[j], system.panels[j], system.swaps[j],
+                    y[j], system.local)  # fmt: skip
+        for i in range(6):
+            x[N, i] = system.rhs_start[i]
+        _close(system.last, system.last_swaps, system.rhs_end, x[N])
+        for j in range(N - 1, -1, -1):
+            backward(y[j], system.swept[j], system.panels[j], x[j + 1], x[j])
         return
     for i in range(18):
         wide.rhs_start[i] = scale * wide.b_start[i]
@@ -160,24 +153,5 @@ def solve(system: Linear, scale: float, b: Array, x: Array) -> None:
         for k in range(12):
             wide.rhs[j, k] = b[j, k] + scale * (wide.b[j, k] - system.b[j, k])
             wide.rhs[j, 12 + k] = scale * wide.b[j, 12 + k]
-    _substitute_columns(len(wide.last), wide.panels, wide.swaps, wide.last, wide.last_swaps, wide.y,
-                        wide.rhs_start, wide.rhs, system.rhs_end, wide.x)  # fmt: skip
+    _substitute_wide(wide, system.rhs_end)
     x[:, :] = wide.x[:, :12]
-
-
-@kernel
-def determinant_sign(system: Linear) -> int:
-    """The sign of the determinant of the factored system: it changes where equilibria branch or fold."""
-    sign = 1
-    for j in range(len(system.panels)):
-        for k in range(12):
-            if system.swaps[j, k] != k:
-                sign = -sign
-            if system.panels[j, k, k] < 0.0:
-                sign = -sign
-    for k in range(12):
-        if system.last_swaps[k] != k:
-            sign = -sign
-        if system.last[k, k] < 0.0:
-            sign = -sign
-    return sign

@@ -101,13 +101,16 @@ class Wide(NamedTuple):
 class Linear(NamedTuple):
     """The almost block diagonal system and its factors.
 
-    `space` the scheme along s; `panels` (N, 18, 24): factors of six rows carried from the left over an interval's
-    twelve; `start`, `end` (6, 12) rows of the ends; residuals `b` (N, 12), `b_start`, `b_end` (6,); `swaps` (N, 12);
-    `last` (12, 24) with `last_swaps` (12,); `x` (n, 12) solution; `columns`, `rows` (12,) scales; `wide` what
-    rho_inf_space < 1 needs. Scratch: `rhs` (N, 18), `rhs_start`, `rhs_end` (6,), `panel` (18, 24), `mean` (5, 3).
+    `space` the scheme along s; factors, see condensation.py: `swept` (N, 6, 24), `by_swept` (N, 9, 6), `panels`
+    (N, 12, 18) with `swaps` (N, 6), `last` (12, 24) with `last_swaps` (12,); `start`, `end` (6, 12) rows of the ends;
+    residuals `b` (N, 12), `b_start`, `b_end` (6,); `x` (n, 12) solution; `columns`, `rows` (12,) scales; `wide` what
+    rho_inf_space < 1 needs. Scratch: `rhs` (N, 12), `rhs_start`, `rhs_end` (6,), `local` (12,), `carried` (6, 12),
+    `panel` (12, 24), `mean` (5, 3).
     """
 
     space: SpaceScheme
+    swept: Array
+    by_swept: Array
     panels: Array
     start: Array
     end: Array
@@ -124,6 +127,8 @@ class Linear(NamedTuple):
     wide: Wide
     rhs_start: Array
     rhs_end: Array
+    local: Array
+    carried: Array
     panel: Array
     mean: Array
 
@@ -132,8 +137,9 @@ class Linear(NamedTuple):
         """Zeros for a rod of `intervals` intervals."""
         N = intervals
         return cls(
-            space, np.zeros((N, 18, 24)), np.zeros((6, 12)), np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6),
-            np.zeros(6), np.zeros((N, 12), np.int64), np.zeros((12, 24)), np.zeros(12, np.int64),
-            np.zeros((N + 1, 12)), np.zeros((N, 18)), np.ones(12), np.ones(12),
-            Wide.empty(0 if space == BOX else N), np.zeros(6), np.zeros(6), np.zeros((18, 24)), np.zeros((5, 3)),
+            space, np.zeros((N, 6, 24)), np.zeros((N, 9, 6)), np.zeros((N, 12, 18)), np.zeros((6, 12)),
+            np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6), np.zeros(6), np.zeros((N, 6), np.int64),
+            np.zeros((12, 24)), np.zeros(12, np.int64), np.zeros((N + 1, 12)), np.zeros((N, 12)), np.ones(12),
+            np.ones(12), Wide.empty(0 if space == BOX else N), np.zeros(6), np.zeros(6), np.zeros(12),
+            np.zeros((6, 12)), np.zeros((12, 24)), np.zeros((5, 3)),
         )  # fmt: skip

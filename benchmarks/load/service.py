@@ -1,4 +1,4 @@
-"""The service under test: `hockle serve` with its own data, on loopback, stopped when the block ends."""
+"""The service under test, with data of its own, on loopback, stopped when the block ends."""
 
 from __future__ import annotations
 
@@ -6,49 +6,53 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
-from pathlib import Path
+from contextlib import ExitStack, contextmanager
 from urllib.parse import urlsplit
 
-from hockle.client import Client
+import httpx
 
+from service.api.listening import listen
 
-@dataclass(frozen=True)
-class Service:
-    """Where it answers."""
-
-    address: str
-
-    @property
-    def host(self) -> str:
-        """Its address without the port."""
-        return urlsplit(self.address).hostname or ""
-
-    @property
-    def port(self) -> int:
-        """Its port."""
-        return urlsplit(self.address).port or 0
+ENVIRONMENT = {"REDIS_URL": "", "HOCKLE_QUOTA": "1000000", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+APIS = 2
 
 
 @contextmanager
-def serving(workers: int) -> Iterator[Service]:
-    """Run it, with a quota that lets one owner queue them all."""
+def whole() -> Iterator[tuple[str, int]]:
+    """`hockle serve` with one worker; host and port."""
     with tempfile.TemporaryDirectory(prefix="hockle-load-") as data:
-        command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", str(workers), "--data", data]
-        environment = {**os.environ, "REDIS_URL": "", "HOCKLE_QUOTA": "1000000", "PYTHONPATH": str(Path.cwd())}
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment)
+        command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", data]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | ENVIRONMENT)
         try:
             assert process.stdout is not None
-            yield Service(process.stdout.readline().split()[3].rstrip(","))
+            address = urlsplit(process.stdout.readline().split()[3].rstrip(","))
+            yield address.hostname or "", address.port or 0
         finally:
             process.terminate()
             process.wait(120)
 
 
-def finish(service: Service, job_id: str) -> dict[str, object]:
-    """The job when it has ended."""
-    with Client(service.address) as client:
-        *_, job = client.follow(job_id)
-    return job
+@contextmanager
+def without_workers() -> Iterator[tuple[str, int]]:
+    """The API processes alone, so that nothing computes beside them; host and port."""
+    with ExitStack() as cleanup:
+        data = cleanup.enter_context(tempfile.TemporaryDirectory(prefix="hockle-load-"))
+        sockets = [cleanup.enter_context(listening) for listening in listen("127.0.0.1", 0, many=APIS)]
+        for listening in sockets:
+            command = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
+            process = subprocess.Popen(command, env=os.environ | ENVIRONMENT | {"HOCKLE_DATA": data},
+                                       pass_fds=[listening.fileno()])  # fmt: skip
+            cleanup.callback(process.wait, 60)
+            cleanup.callback(process.terminate)
+        host, port = sockets[0].getsockname()
+        deadline = time.monotonic() + 60.0
+        for _ in range(20):  # new connections, so that each process has answered
+            while time.monotonic() < deadline:
+                try:
+                    httpx.get(f"http://{host}:{port}/readyz", timeout=60.0, trust_env=False)
+                    break
+                except httpx.TransportError:
+                    time.sleep(0.1)
+        yield host, port

@@ -10,7 +10,7 @@ from fastapi import FastAPI
 
 from service.access import KeyStore
 from service.access.limits import RateLimit
-from service.api import cases, datasets, events, front, jobs, problems, submitting
+from service.api import cases, datasets, events, front, jobs, problems, submitting, watching
 from service.api.description import describe
 from service.api.feed import Feed
 from service.api.gate import Gate
@@ -55,6 +55,6 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
     hosts = {name.strip().lower() for name in settings.hosts.split(",")} - {""}
     app.add_middleware(Gate, keyed=keyed, hosts=hosts)
     problems.install(app)
-    for part in (submitting, jobs, events, datasets, cases, front):
+    for part in (submitting, jobs, events, datasets, cases, watching, front):
         app.include_router(part.router)
     return app

@@ -1,0 +1,70 @@
+"""`python -m benchmarks.load`: what the service bears on this machine, beside its aims; kept in results/load.md.
+
+Everything runs on loopback, in a service of its own, and stops by itself after some minutes.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import uvloop
+
+from benchmarks.load.scenes import events, first_step, statuses, submissions
+from benchmarks.load.service import whole, without_workers
+from validation.provenance import provenance
+
+RESULTS = Path(__file__).parents[1] / "results" / "load.md"
+QUEUED = 10_000
+HOW = """\
+Two API processes as `hockle serve` starts them, SQLite in WAL mode with synchronous=FULL, on loopback; the clients are one process
+beside them (asyncio with uvloop), on the same cores. Latency is from the write of the request to the last byte of the answer.
+Status: 1000 keep-alive connections, each once a second, out of step. Submissions: 16 connections, each one after the other, every
+case another one. These are measured without workers, so that what jobs cost is not in them; the rest with the whole of `hockle serve`
+and one worker. First step: one job at a time, from the request to the worker's claim, and to the end of a job of a single
+step, its dataset published; the first step lies between. Events: from the time in `ended` to its arrival at 200 listeners.
+The load of the machine, beside ours, is in the figures."""
+
+
+def row(name: str, seconds: Sequence[float], aim: str, rate: str = "") -> dict[str, Any]:
+    """One line of the table, in ms."""
+    ordered = sorted(seconds)
+    p50, p99 = (1e3 * ordered[min(len(ordered) - 1, int(part * len(ordered)))] for part in (0.5, 0.99))
+    return {"what": name, "n": len(ordered), "p50 ms": f"{p50:.1f}", "p99 ms": f"{p99:.1f}", "a second": rate, "aim": aim}
+
+
+async def measure(host: str, port: int, queued: str) -> list[dict[str, Any]]:
+    """Every scene once."""
+    rate, seconds = await submissions(host, port)
+    return [
+        row(f"status, 1000 pollers{queued}", await statuses(host, port, unchanged=False), "p99 <= 20 ms"),
+        row(f"status answered 304{queued}", await statuses(host, port, unchanged=True), "p99 <= 10 ms"),
+        row(f"durable submission{queued}", seconds, ">= 1000/s, p99 <= 50 ms", f"{rate:.0f}"),
+    ]
+
+
+async def main() -> None:
+    """Measure with an empty queue and with a long one, print and keep."""
+    rows: list[dict[str, Any]] = []
+    before = os.getloadavg()
+    with whole() as place:
+        claimed, ended = await first_step(*place)
+        rows.append(row("submission to the worker's claim", claimed, ""))
+        rows.append(row("submission to the end of a job of one step", ended, "first step: p99 <= 100 ms"))
+        rows.append(row("event, 200 listeners", await events(*place), ""))
+    with without_workers() as place:
+        rows += await measure(*place, "")
+        await submissions(*place, many=QUEUED)
+        rows += await measure(*place, f", {QUEUED:,} queued")
+    text = [*(f"- {line}" for line in provenance()),
+            f"- load average of the machine before {before[0]:.1f}, after {os.getloadavg()[0]:.1f}", "", HOW, ""]
+    text += ["| " + " | ".join(rows[0]) + " |", "|---" * len(rows[0]) + "|"]
+    text += ["| " + " | ".join(str(value) for value in one.values()) + " |" for one in rows]
+    print("\n".join(text))
+    RESULTS.write_text("\n".join([*text, ""]), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    uvloop.run(main())

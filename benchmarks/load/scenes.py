@@ -1,0 +1,92 @@
+"""What is measured, one function a scene. Latencies in seconds."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import secrets
+import time
+from datetime import datetime
+from typing import Any
+
+from benchmarks.load.clients import connect, listen, poll, submit_all
+from benchmarks.load.connection import Connection
+from service.cases import apply_settings, load_case
+
+POLLERS, FOR = 1000, 15.0
+SUBMITTERS, SUBMITTED = 16, 3000
+LISTENERS, ROUNDS, TIMES = 200, 5, 40
+ONE_STEP = {"t_end": 0.01, "output.interval": 0.01, "numerics.dt_max": 0.01, "numerics.intervals": 50}
+
+
+def case(number: int = 0) -> dict[str, Any]:
+    """A small case that nobody has run; its physics change with `number`."""
+    changed = ONE_STEP | {"loads.damping": 1e-6 * number, "description": secrets.token_hex()}
+    return apply_settings(load_case("cantilever-vibration"), changed)
+
+
+async def statuses(host: str, port: int, unchanged: bool) -> list[float]:
+    """A thousand clients that look at their jobs once a second."""
+    few, many = await connect(host, port, 1), await connect(host, port, POLLERS)
+    ids, _ = await submit_all(few, [case(number) for number in range(100)])
+    latencies = await poll(many, ids, FOR, unchanged)
+    for connection in few + many:
+        connection.close()
+    return latencies
+
+
+async def submissions(host: str, port: int, many: int = SUBMITTED) -> tuple[float, list[float]]:
+    """Submissions as fast as they are answered: how many a second, and their latencies."""
+    connections = await connect(host, port, SUBMITTERS)
+    cases = [case(number) for number in range(many)]
+    start = time.perf_counter()
+    _, latencies = await submit_all(connections, cases)
+    rate = many / (time.perf_counter() - start)
+    for connection in connections:
+        connection.close()
+    return rate, latencies
+
+
+async def first_step(host: str, port: int) -> tuple[list[float], list[float]]:
+    """From the request to the claim of an idle worker, and to the end of a job of one step."""
+    connection = await Connection.open(host, port)
+    claimed, ended = [], []
+    for number in range(TIMES):
+        text = connection.text("POST", "/v1/jobs", json.dumps(case(number)).encode())
+        sent = time.time()
+        job = json.loads((await connection.ask(text)).body)
+        while job["status"] in ("accepted", "running"):
+            await asyncio.sleep(0.02)
+            job = json.loads((await connection.ask(connection.text("GET", f"/v1/jobs/{job['id']}"))).body)
+        claimed.append(_unix(job["started"]) - sent)
+        ended.append(_unix(job["finished"]) - sent)
+    connection.close()
+    return claimed, ended
+
+
+async def events(host: str, port: int) -> list[float]:
+    """From what happens to a job to its arrival at many listeners."""
+    latencies: list[float] = []
+    [submitter] = await connect(host, port, 1)
+    for number in range(ROUNDS):
+        [job_id], _ = await submit_all([submitter], [case(number) | {"t_end": 5.0}])
+        listeners = await connect(host, port, LISTENERS)
+        ended = asyncio.Semaphore(0)
+
+        def hear(kind: str, data: dict[str, Any], now: float, ended: asyncio.Semaphore = ended) -> None:
+            if kind == "ended":
+                latencies.append(now - _unix(data["time"]))
+                ended.release()
+
+        for connection in listeners:
+            listen(connection, job_id, hear)
+        for _ in listeners:
+            await asyncio.wait_for(ended.acquire(), 120.0)
+        for connection in listeners:
+            connection.close()
+    submitter.close()
+    return latencies
+
+
+def _unix(instant: str) -> float:
+    return datetime.fromisoformat(instant).timestamp()

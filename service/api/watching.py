@@ -1,0 +1,88 @@
+"""/metrics for Prometheus, /v1/audit for who did what: for operators."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, generate_latest
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
+from prometheus_client.registry import Collector
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api.description import problems
+from service.api.parts import InParts, Operator
+from service.jobs.audit import trail
+from service.jobs.measures import Measures, measure
+
+TEXT: dict[int | str, dict[str, object]] = {
+    200: {"description": "The metrics", "content": {"text/plain": {"schema": {"type": "string"}}}}
+}
+router = APIRouter(tags=["service"])
+
+
+class DeedDocument(BaseModel):
+    """Who did what: `subject` is a job's id, or the prefix of a key."""
+
+    id: int
+    time: datetime
+    owner: str
+    key: str
+    action: str
+    subject: str
+
+
+class TrailDocument(BaseModel):
+    """A page of the audit trail, newest first; `next` is the address of the following page."""
+
+    deeds: list[DeedDocument]
+    next: str | None
+
+
+class Stretch(BaseModel):
+    """Which part of the trail."""
+
+    model_config = ConfigDict(extra="forbid")
+    limit: int = Field(100, ge=1, le=1000)
+    before: int | None = Field(None, ge=0, le=2**62, description="only deeds before this one")
+
+
+@router.get("/metrics", response_class=Response, responses={**TEXT})
+def metrics(parts: InParts, _: Operator) -> Response:
+    """Queue, leases, steps and outcomes, from the registry, in the text format of Prometheus."""
+    registry = CollectorRegistry()
+    registry.register(_Told(measure(parts.registry.database, parts.settings.lease, time.time())))
+    return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
+
+
+@router.get("/v1/audit", responses=problems(422))
+def audit(_: Operator, stretch: Annotated[Stretch, Query()], parts: InParts) -> TrailDocument:
+    """Who submitted and cancelled which job, who made and revoked which key."""
+    deeds = trail(parts.registry.database, stretch.limit, stretch.before)
+    more = len(deeds) == stretch.limit
+    told = [DeedDocument(**vars(deed) | {"time": datetime.fromtimestamp(deed.time, UTC)}) for deed in deeds]
+    return TrailDocument(deeds=told, next=f"/v1/audit?limit={stretch.limit}&before={told[-1].id}" if more else None)
+
+
+class _Told(Collector):
+    """Measures as Prometheus names them."""
+
+    def __init__(self, measures: Measures) -> None:
+        self._measures = measures
+
+    def collect(self) -> Iterator[Metric]:
+        told = self._measures
+        now = GaugeMetricFamily("hockle_jobs", "Jobs by status", labels=["status"])
+        for status, count in told.by_status.items():
+            now.add_metric([status], count)
+        ended = CounterMetricFamily("hockle_jobs_ended", "Ended jobs by outcome", labels=["status", "outcome"])
+        for labels, count in told.by_outcome.items():
+            ended.add_metric(labels, count)
+        yield from (now, ended)
+        yield GaugeMetricFamily("hockle_queue_age_seconds", "Age of the oldest waiting job", told.queue_age)
+        yield GaugeMetricFamily("hockle_lease_age_seconds", "Since the most silent worker renewed", told.lease_age)
+        yield CounterMetricFamily("hockle_steps", "Steps of the solver that count", told.steps)
+        yield CounterMetricFamily("hockle_steps_redone", "Steps lost and computed again", told.steps_redone)

@@ -20,6 +20,7 @@ from service.jobs.doorbell import Doorbell
 from service.jobs.reconciler import Reconciler, ring_for_all
 from service.jobs.submissions import Submissions
 from service.settings import Settings
+from service.webhooks import Notifier
 
 TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "results", "description": "Datasets, whole or in part."},
@@ -39,7 +40,7 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
         settings.make_directories()
         database = Database(settings.database_url)
         registry, doorbell = Registry(database), Doorbell(settings)
-        with (Reconciler(database, doorbell, settings),
+        with (Reconciler(database, doorbell, settings), Notifier(database),
               Submissions(database, settings.quota, lambda: ring_for_all(database, doorbell)) as submissions):
             async with Feed(registry).running() as feed:
                 limit = RateLimit(settings.rate, int(settings.rate * BURST))

@@ -7,11 +7,12 @@ from functools import cache
 from typing import Any
 
 from celery import Celery
-from celery.signals import worker_init, worker_process_init
+from celery.signals import setup_logging, worker_init, worker_process_init
 
 import solver
 from service.jobs import Database
 from service.jobs.doorbell import TASK, celery_settings
+from service.logs import write_json
 from service.settings import from_environment
 from worker import run
 from worker.parent import die_with_parent
@@ -32,6 +33,12 @@ def database() -> Database:
 def run_next() -> None:
     """Run one job; the registry says which."""
     run.run_next(database(), settings)
+
+
+@setup_logging.connect
+def log_as_json(**_: Any) -> None:
+    """In place of what Celery would set up."""
+    write_json()
 
 
 @worker_init.connect

@@ -12,6 +12,7 @@ from sqlalchemy.exc import DBAPIError
 
 from service.jobs import Database
 from service.jobs.held import HeldJob, claim, next_in_turn
+from service.logs import about
 from service.settings import Settings
 from worker import stopping
 from worker.attempt import Attempt, dataset_file, work_directory
@@ -34,7 +35,8 @@ def run_next(database: Database, settings: Settings) -> None:
             asked = time.monotonic()
             held = claim(database, job_id, settings.lease, f"{platform.node()}:{os.getpid()}") if lock else None
             if lock is not None and held is not None:
-                _run(held, Lease(held, settings.lease, asked), lock, settings)
+                with about(job=job_id, epoch=held.job.epoch):
+                    _run(held, Lease(held, settings.lease, asked), lock, settings)
                 return
         passed.append(job_id)
     log.info("no job waits")

@@ -11,6 +11,7 @@ import uvicorn
 from service.access import has_keys
 from service.api.app import create_app
 from service.api.listening import listen, on_loopback
+from service.logs import write_json
 from service.settings import Settings, from_environment
 
 
@@ -24,7 +25,8 @@ def main() -> None:
     settings = from_environment()
     listening = _socket(told, settings)
     app = create_app(settings, keyed=settings.require_keys or not on_loopback(listening))
-    config = uvicorn.Config(app, log_level="warning", server_header=False)
+    write_json()
+    config = uvicorn.Config(app, log_config=None, log_level="warning", access_log=False, server_header=False)
     uvicorn.Server(config).run(sockets=[listening])
 
 

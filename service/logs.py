@@ -1,0 +1,48 @@
+"""Logs as JSON, one object a line, to standard error."""
+
+from __future__ import annotations
+
+import json
+import logging
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from typing import Any
+
+USUAL = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "taskName", "color_message"}
+_told: dict[str, Any] = {}
+
+
+@contextmanager
+def about(**told: Any) -> Iterator[None]:
+    """Have every line that this process writes while the block runs tell this too: a worker has one job at a time."""
+    _told.update(told)
+    try:
+        yield
+    finally:
+        for name in told:
+            _told.pop(name, None)
+
+
+class Json(logging.Formatter):
+    """Time (UTC), level, logger and message; what `about` and `extra` add; the exception, if there is one."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """One line."""
+        told = {"time": datetime.fromtimestamp(record.created, UTC).isoformat(), "level": record.levelname.lower(),
+                "logger": record.name, "message": record.getMessage(), **_told}  # fmt: skip
+        told |= {name: value for name, value in vars(record).items() if name not in USUAL}
+        if record.exc_info:
+            told["exception"] = self.formatException(record.exc_info)
+        return json.dumps(told, default=str)
+
+
+def write_json(level: int = logging.INFO) -> None:
+    """Send all logs of this process to standard error as JSON."""
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(Json())
+    logging.root.handlers[:] = [handler]
+    logging.root.setLevel(level)
+    for noisy in ("httpx", "httpcore", "alembic", "numba"):
+        logging.getLogger(noisy).setLevel(logging.WARNING)

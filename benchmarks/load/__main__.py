@@ -6,6 +6,7 @@ Everything runs on loopback, in a service of its own, and stops by itself after 
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -19,20 +20,24 @@ from validation.provenance import provenance
 RESULTS = Path(__file__).parents[1] / "results" / "load.md"
 QUEUED = 10_000
 HOW = """\
-Two API processes as `hockle serve` starts them, SQLite in WAL mode with synchronous=FULL, on loopback; the clients are one process
-beside them (asyncio with uvloop), on the same cores. Latency is from the write of the request to the last byte of the answer.
-Status: 1000 keep-alive connections, each once a second, out of step. Submissions: 16 connections, each one after the other, every
-case another one. These are measured without workers, so that what jobs cost is not in them; the rest with the whole of `hockle serve`
-and one worker. First step: one job at a time, from the request to the worker's claim, and to the end of a job of a single
-step, its dataset published; the first step lies between. Events: from the time in `ended` to its arrival at 200 listeners.
-The load of the machine, beside ours, is in the figures."""
+Two API processes as `hockle serve` starts them, SQLite in WAL mode with synchronous=FULL, on loopback; the clients
+are one process beside them (asyncio with uvloop), on the same cores. Latency is from the write of the request to
+the last byte of the answer. Status: 1000 keep-alive connections, each once a second, out of step. Submissions: 16
+connections, each one after the other, every case another one. These are measured without workers, so that what
+jobs cost is not in them; the rest with the whole of `hockle serve` and one worker. First step: one job at a time,
+from the request to the worker's claim, and to the end of a job of a single step, its dataset published; the first
+step lies between. Events: from the time in `ended` to its arrival at 200 listeners. The load of the machine,
+beside ours, is in the figures."""
 
 
 def row(name: str, seconds: Sequence[float], aim: str, rate: str = "") -> dict[str, Any]:
     """One line of the table, in ms."""
     ordered = sorted(seconds)
     p50, p99 = (1e3 * ordered[min(len(ordered) - 1, int(part * len(ordered)))] for part in (0.5, 0.99))
-    return {"what": name, "n": len(ordered), "p50 ms": f"{p50:.1f}", "p99 ms": f"{p99:.1f}", "a second": rate, "aim": aim}
+    told = {"what": name, "n": len(ordered), "p50 ms": f"{p50:.1f}", "p99 ms": f"{p99:.1f}", "a second": rate,
+            "aim": aim}  # fmt: skip
+    print(" ".join(map(str, told.values())), file=sys.stderr, flush=True)
+    return told
 
 
 async def measure(host: str, port: int, queued: str) -> list[dict[str, Any]]:
@@ -47,17 +52,16 @@ async def measure(host: str, port: int, queued: str) -> list[dict[str, Any]]:
 
 async def main() -> None:
     """Measure with an empty queue and with a long one, print and keep."""
-    rows: list[dict[str, Any]] = []
     before = os.getloadavg()
+    with without_workers() as place:
+        rows = await measure(*place, "")
+        await submissions(*place, many=QUEUED)
+        rows += await measure(*place, f", {QUEUED:,} queued")
     with whole() as place:
         claimed, ended = await first_step(*place)
         rows.append(row("submission to the worker's claim", claimed, ""))
         rows.append(row("submission to the end of a job of one step", ended, "first step: p99 <= 100 ms"))
         rows.append(row("event, 200 listeners", await events(*place), ""))
-    with without_workers() as place:
-        rows += await measure(*place, "")
-        await submissions(*place, many=QUEUED)
-        rows += await measure(*place, f", {QUEUED:,} queued")
     text = [*(f"- {line}" for line in provenance()),
             f"- load average of the machine before {before[0]:.1f}, after {os.getloadavg()[0]:.1f}", "", HOW, ""]
     text += ["| " + " | ".join(rows[0]) + " |", "|---" * len(rows[0]) + "|"]

@@ -10,7 +10,7 @@ from fastapi import FastAPI
 
 from service.access import KeyStore
 from service.access.limits import RateLimit
-from service.api import cases, datasets, events, front, jobs, problems, submitting, watching
+from service.api import cases, datasets, events, front, jobs, problems, processes, submitting, watching
 from service.api.description import describe
 from service.api.feed import Feed
 from service.api.gate import Gate
@@ -25,6 +25,7 @@ from service.webhooks import Notifier
 TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "results", "description": "Datasets, whole or in part."},
         {"name": "cases", "description": "What can be simulated, and what it would cost."},
+        {"name": "OGC API Processes", "description": "The same jobs as one process of OGC API Processes, Part 1."},
         {"name": "service", "description": "Whether it lives, and how it does."}]
 BURST = 10.0  # s of an owner's rate that may be spent at once
 
@@ -56,6 +57,6 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
     hosts = {name.strip().lower() for name in settings.hosts.split(",")} - {""}
     app.add_middleware(Gate, keyed=keyed, hosts=hosts)
     problems.install(app)
-    for part in (submitting, jobs, events, datasets, cases, watching, front):
+    for part in (submitting, jobs, events, datasets, cases, processes, watching, front):
         app.include_router(part.router)
     return app

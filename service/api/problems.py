@@ -35,7 +35,8 @@ class Problem(Exception):
 
     def response(self) -> JSONResponse:
         """The problem as its client reads it."""
-        body = {"type": f"urn:hockle:problem:{self.name}", "title": HTTPStatus(self.status).phrase,
+        kind = self.name if "://" in self.name else f"urn:hockle:problem:{self.name}"
+        body = {"type": kind, "title": HTTPStatus(self.status).phrase,
                 "status": self.status, "detail": self.detail}
         return JSONResponse(body | self.extensions, self.status, self.headers, "application/problem+json")
 

@@ -27,8 +27,12 @@ Simulations of elastic rods as jobs: submit a case, follow the job, fetch its Ne
 Every error is a problem (RFC 9457); where a case or a parameter is refused, `errors` says which, and by what rule.
 Where a key is required, send `Authorization: Bearer hk_...`: a key sees its owner's jobs, and others' are not there."""
 
+CASE = {"anyOf": [{"$ref": "#/components/schemas/CaseSpec"}, {"$ref": "#/components/schemas/JobRequest"}]}
+EXECUTE_BODY = {"requestBody": {"required": True, "content": {"application/json": {"schema": {
+    "type": "object", "required": ["inputs"], "properties": {"inputs": {
+        "type": "object", "required": ["case"], "properties": {"case": CASE}}}}}}}}
 CASE_BODY = {"requestBody": {"required": True, "content": {"application/json": {
-    "schema": {"anyOf": [{"$ref": "#/components/schemas/CaseSpec"}, {"$ref": "#/components/schemas/JobRequest"}]},
+    "schema": CASE,
     "examples": {
         "shipped": {"summary": "a shipped case, changed",
                     "value": {"case": "elastica", "set": {"t_end": 5, "numerics.intervals": 50}, "label": "first"}},

@@ -11,7 +11,7 @@ from fastapi import APIRouter, Depends, Query, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.bodies import json_object
-from service.api.description import problems
+from service.api.description import EXECUTE_BODY, problems
 from service.api.documents import JobDocument, document
 from service.api.parts import InParts, Jobs, OwnJobs, Reader, Submitter
 from service.api.problems import Problem
@@ -124,7 +124,8 @@ def process(process_id: str, _: Reader) -> dict[str, Any]:
     return _summary() | {"inputs": {"case": case_input}, "outputs": {"dataset": dataset}}
 
 
-@router.post("/processes/{process_id}/execution", status_code=201, responses=problems(400, 404, 409, 413, 415, 422))
+@router.post("/processes/{process_id}/execution", status_code=201, openapi_extra=EXECUTE_BODY,
+             responses=problems(400, 404, 409, 413, 415, 422))
 async def execute(process_id: str, caller: Submitter, parts: InParts, response: Response,
                   body: Annotated[dict[str, Any], Depends(json_object)]) -> StatusInfo:
     """Accept a case to be run, always as a job of its own."""

@@ -230,7 +230,7 @@ class Numerics:
     scheme); `increment_tolerance` bounds each step's error relative to the step's motion.
     """
 
-    method: Literal["box"] = "box"
+    method: Literal["box", "staggered"] = "box"
     linear_solver: Literal["block_elimination", "shooting"] = "block_elimination"
     intervals: int = 200
     dt_max: float = 0.1
@@ -282,6 +282,8 @@ class Scene:
         if not (np.isfinite(self.damping) and self.damping >= 0):
             raise ValueError(f"damping must be >= 0 1/s, got {self.damping}")
         _require_finite("gravity", self.gravity)
+        if self.contact is not None and self.numerics.intervals < 3:
+            raise ValueError(f"intervals must be >= 3 with contact, got {self.numerics.intervals}")
         for load in self.points:
             if not 0 <= load.s <= self.rod.length:
                 raise ValueError(f"s of a point load must be in [0, {self.rod.length}] m, got {load.s}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import cache
 from time import process_time
@@ -13,6 +13,7 @@ from solver.frame import Frame, Statistics
 from solver.measures.accounts import Accounts
 from solver.methods.box.method import BoxMethod
 from solver.methods.method import Method
+from solver.methods.staggered.method import StaggeredMethod
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
 from solver.rod import Array, Rod
@@ -23,7 +24,7 @@ FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
 """Outcomes that a shorter step does not avert."""
 
 
-METHODS: dict[str, type[BoxMethod]] = {"box": BoxMethod}
+METHODS: dict[str, Callable[[Scene], Method]] = {"box": BoxMethod, "staggered": StaggeredMethod}
 
 
 def simulate(scene: Scene) -> Simulation:
@@ -72,7 +73,7 @@ class Simulation:
     def advance(self) -> Frame | None:
         """Take one step; give the frame where it ends, if one is due there. The first one starts, at t = 0."""
         if self._frames == 0:
-            warm()
+            warm(self._scene.numerics.method)
         started = process_time()
         frame = self._first_frame() if self._frames == 0 else self._next_frame()
         self.statistics.cpu_time += process_time() - started
@@ -168,11 +169,12 @@ class Simulation:
 
 
 @cache
-def warm() -> None:
-    """Compile every kernel, or load it from the cache, by one step of a tiny scene; once per process."""
+def warm(method: str = Numerics.method) -> None:
+    """Compile every kernel of a method, or load it from the cache, by a step of a tiny scene; once per process."""
     scene = Scene(
         rod=Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), initial=Initial.straight(), start=End.clamp(), end=End.free(),
-        t_end=1e-3, output_interval=1e-3, fluid=Fluid(1000.0), numerics=Numerics(intervals=4, dt_max=1e-3),
+        t_end=1e-3, output_interval=1e-3, fluid=Fluid(1000.0),
+        numerics=Numerics(method=method, intervals=4, dt_max=1e-3),  # type: ignore[arg-type]
         contact=Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05),
     )  # fmt: skip
     simulation = Simulation(scene)

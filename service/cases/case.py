@@ -30,7 +30,7 @@ Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 class NumericsSpec(Spec):
     """How the equations are solved: see `solver.Numerics`."""
 
-    method: Literal["box"] = "box"
+    method: Literal["box", "staggered"] = "box"
     linear_solver: Literal["block_elimination", "shooting"] = "block_elimination"
     intervals: Annotated[int, Field(ge=2, le=20_000)] = 200
     dt_max: Positive = 0.05

@@ -1,8 +1,9 @@
 """Which pairs of points may touch, and when nobody need look.
 
 Three proofs, each cheaper than the next search: an arc of length l and total curvature K has a chord of at least
-l cos(K/2) (Schur), so while the rod's total curvature is small no pair can be near; neighbours on an inextensible rod
-are `spacing` apart, so a search marches by (d - radius) / spacing points; and a gap once measured holds until
+l cos(K/2) (Schur), so while the rod's total curvature is small no pair can be near; neighbouring
+points are at most `longest_spacing` apart, so a search marches by (d - radius) / longest_spacing points;
+and a gap once measured holds until
 somebody has moved by half of it.
 """
 
@@ -13,9 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.contact.law import Law
-from solver.contact.points import Points
+from solver.contact.points import REACH, Points
 from solver.kernel import kernel
-from solver.methods.box.fields import KAPPA
 from solver.rod import Array
 
 
@@ -24,8 +24,9 @@ class Pairs(NamedTuple):
 
     `counts` (4,): pairs, points and nodes that take part, and whether the list overflowed; `first`, `second`
     (capacity,); `points` (M,) and `nodes` (n,) that take part, `slot` (n,) a node's place among them or -1.
-    At the current iterate: `n` (capacity, 3), `G` (capacity, 3, 3), `k` (capacity, 3), see `pair_force`;
-    `force` (capacity, 2): elastic and damping; `before` (capacity, 3): separations at the start of the step.
+    At the current iterate, for each stage of the step: `n` (stages, capacity, 3), `G` (stages, capacity, 3, 3), `k`
+    (stages, capacity, 3), see `pair_force`; `force` (stages, capacity, 2): elastic and damping; `power` (stages, 2):
+    into the elastic part and taken by damping, W. `before` (capacity, 3): separations at the start of the step.
     """
 
     counts: Array
@@ -38,28 +39,18 @@ class Pairs(NamedTuple):
     G: Array
     k: Array
     force: Array
+    power: Array
     before: Array
 
     @classmethod
-    def empty(cls, capacity: int, points: int, nodes: int) -> Pairs:
+    def empty(cls, stages: int, capacity: int, points: int, nodes: int) -> Pairs:
         """No pairs, with room for `capacity`."""
         return cls(
             np.zeros(4, np.int64), np.zeros(capacity, np.int64), np.zeros(capacity, np.int64),
             np.zeros(points, np.int64), np.zeros(nodes, np.int64), np.full(nodes, -1),
-            np.zeros((capacity, 3)), np.zeros((capacity, 3, 3)), np.zeros((capacity, 3)),
-            np.zeros((capacity, 2)), np.zeros((capacity, 3)),
+            np.zeros((stages, capacity, 3)), np.zeros((stages, capacity, 3, 3)), np.zeros((stages, capacity, 3)),
+            np.zeros((stages, capacity, 2)), np.zeros((stages, 2)), np.zeros((capacity, 3)),
         )  # fmt: skip
-
-
-@kernel
-def total_bending(Y: Array, h: float) -> float:
-    """K = int |kappa_bending| ds (rad)."""
-    total = 0.0
-    for j in range(len(Y) - 1):
-        one = 0.5 * (Y[j, KAPPA] + Y[j + 1, KAPPA])
-        two = 0.5 * (Y[j, KAPPA + 1] + Y[j + 1, KAPPA + 1])
-        total += np.sqrt(one * one + two * two)
-    return h * total
 
 
 @kernel
@@ -69,10 +60,22 @@ def cannot_touch(bending: float, distance: float, law: Law) -> bool:
 
 
 @kernel
+def longest_spacing(points: Points) -> float:
+    """The largest distance (m) of two neighbours: how far apart one point farther along may be, at the most."""
+    longest = 0.0
+    for i in range(len(points.p) - 1):
+        square = 0.0
+        for k in range(3):
+            square += (points.p[i + 1, k] - points.p[i, k]) ** 2
+        longest = max(longest, square)
+    return float(np.sqrt(longest))
+
+
+@kernel
 def smallest_distance(points: Points, skip: float, enough: float) -> float:
     """The smallest distance (m) of two points more than `skip` of arc apart, or `enough` if none are nearer."""
-    M, spacing = len(points.p), points.spacing
-    apart = int(np.ceil(skip / spacing))
+    M, pitch = len(points.p), longest_spacing(points)
+    apart = int(np.ceil(skip / points.spacing))
     best = enough
     for a in range(M):
         b = a + apart
@@ -81,7 +84,7 @@ def smallest_distance(points: Points, skip: float, enough: float) -> float:
                         + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
             if d < best:
                 best = d
-            b += max(1, int((d - best) / spacing))
+            b += max(1, int((d - best) / pitch))
     return best
 
 
@@ -100,8 +103,8 @@ def largest_displacement(points: Points) -> float:
 @kernel
 def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None:
     """List the pairs nearer than `radius`; counts[3] says how many did not fit."""
-    M, spacing = len(points.p), points.spacing
-    apart = int(np.ceil(skip / spacing))
+    M, pitch = len(points.p), longest_spacing(points)
+    apart = int(np.ceil(skip / points.spacing))
     found = 0
     for a in range(M):
         b = a + apart
@@ -115,7 +118,7 @@ def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None
                 found += 1
                 b += 1
             else:
-                b += max(1, int((d - radius) / spacing))
+                b += max(1, int((d - radius) / pitch))
     pairs.counts[0] = min(found, len(pairs.first))
     pairs.counts[3] = found - pairs.counts[0]
     _list_members(points, pairs)
@@ -134,7 +137,7 @@ def _list_members(points: Points, pairs: Pairs) -> None:
         if taking_part[i]:
             pairs.points[pairs.counts[1]] = i
             pairs.counts[1] += 1
-            for node in range(points.interval[i], points.interval[i] + 2):
+            for node in range(points.first[i], points.first[i] + REACH):
                 if pairs.slot[node] < 0:
                     pairs.slot[node] = pairs.counts[2]
                     pairs.nodes[pairs.counts[2]] = node

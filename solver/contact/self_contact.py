@@ -6,21 +6,12 @@ from math import inf
 
 import numpy as np
 
-from solver.contact.coupling import KRYLOV, Touch
+from solver.contact.forces import Touch
 from solver.contact.law import Law
-from solver.contact.points import Points, contact_points, place_point
-from solver.contact.search import (
-    Pairs,
-    cannot_touch,
-    find_pairs,
-    largest_displacement,
-    smallest_distance,
-    total_bending,
-)
+from solver.contact.points import Points, contact_points, place_points
+from solver.contact.search import Pairs, cannot_touch, find_pairs, largest_displacement, smallest_distance
 from solver.kernel import kernel
-from solver.methods.box.fields import State
-from solver.rod import Array, Section
-from solver.rotation import tangents_of
+from solver.rod import Array, Rod
 from solver.scene import Contact
 
 SKIN = 0.5
@@ -32,14 +23,17 @@ TIME_TO_TOUCH = 0.5
 
 
 class SelfContact:
-    """The contact of one rod through its run; without `contact` it proves itself absent and costs nothing."""
+    """The contact of one rod through its run; without `contact` it proves itself absent and costs nothing.
 
-    def __init__(self, contact: Contact | None, section: Section, s: Array) -> None:
+    It is told the rod's total bending int |kappa_bending| ds (rad), and the nodes' positions `r` and velocities (n, 3),
+    lab. `stages`: at how many times within a step a method evaluates the forces.
+    """
+
+    def __init__(self, contact: Contact | None, rod: Rod, s: Array, stages: int) -> None:
         self._present = contact is not None
-        self._h = float(s[1] - s[0])
-        self._T = np.zeros((len(s), 3))
+        self._nodes, self._stages = len(s), stages
         settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
-        points = contact_points(settings, section, s)
+        points = contact_points(settings, rod, s)
         self._law = Law.of(settings, points.spacing)
         self._reach = (1.0 + SKIN) * self._law.cutoff
         self._slack = 0.0
@@ -52,31 +46,29 @@ class SelfContact:
     def pressing(self) -> int:
         """Number of pairs that press on each other."""
         pairs = self.touch.pairs
-        return int(np.count_nonzero(pairs.force[: pairs.counts[0], 0])) if self._present else 0
+        return int(np.count_nonzero(pairs.force[-1, : pairs.counts[0], 0])) if self._present else 0
 
-    def prepare(self, state: State) -> None:
-        """Before a step from `state`: make the list of pairs good for it."""
+    def prepare(self, bending: float, r: Array, velocity: Array) -> None:
+        """Before a step from a state: make the list of pairs good for it."""
         if not self._present:
             return
         points, pairs = self.touch.points, self.touch.pairs
-        if cannot_touch(total_bending(state.Y, self._h), self._reach, self._law):
+        if cannot_touch(bending, self._reach, self._law):
             pairs.counts[:] = 0
             self._looked = False
             return
-        tangents_of(state.quaternion, self._T)
-        place_points(points, state.r, self._T, state.Y)
+        place_points(points, r, velocity)
         if not self._looked or largest_displacement(points) > 0.25 * self._slack:
             self._search()
         keep_separations(self.touch.points, self.touch.pairs)
 
-    def refusal(self, trial: State) -> str:
-        """After a step to `trial`: why it cannot be trusted, or nothing."""
+    def refusal(self, bending: float, r: Array, velocity: Array) -> str:
+        """After a step to a trial state: why it cannot be trusted, or nothing."""
         self.step_limit = inf
-        if not self._present or cannot_touch(total_bending(trial.Y, self._h), self._law.cutoff, self._law):
+        if not self._present or cannot_touch(bending, self._law.cutoff, self._law):
             return ""
         points, pairs = self.touch.points, self.touch.pairs
-        tangents_of(trial.quaternion, self._T)
-        place_points(points, trial.r, self._T, trial.Y)
+        place_points(points, r, velocity)
         if not self._looked:
             near = smallest_distance(points, self._law.skip, self._reach) <= self._law.cutoff
             return "the rod came near itself within one step" if near else ""
@@ -86,22 +78,20 @@ class SelfContact:
         self.step_limit = TIME_TO_TOUCH * time_to_touch
         return "two parts of the rod could have passed through each other" if approach > LARGEST_APPROACH else ""
 
-    def smallest_gap(self, state: State) -> float:
+    def smallest_gap(self, r: Array, velocity: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
         if not self._present:
             return float("nan")
-        tangents_of(state.quaternion, self._T)
         points = self.touch.points
-        place_points(points, state.r, self._T, state.Y)
+        place_points(points, r, velocity)
         distance = smallest_distance(points, self._law.skip, inf)
         return float(distance - points.diameter.max()) if distance < inf else float("nan")
 
-    def power(self) -> tuple[float, float]:
-        """Power (W) stored in contact, and dissipated by it, at the end of the step."""
+    def power(self) -> Array:
+        """Power (stages, 2) in W stored in contact, and dissipated by it, at the times of the last evaluation."""
         if not self._present or self.touch.pairs.counts[0] == 0:
-            return 0.0, 0.0
-        stored, lost = contact_power(self.touch.points, self.touch.pairs)
-        return float(stored), float(lost)
+            return np.zeros((self._stages, 2))
+        return self.touch.pairs.power
 
     def compile(self) -> None:
         """Have every kernel compiled that a run in contact needs."""
@@ -109,7 +99,6 @@ class SelfContact:
         find_pairs(self.touch.points, self._law.skip, 0.0, self.touch.pairs)
         keep_separations(self.touch.points, self.touch.pairs)
         approaches(self.touch.points, self.touch.pairs)
-        contact_power(self.touch.points, self.touch.pairs)
         largest_displacement(self.touch.points)
 
     def _search(self) -> None:
@@ -128,21 +117,9 @@ class SelfContact:
             find_pairs(points, self._law.skip, self._reach, self.touch.pairs)
 
     def _make_room(self, points: Points, capacity: int) -> None:
-        n, M = len(self._T), len(points.p)
-        room = n if self._present else 1
-        self.touch = Touch(
-            self._present, self._law, points, Pairs.empty(capacity, M, n), np.zeros((M, 9)),
-            np.zeros((KRYLOV + 1 if self._present else 1, 3 * room)), np.zeros(3 * room), np.zeros(3 * room),
-            np.zeros((room, 12))[: room - 1], np.zeros((room, 12)), np.zeros((KRYLOV + 1, KRYLOV)),
-            np.zeros((KRYLOV, 2)), np.zeros(KRYLOV + 1),
-        )  # fmt: skip
-
-
-@kernel
-def place_points(points: Points, r: Array, T: Array, velocity: Array) -> None:
-    """Place all points."""
-    for i in range(len(points.p)):
-        place_point(points, i, r, T, velocity)
+        n, M = self._nodes, len(points.p)
+        pairs = Pairs.empty(self._stages, capacity, M, n)
+        self.touch = Touch(self._present, self._law, points, pairs, np.zeros((M, 9)), np.zeros((self._stages, n, 3)))
 
 
 @kernel
@@ -172,18 +149,3 @@ def approaches(points: Points, pairs: Pairs) -> tuple[float, float]:
             gap = max(d - 0.25 * (points.diameter[a] + points.diameter[b]), 0.1 * d)
             shortest = min(shortest, gap * d / closing)
     return np.sqrt(largest), shortest
-
-
-@kernel
-def contact_power(points: Points, pairs: Pairs) -> tuple[float, float]:
-    """Power (W) that goes into the elastic part of the contact, and that its damping takes."""
-    stored, lost = 0.0, 0.0
-    for pair in range(pairs.counts[0]):
-        if pairs.force[pair, 0] != 0.0:
-            a, b = pairs.first[pair], pairs.second[pair]
-            opening = 0.0
-            for k in range(3):
-                opening += pairs.n[pair, k] * (points.w[a, k] - points.w[b, k])
-            stored -= pairs.force[pair, 0] * opening
-            lost -= pairs.force[pair, 1] * opening
-    return stored, lost

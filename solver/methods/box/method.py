@@ -13,6 +13,7 @@ from solver.frame import Fields
 from solver.initial import nodes_at_rest
 from solver.loads.applied import AppliedLoads, Loads
 from solver.measures.energies import Energies
+from solver.methods.box.coupling import total_bending
 from solver.methods.box.energies import energies, powers
 from solver.methods.box.fields import KAPPA, OMEGA, F, State, V
 from solver.methods.box.generalized_alpha import BACKWARD_EULER, Scheme, rescale_aux
@@ -47,14 +48,15 @@ class BoxMethod:
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self.state, correction = _initial_state(scene.initial, self.s, self.section)
         self.section.kappa0[:] += correction
-        self.contact = SelfContact(scene.contact, self.section, self.s)
+        self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=1)
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)
         self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
         self._gain = STRETCH_FEEDBACK / scene.t_end
         self._stretch, self._stretch_before = np.zeros((numerics.intervals, 3)), np.zeros((numerics.intervals, 3))
-        self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space))
+        self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space),
+                               scene.contact is not None)  # fmt: skip
         self.shortest_step = 0.0
         """Step (s) below which the scheme along s does not resolve the equations; 0 for the box scheme."""
         if numerics.rho_inf_space < 1.0:
@@ -78,7 +80,7 @@ class BoxMethod:
         self.loads = self.applied.at(t + dt)
         self.work.feedback[:] = gain * (self._stretch + ahead * (self._stretch - self._stretch_before))
         self._guess(dt, consistent)
-        self.contact.prepare(self.state)
+        self.contact.prepare(*self._centreline(self.state))
         status, iterations = step(
             self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt),
             self._scales, self.contact.touch, self.work,
@@ -116,7 +118,7 @@ class BoxMethod:
 
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
-        return self.contact.refusal(self.trial)
+        return self.contact.refusal(*self._centreline(self.trial))
 
     def step_limit(self) -> float:
         """The longest next step (s) that contact allows."""
@@ -129,7 +131,8 @@ class BoxMethod:
         """
         self._power, self._power_before = self._power_before, self._power
         powers(self.state, self.work.nodes, self.section, self.loads, self.applied.weight, self.h, self._power[:3])
-        self._power[3], rubbed = self.contact.power()
+        stored, rubbed = self.contact.power()[0]
+        self._power[3] = stored
         self._power[2] += rubbed
         return np.asarray(0.5 * dt * (self._power + self._power_before))
 
@@ -156,7 +159,7 @@ class BoxMethod:
 
     def smallest_gap(self) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
-        return self.contact.smallest_gap(self.state)
+        return self.contact.smallest_gap(*self._centreline(self.state)[1:])
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""
@@ -165,6 +168,9 @@ class BoxMethod:
     def compile(self) -> None:
         """Have every kernel compiled that a run may need."""
         self.contact.compile()
+
+    def _centreline(self, state: State) -> tuple[float, Array, Array]:
+        return total_bending(state.Y, self.h), state.r, state.Y
 
     def _guess(self, dt: float, consistent: bool) -> None:
         self.trial.Y[:] = self.state.Y

@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.contact.coupling import Touch, add_contact, allowed_fraction, solve_with_contact
+from solver.contact.forces import Touch, touching
 from solver.ends import Kinds
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.methods.box.augmented import take_auxiliary, wide_residuals
+from solver.methods.box.coupling import Coupling, add_contact, contact_fraction, solve_with_contact
 from solver.methods.box.elimination import factor, solve
 from solver.methods.box.ends import end_conditions
 from solver.methods.box.fields import KAPPA, F, Linear, Nodes, State
@@ -70,7 +71,7 @@ def assemble(old: State, new: State, past: Array, c0: float, h: float, section: 
     place_nodes(old, new, past, c0, nodes)
     balance_rotation(new, section, loads, past, c0, nodes)
     balance_translation(new, section, loads, past, c0, nodes)
-    if touch.present and touch.pairs.counts[0] > 0:
+    if touching(touch):
         add_contact(new, nodes, h, touch)
     interval_residuals(new.Y, past, c0, h, system.space, nodes, feedback, system.rows,
                        system.mean, system.b)  # fmt: skip
@@ -107,13 +108,15 @@ class Work(NamedTuple):
     nodes: Nodes
     system: Linear
     marched: Array
+    coupling: Coupling
 
     @classmethod
-    def empty(cls, intervals: int, shooting: bool, space: SpaceScheme) -> Work:
+    def empty(cls, intervals: int, shooting: bool, space: SpaceScheme, touching: bool) -> Work:
         """Zeros for a rod of `intervals` intervals."""
         n = intervals + 1
         marched = np.zeros((n if shooting else 1, 12, 7))
-        return cls(np.zeros((n, 15)), np.zeros((intervals, 3)), Nodes.empty(n), Linear.empty(intervals, space), marched)
+        return cls(np.zeros((n, 15)), np.zeros((intervals, 3)), Nodes.empty(n), Linear.empty(intervals, space), marched,
+                   Coupling.empty(intervals if touching else 0))  # fmt: skip
 
 
 @kernel
@@ -125,8 +128,8 @@ def solve_linear(Y: Array, c0: float, h: float, section: Section, scales: Scales
         return CONVERGED if growth < LARGEST_GROWTH else LOST_DIGITS
     if not factor(Y, c0, h, nodes, section, system):
         return SINGULAR
-    if touch.present and touch.pairs.counts[0] > 0:
-        solve_with_contact(c0, h, nodes, system, touch)
+    if touching(touch):
+        solve_with_contact(c0, h, system, touch, work.coupling)
     else:
         solve(system, 1.0, system.b, system.x)
     return CONVERGED
@@ -154,8 +157,8 @@ def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: S
         if not size < LARGEST_INCREMENT:
             return STALLED, iteration
         fraction = 1.0
-        if touch.present and touch.pairs.counts[0] > 0:
-            fraction = allowed_fraction(c0, system, work.nodes, touch)
+        if touching(touch):
+            fraction = contact_fraction(c0, system, touch, work.coupling)
         for j in range(len(new.Y)):
             for k in range(12):
                 new.Y[j, k] -= fraction * system.columns[k] * system.x[j, k]

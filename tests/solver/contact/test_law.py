@@ -30,7 +30,7 @@ def two_points(d: float, tilt_a: float = 0.1, tilt_b: float = -0.2, closing: flo
     t = np.array([np.sqrt(1 - tilt_a**2) * normal + tilt_a * AXIS, np.sqrt(1 - tilt_b**2) * other + tilt_b * AXIS])
     w = np.array([-0.5 * closing * AXIS + 0.3 * other, 0.5 * closing * AXIS - 0.1 * normal])
     return Points(
-        np.zeros(2, np.int64), np.zeros(2), np.zeros((2, 4)), np.full(2, MASS), np.full(2, D), 1e-3,
+        np.zeros(2, np.int64), np.zeros((2, 4)), np.zeros((2, 4)), np.full(2, MASS), np.full(2, D), 1e-3,
         p, t, w, np.zeros((2, 3)),
     )  # fmt: skip
 
@@ -194,7 +194,7 @@ def line_density(spacing: float, kind: str) -> float:
     M = len(p)
     t = np.tile([0.0, 0.0, 1.0], (M, 1))
     points = Points(
-        np.zeros(M, np.int64), np.zeros(M), np.zeros((M, 4)), np.full(M, MASS), np.full(M, D), spacing,
+        np.zeros(M, np.int64), np.zeros((M, 4)), np.zeros((M, 4)), np.full(M, MASS), np.full(M, D), spacing,
         p, t, np.zeros((M, 3)), np.zeros((M, 3)),
     )  # fmt: skip
     total = 0.0

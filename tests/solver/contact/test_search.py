@@ -11,17 +11,17 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 from solver.contact.law import Law
-from solver.contact.points import Points, contact_points, place_point
+from solver.contact.points import Points, contact_points, place_points
 from solver.contact.search import (
     Pairs,
     cannot_touch,
     find_pairs,
     largest_displacement,
     smallest_distance,
-    total_bending,
 )
+from solver.methods.box.coupling import total_bending
 from solver.methods.box.fields import KAPPA
-from solver.rod import Array, Rod, sample
+from solver.rod import Array, Rod
 from solver.scene import Contact
 
 LENGTH, INTERVALS = 1.0, 40
@@ -30,7 +30,7 @@ SPACING = LENGTH / 150
 SKIP = 0.0712
 """No multiple of the spacing, so that no pair is exactly that far apart."""
 CONTACT = Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.03, skip=SKIP, spacing=SPACING)
-SECTION = sample(Rod.circular(LENGTH, 0.01, 1e7, 5e6, 1500.0), S)
+ROD = Rod.circular(LENGTH, 0.01, 1e7, 5e6, 1500.0)
 
 seeds = st.integers(0, 10**6)
 wildness = st.floats(0.1, 8.0)
@@ -53,10 +53,8 @@ def curve_of(T: Array, h: float) -> Array:
 
 
 def points_of(T: Array) -> Points:
-    points = contact_points(CONTACT, SECTION, S)
-    r, velocity = curve_of(T, S[1]), np.zeros((len(S), 12))
-    for i in range(len(points.p)):
-        place_point(points, i, r, T, velocity)
+    points = contact_points(CONTACT, ROD, S)
+    place_points(points, curve_of(T, S[1]), np.zeros((len(S), 12)))
     return points
 
 
@@ -68,7 +66,7 @@ def distances(points: Points, skip: float = SKIP) -> dict[tuple[int, int], float
 
 
 def found_by(points: Points, radius: float, capacity: int = 12000) -> Pairs:
-    pairs = Pairs.empty(capacity, len(points.p), len(S))
+    pairs = Pairs.empty(1, capacity, len(points.p), len(S))
     find_pairs(points, SKIP, radius, pairs)
     return pairs
 
@@ -149,8 +147,28 @@ def test_points_lie_on_the_rod_evenly_from_end_to_end() -> None:
     r = curve_of(T, S[1])
     assert len(points.p) == round(LENGTH / SPACING) + 1
     assert_allclose(points.p[[0, -1]], r[[0, -1]], atol=1e-15)
-    # |r_s| <= 1 on these arcs, which is what lets a search march
-    assert np.linalg.norm(np.diff(points.p, axis=0), axis=1).max() <= points.spacing * (1 + 1e-12)
+    assert_allclose(np.linalg.norm(np.diff(points.p, axis=0), axis=1), points.spacing, rtol=0.01)
+    assert_allclose(np.linalg.norm(points.t, axis=1), 1.0, rtol=0.01)
+
+
+def test_points_lie_on_a_circle_to_the_fourth_order_of_the_nodes_spacing() -> None:
+    def error(intervals: int) -> float:
+        s = np.linspace(0.0, LENGTH, intervals + 1)
+        circle = np.column_stack([np.cos(s), np.sin(s), 0.0 * s])
+        points = contact_points(CONTACT, ROD, s)
+        place_points(points, circle, np.zeros_like(circle))
+        inside = slice(len(points.p) // 4, 3 * len(points.p) // 4)
+        return float(np.abs(np.linalg.norm(points.p[inside], axis=1) - 1.0).max())
+
+    assert error(20) / error(40) == pytest.approx(16.0, rel=0.2)
+
+
+def test_a_force_on_a_point_acts_on_the_nodes_with_its_own_resultant_and_moment() -> None:
+    points = contact_points(CONTACT, ROD, S)
+    assert_allclose(points.weights.sum(axis=1), 1.0, atol=1e-14)
+    along = np.linspace(0.0, LENGTH, len(points.p))
+    nodes = points.first[:, None] + np.arange(4)
+    assert_allclose((points.weights * S[nodes]).sum(axis=1), along, atol=1e-14)
 
 
 def test_points_of_a_straight_rod_are_where_linear_interpolation_puts_them() -> None:

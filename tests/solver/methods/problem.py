@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver import Contact, Initial, Numerics, Rod, Scene
-from solver.contact.coupling import _node_forces
+from solver.contact.forces import change_forces
 from solver.contact.self_contact import SelfContact
 from solver.curve import Curve
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.methods.box.augmented import wide_panel, wide_start
+from solver.methods.box.coupling import _move, total_bending
 from solver.methods.box.fields import State
 from solver.methods.box.generalized_alpha import Scheme, history
 from solver.methods.box.intervals import MEANS, interval_panel
@@ -138,14 +139,15 @@ class Problem:
         for column in range(12 * len(x)):
             x[:] = 0.0
             x.ravel()[column] = 1.0
-            _node_forces(x, self.c0, self.h, system, self.work.nodes, touch, y)
+            _move(x, self.c0, system, touch, self.work.coupling)
+            change_forces(touch, 0, y)
             at = size * (column // 12) + column % 12
             for m in range(pairs.counts[2]):
                 node = pairs.nodes[m]
                 for j in (node - 1, node):
                     if 0 <= j < len(system.panels):
-                        rows = left + size * j + 6
-                        A[rows : rows + 3, at] -= 0.5 * self.h * system.rows[6:9] * y[3 * m : 3 * m + 3]
+                        rows, share = left + size * j + 6, 1.0 if node in (0, len(system.panels)) else 0.5
+                        A[rows : rows + 3, at] += share * system.rows[6:9] * y[3 * m : 3 * m + 3]
         return A
 
 
@@ -177,12 +179,12 @@ def problem(
     dead = [1e-4 * random.normal(size=6), 1e-4 * random.normal(size=6)]
     ends = EndValues(kinds[0], values[0], dead[0], kinds[1], values[1], dead[1])
     scheme = Scheme.of(numerics.rho_inf)
-    work = Work.empty(intervals, False, SpaceScheme.of(rho_inf_space))
+    work = Work.empty(intervals, False, SpaceScheme.of(rho_inf_space), contact is not None)
     work.system.wide.A[:] = 0.1 * random.normal(size=work.system.wide.A.shape)
     set_scales(Scales(LENGTH, float(section.stiffness[:, 0].mean()), False), scheme.c0(dt), work.system)
     history(old, scheme, dt, work.past)
     work.feedback[:] = 1e-4 * random.normal(size=work.feedback.shape)
-    touching = SelfContact(contact, section, s)
+    touching = SelfContact(contact, scene.rod, s, stages=1)
     if contact is not None:
-        touching.prepare(old)
+        touching.prepare(total_bending(old.Y, float(s[1])), old.r, old.Y)
     return Problem(old, new, section, none._replace(**loads), ends, scheme, dt, work, touching, h)  # type: ignore[arg-type]

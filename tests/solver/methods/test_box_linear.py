@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver import Contact
-from solver.contact.coupling import solve_with_contact
+from solver.methods.box.coupling import solve_with_contact
 from solver.methods.box.elimination import factor, solve
 from solver.methods.box.shooting import LARGEST_GROWTH, shoot
 from solver.rod import Array
@@ -70,7 +70,7 @@ def test_the_solve_with_contact_solves_the_whole_system() -> None:
     case = problem(24, contact=contact)
     expected = np.linalg.solve(case.matrix(), case.residual()).reshape(-1, 12)
     eliminate(case)
-    iterations = solve_with_contact(case.c0, case.h, case.work.nodes, case.work.system, case.contact.touch)
+    iterations = solve_with_contact(case.c0, case.h, case.work.system, case.contact.touch, case.work.coupling)
     # GMRES stops at a relative residual of 1e-6 in the contact forces
     assert np.abs(case.work.system.x - expected).max() <= 1e-4 * np.abs(expected).max()
     assert 0 < iterations <= 40

@@ -1,0 +1,117 @@
+"""Contact in the box method's Newton iteration: forces on the nodes, and the linear solve with their tangents."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.contact.forces import Touch, allowed_fraction, change_forces, move_points, press
+from solver.contact.krylov import Krylov, begin, combine, extend, unsolved
+from solver.kernel import inlined, kernel
+from solver.methods.box.elimination import solve
+from solver.methods.box.fields import KAPPA, Linear, Nodes, State, V
+from solver.rod import Array
+
+
+class Coupling(NamedTuple):
+    """Scratch of the solve with contact: `krylov`; a right-hand side `force` (N, 12) and its solution `x` (n, 12);
+    changes of the nodes' places and velocities `moved`, `accelerated` (n, 3)."""
+
+    krylov: Krylov
+    force: Array
+    x: Array
+    moved: Array
+    accelerated: Array
+
+    @classmethod
+    def empty(cls, intervals: int) -> Coupling:
+        """Zeros for a rod of `intervals` intervals; 0 where there is no contact."""
+        n = intervals + 1
+        moves = np.zeros((n, 3)), np.zeros((n, 3))
+        return cls(Krylov.empty(3 * n), np.zeros((intervals, 12)), np.zeros((n, 12)), *moves)
+
+
+@kernel
+def total_bending(Y: Array, h: float) -> float:
+    """K = int |kappa_bending| ds (rad)."""
+    total = 0.0
+    for j in range(len(Y) - 1):
+        one = 0.5 * (Y[j, KAPPA] + Y[j + 1, KAPPA])
+        two = 0.5 * (Y[j, KAPPA + 1] + Y[j + 1, KAPPA + 1])
+        total += np.sqrt(one * one + two * two)
+    return h * total
+
+
+@inlined
+def _length(j: int, last: int, h: float) -> float:
+    """The length on which a density at node j acts."""
+    return 0.5 * h if j == 0 or j == last else h
+
+
+@kernel
+def add_contact(new: State, nodes: Nodes, h: float, touch: Touch) -> None:
+    """Subtract the densities of the forces of contact from nodes.P, and keep the tangents."""
+    press(touch, new.r, new.Y, 0)
+    last = len(new.Y) - 1
+    for m in range(touch.pairs.counts[2]):
+        j = touch.pairs.nodes[m]
+        for k in range(3):
+            nodes.P[j, k] -= touch.push[0, j, k] / _length(j, last, h)
+
+
+@kernel
+def _move(x: Array, c0: float, system: Linear, touch: Touch, coupling: Coupling) -> None:
+    """Move the points by the scaled unknowns x (n, 12)."""
+    for m in range(touch.pairs.counts[2]):
+        j = touch.pairs.nodes[m]
+        for k in range(3):
+            coupling.accelerated[j, k] = system.columns[V + k] * x[j, V + k]
+            coupling.moved[j, k] = coupling.accelerated[j, k] / c0
+    move_points(touch, coupling.moved, coupling.accelerated)
+
+
+@kernel
+def _solve_for_forces(y: Array, h: float, system: Linear, touch: Touch, sign: float, b_scale: float,
+                      coupling: Coupling) -> None:  # fmt: skip
+    """coupling.x = K^-1 (b_scale b + sign E y), b the system's residuals."""
+    pairs, force = touch.pairs, coupling.force
+    last = len(force)
+    for j in range(last):
+        for k in range(12):
+            force[j, k] = b_scale * system.b[j, k]
+    for m in range(pairs.counts[2]):
+        node = pairs.nodes[m]
+        density = 1.0 / _length(node, last, h)
+        for j in range(max(node - 1, 0), min(node, last - 1) + 1):
+            for c in range(3):
+                force[j, 6 + c] += sign * 0.5 * h * density * system.rows[6 + c] * y[3 * m + c]
+    solve(system, b_scale, force, coupling.x)
+
+
+@kernel
+def solve_with_contact(c0: float, h: float, system: Linear, touch: Touch, coupling: Coupling) -> int:
+    """Solve the factored system with the contact tangents into system.x; returns GMRES's iterations."""
+    size, krylov = 3 * touch.pairs.counts[2], coupling.krylov
+    _solve_for_forces(krylov.y, h, system, touch, 0.0, 1.0, coupling)
+    _move(coupling.x, c0, system, touch, coupling)
+    change_forces(touch, 0, krylov.y)
+    used = 0
+    if begin(krylov, size):
+        while unsolved(krylov, used, size):
+            _solve_for_forces(krylov.basis[used], h, system, touch, 1.0, 0.0, coupling)
+            _move(coupling.x, c0, system, touch, coupling)
+            change_forces(touch, 0, krylov.z)
+            extend(krylov, used, size)
+            used += 1
+    combine(krylov, used, size)
+    _solve_for_forces(krylov.y, h, system, touch, -1.0, 1.0, coupling)
+    system.x[:, :] = coupling.x
+    return used
+
+
+@kernel
+def contact_fraction(c0: float, system: Linear, touch: Touch, coupling: Coupling) -> float:
+    """How much of the update system.x may be taken without using up a pair's distance."""
+    _move(system.x, c0, system, touch, coupling)
+    return float(allowed_fraction(touch))

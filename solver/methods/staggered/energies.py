@@ -1,0 +1,87 @@
+"""Energies of the chain, and what flows in and out within a step, in the method's own quadrature."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.kernel import kernel
+from solver.loads.applied import Loads
+from solver.loads.fluid import fluid_power
+from solver.measures.energies import Energies
+from solver.methods.staggered.chain import STAGES, Chain, Stages
+from solver.methods.staggered.segments import Driven
+from solver.rod import Array
+
+
+def energies(chain: Chain, loads: Loads, bend: Array, omega: Array, centres: Array, tangents: Array,
+             weight: Array) -> Energies:  # fmt: skip
+    """The energies at a state: joints' `bend` (N + 1, 3); segments' `omega`, `tangents`, `weight` (N, 3); `centres`
+    (2, N, 3), position and velocity."""
+    strain = bend / chain.span[:, None] - chain.kappa0
+    elastic = 0.5 * np.sum(chain.span[:, None] * chain.stiffness * strain**2, axis=0)
+    kinetic = np.sum(chain.mass * np.sum(centres[1] ** 2, axis=1)) + np.sum(chain.dry_inertia * omega**2)
+    across = centres[1] - loads.current
+    across = across - np.sum(across * tangents, axis=1)[:, None] * tangents
+    added = np.sum(loads.added_mass * np.sum(across**2, axis=1))
+    added = added + np.sum((chain.inertia - chain.dry_inertia) * omega**2)
+    return Energies(
+        bending=float(elastic[0] + elastic[1]),
+        torsion=float(elastic[2]),
+        kinetic=float(0.5 * chain.h * kinetic),
+        added_mass=float(0.5 * chain.h * added),
+        potential=float(-chain.h * np.sum(weight * centres[0])),
+    )
+
+
+@kernel
+def stage_powers(chain: Chain, loads: Loads, driven: Driven, stages: Stages, weight: Array, ends: Array,
+                 out: Array) -> None:  # fmt: skip
+    """Write the power (W) of the ends, of loads other than `weight`, and dissipated, at the stages into `out` (3, 3).
+
+    `ends` (3, 2, 3): velocities of the first and the last node at the stages, lab.
+    """
+    N = len(chain.mass)
+    T, T_t = np.zeros(3), np.zeros(3)
+    for i in range(STAGES):
+        given, lost, work = 0.0, 0.0, 0.0
+        for k in range(3):
+            work += stages.F[i, N, k] * ends[i, 1, k] - stages.F[i, 0, k] * ends[i, 0, k]
+            work += stages.right[i, N, k] * stages.omega[i, N + 1, k] - stages.left[i, 0, k] * stages.omega[i, 0, k]
+        for j in range(N):
+            R, V, w = stages.R[i, j + 1], stages.V[i, j], stages.omega[i, j + 1]
+            lab, material = driven.lab[i, j], driven.material[i, j]
+            for k in range(3):
+                given += (lab[k] - weight[j, k]) * V[k] + material[3 + k] * w[k]
+                lost += loads.damping * (chain.mass[j] * V[k] ** 2 + chain.dry_inertia[j, k] * w[k] ** 2)
+                for m in range(3):
+                    given += R[k, m] * (material[m] * V[k] + lab[3 + k] * w[m])
+            if loads.wet:
+                for k in range(3):
+                    T[k] = R[k, 2]
+                    T_t[k] = R[k, 0] * w[1] - R[k, 1] * w[0]
+                from_current, to_fluid = fluid_power(
+                    loads.added_mass[j], loads.drag_normal[j], loads.drag_tangential[j], V, loads.current,
+                    stages.A[i, j], T, T_t,
+                )  # fmt: skip
+                given += from_current
+                lost += to_fluid
+        out[i, 0], out[i, 1], out[i, 2] = work, chain.h * given, chain.h * lost
+
+
+@kernel
+def twist(quaternion: Array) -> float:
+    """Twist (rad) of orientations (n, 4): the sum of the rotations of neighbours about their common tangent.
+
+    Of the relative rotation (w, x, y, z) it is 2 atan(z / w), what is left of it after the shortest rotation from one
+    tangent to the other; so with the writhe of the polygon Tw + Wr is the ends' relative rotation to rounding.
+    """
+    total = 0.0
+    for i in range(len(quaternion) - 1):
+        a, b, c, d = quaternion[i, 0], quaternion[i, 1], quaternion[i, 2], quaternion[i, 3]
+        w, x, y, z = quaternion[i + 1, 0], quaternion[i + 1, 1], quaternion[i + 1, 2], quaternion[i + 1, 3]
+        cosine = a * w + b * x + c * y + d * z
+        sine = a * z - b * y + c * x - d * w
+        if cosine < 0.0:
+            cosine, sine = -cosine, -sine
+        total += 2.0 * np.arctan2(sine, cosine)
+    return total

@@ -1,0 +1,91 @@
+"""The joints: from the relative rotation of two neighbours to moments and their tangents.
+
+The rotation vector Theta of R_i^t R_i+1 gives kappa = Theta / span and q = diag(EJ1, EJ2, GJ3) (kappa - kappa0). A
+small rotation psi of the right neighbour changes Theta by B psi, one of the left neighbour by -B^t psi, with
+
+    B = I + [Theta]/2 + b [Theta]^2,   b = (1 - (x/2) cot(x/2)) / x^2,   x = |Theta|,
+
+so the elastic energy turns the left neighbour by B q and the right one by -B^t q.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.kernel import inlined, kernel
+from solver.methods.staggered.chain import Chain
+from solver.rod import Array
+from solver.rotation import relative_rotation
+
+
+@inlined
+def _coefficient(square: float) -> tuple[float, float]:
+    """b and its derivative by x^2."""
+    if square < 0.25:
+        b = 1 / 12 + square * (1 / 720 + square * (1 / 30240 + square * (1 / 1209600 + square / 47900160)))
+        return b, 1 / 720 + square * (1 / 15120 + square * (1 / 403200 + square / 11975040))
+    half = 0.5 * np.sqrt(square)
+    cot = np.cos(half) / np.sin(half)
+    b = (1.0 - half * cot) / square
+    slope = (0.25 * (1.0 + cot * cot) - 0.25 * cot / half - b) / square
+    return b, slope
+
+
+@kernel
+def bend_joints(chain: Chain, quaternion: Array, bend: Array, moment: Array, left: Array, right: Array) -> None:
+    """Write Theta, q, B q and B^t q of all joints (N + 1, 3 each) for orientations `quaternion` (N + 2, 4)."""
+    for i in range(len(bend)):
+        relative_rotation(quaternion[i], quaternion[i + 1], bend[i])
+        x, y, z = bend[i, 0], bend[i, 1], bend[i, 2]
+        for k in range(3):
+            moment[i, k] = chain.stiffness[i, k] * (bend[i, k] / chain.span[i] - chain.kappa0[i, k])
+        q0, q1, q2 = moment[i, 0], moment[i, 1], moment[i, 2]
+        b, _ = _coefficient(x * x + y * y + z * z)
+        c0, c1, c2 = y * q2 - z * q1, z * q0 - x * q2, x * q1 - y * q0
+        e0, e1, e2 = q0 + b * (y * c2 - z * c1), q1 + b * (z * c0 - x * c2), q2 + b * (x * c1 - y * c0)
+        left[i, 0], left[i, 1], left[i, 2] = e0 + 0.5 * c0, e1 + 0.5 * c1, e2 + 0.5 * c2
+        right[i, 0], right[i, 1], right[i, 2] = e0 - 0.5 * c0, e1 - 0.5 * c1, e2 - 0.5 * c2
+
+
+@kernel
+def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back: Array) -> None:
+    """Write B and the tangents of B q and B^t q by Theta.
+
+    `ahead` (N + 1, 2, 3, 3): d(B q) by a rotation of the left and of the right neighbour; `back` likewise d(B^t q).
+    """
+    B, G = np.empty((3, 3)), np.empty((3, 3))
+    for i in range(len(bend)):
+        x, y, z = bend[i, 0], bend[i, 1], bend[i, 2]
+        b, slope = _coefficient(x * x + y * y + z * z)
+        theta, q = bend[i], moment[i]
+        q0, q1, q2 = q[0], q[1], q[2]
+        c0, c1, c2 = y * q2 - z * q1, z * q0 - x * q2, x * q1 - y * q0
+        d = (y * c2 - z * c1, z * c0 - x * c2, x * c1 - y * c0)
+        along = x * q0 + y * q1 + z * q2
+        cross = ((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0))
+        turned = ((0.0, -q2, q1), (q2, 0.0, -q0), (-q1, q0, 0.0))
+        square = x * x + y * y + z * z
+        for m in range(3):
+            for n in range(3):
+                B[m, n] = 0.5 * cross[m][n] + b * theta[m] * theta[n] + ((1.0 - b * square) if m == n else 0.0)
+                # d(Theta (Theta.q) - Theta^2 q) = dTheta (Theta.q) + Theta (q.dTheta) - 2 q (Theta.dTheta)
+                G[m, n] = b * (theta[m] * q[n] - 2.0 * q[m] * theta[n]) + 2.0 * slope * d[m] * theta[n]
+                if m == n:
+                    G[m, n] += b * along
+        for side in range(2):
+            target = ahead if side == 0 else back
+            sign = 1.0 if side == 0 else -1.0
+            for m in range(3):
+                h0, h1, h2 = 0.0, 0.0, 0.0
+                for n in range(3):
+                    weight = B[m, n] if side == 0 else B[n, m]
+                    value = G[m, n] - 0.5 * sign * turned[m][n] + weight * chain.stiffness[i, n] / chain.span[i]
+                    if n == 0:
+                        h0 = value
+                    elif n == 1:
+                        h1 = value
+                    else:
+                        h2 = value
+                for n in range(3):
+                    target[i, 0, m, n] = -(h0 * B[n, 0] + h1 * B[n, 1] + h2 * B[n, 2])
+                    target[i, 1, m, n] = h0 * B[0, n] + h1 * B[1, n] + h2 * B[2, n]

@@ -1,0 +1,225 @@
+"""The staggered method as the simulation sees it: a state, and steps that are tried and then taken."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.contact.self_contact import SelfContact
+from solver.ends import DrivenEnd
+from solver.frame import Fields
+from solver.loads.applied import AppliedLoads, Loads
+from solver.measures.energies import Energies
+from solver.methods.staggered import tableau
+from solver.methods.staggered.chain import Stages, State
+from solver.methods.staggered.coupling import place_nodes
+from solver.methods.staggered.energies import energies, stage_powers, twist
+from solver.methods.staggered.initial import chain_of, lay_out
+from solver.methods.staggered.joints import bend_joints
+from solver.methods.staggered.motion import extrapolate, follow_segments
+from solver.methods.staggered.newton import Scheme, Work, estimate_error, finish, step
+from solver.methods.staggered.segments import Driven
+from solver.rod import Array, sample
+from solver.rotation import matrix_of, rotate_back
+from solver.scene import Scene
+
+SCHEME = Scheme(
+    tableau.C, tableau.INVERSE, tableau.TRANSFORM, tableau.BACK, tableau.GAMMA, tableau.LAMBDA, tableau.ERROR
+)
+FEEDBACK = 0.5
+"""Part of an end's lag behind its prescribed place that a step takes back."""
+SMALL_MOTION = 1e-7
+"""Rotation (rad) and displacement (rod lengths) in a step below which it is not shortened."""
+
+
+class StaggeredMethod:
+    """Rigid segments joined at the nodes; Radau IIA of order 5 in time."""
+
+    increment_order = 4.0
+    shortest_step = 0.0
+
+    def __init__(self, scene: Scene) -> None:
+        N, length = scene.numerics.intervals, float(scene.rod.length)
+        self.s = np.linspace(0.0, length, N + 1)
+        middles = 0.5 * (self.s[1:] + self.s[:-1])
+        section = sample(scene.rod, middles)
+        self.applied = AppliedLoads(scene, section, middles, (middles, np.full(N, length / N)))
+        self._loads: Loads = self.applied.at(0.0)
+        self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
+        self.chain = chain_of(scene.rod, section, self._loads.added_mass, self.s)
+        self.state, self._offset = lay_out(scene.initial, self.chain, self.s)
+        self.trial = State.empty(N)
+        self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=3)
+        self.stages, self.driven = Stages.empty(N), Driven.empty(N)
+        self.work = Work.empty(N, scene.contact is not None)
+        self._unit = float(self.chain.stiffness[:, :2].mean()) / length**2
+        self._last_dt = 0.0
+        self._last = (np.zeros_like(self.stages.theta), np.zeros((3, 3)), np.zeros_like(self.stages.F))
+        self._powers = np.zeros((3, 3))
+        R = np.zeros((N + 2, 3, 3))
+        for quaternion, matrix in zip(self.state.quaternion, R, strict=True):
+            matrix_of(quaternion, matrix)
+        self._R, self._centres = R, np.zeros((3, N, 3))
+        follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)
+        self._nodes = np.zeros((2, N + 1, 3))
+        self._place_nodes(R, self.state.omega, self.state.base, self._centres)
+
+    def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
+        """Try to go from t to t + dt; how it ended and the Newton iterations. Radau needs no other start."""
+        self._drive(t, dt)
+        self._guess(dt)
+        self.contact.prepare(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1])
+        status, iterations = step(self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self.state,
+                                  self.stages, self.contact.touch, self.work)  # fmt: skip
+        return int(status), int(iterations)
+
+    def relative_increment(self, dt: float) -> float:
+        """The embedded estimate of the trial's error relative to its motion, the larger of rotation and place."""
+        turn_error, turned, move_error, moved = estimate_error(
+            self.chain, self.driven, SCHEME, dt, self.state, self._centres, self.stages, self.work
+        )
+        return max(turn_error / (turned + SMALL_MOTION), move_error / (moved + SMALL_MOTION * float(self.s[-1])))
+
+    def refusal(self) -> str:
+        """Why contact does not let the trial be trusted, or nothing."""
+        stages = self.stages
+        self._place_nodes(stages.R[2], stages.omega[2], stages.base[2], np.stack([stages.r[2], stages.V[2]]))
+        return self.contact.refusal(self._bending(stages.quaternion[2]), self._nodes[0], self._nodes[1])
+
+    def take_step(self, t: float, dt: float) -> None:
+        """Make the trial the state."""
+        stages, weights = self.stages, tableau.A[2] * dt
+        ends = self._end_velocities()
+        stage_powers(self.chain, self._loads, self.driven, stages, self.applied.weight, ends, self._powers)
+        for side, (end, frame) in enumerate(((self.start, 0), (self.end, -1))):
+            velocity = ends[:, side].copy()
+            if not end.in_lab:
+                velocity = rotate_back(stages.quaternion[:, frame].copy(), velocity)
+            end.follow(weights @ velocity, weights @ stages.omega[:, frame])
+        finish(self.state, stages, self.trial)
+        self.state, self.trial = self.trial, self.state
+        self._R[:] = stages.R[2]
+        for mine, last in zip(self._centres, (stages.r[2], stages.V[2], stages.A[2]), strict=True):
+            mine[:] = last
+        self._place_nodes(self._R, self.state.omega, self.state.base, self._centres)
+        self._last_dt = dt
+        for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
+            kept[:] = now
+
+    def switch_ends(self, t: float) -> None:
+        """Put in force the end conditions that hold from t on."""
+        for end, frame, node in ((self.start, 0, 0), (self.end, -1, -1)):
+            velocity = self._nodes[1, node]
+            if not end.in_lab:
+                velocity = rotate_back(self.state.quaternion[[frame]], velocity[None].copy())[0]
+            end.switch(t, np.concatenate([velocity, self.state.omega[frame]]))
+        self._last_dt = 0.0
+
+    def step_limit(self) -> float:
+        """The longest next step (s) that contact allows."""
+        return self.contact.step_limit
+
+    def flows(self, dt: float) -> Array:
+        """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, into contact.
+
+        By Radau's own quadrature, of order 5.
+        """
+        stored, rubbed = self.contact.power().T
+        powers = np.column_stack([self._powers, stored])
+        powers[:, 2] += rubbed
+        return np.asarray(dt * tableau.A[2] @ powers)
+
+    def fields(self) -> Fields:
+        """The state along the rod, at the nodes."""
+        orientation = self._orientations()
+        omega = self._R @ self.state.omega[:, :, None]
+        between = 0.5 * (omega[1:-2] + omega[2:-1])
+        omega_lab = np.concatenate([omega[:1], between, omega[-1:]])[:, :, 0]
+        bend, q = self._bend(self.state.quaternion)
+        return Fields(
+            v=rotate_back(orientation, self._nodes[1]), omega=rotate_back(orientation, omega_lab),
+            f=rotate_back(orientation, self.state.F), kappa=bend / self.chain.span[:, None] - self._offset, q=q,
+            r=self._nodes[0].copy(), orientation=orientation,
+        )  # fmt: skip
+
+    def energies(self) -> Energies:
+        """The energies of the state, but for contact."""
+        bend, _ = self._bend(self.state.quaternion)
+        return energies(self.chain, self._loads, bend, self.state.omega[1:-1], self._centres[:2], self._R[1:-1, :, 2],
+                        self.applied.weight)  # fmt: skip
+
+    def twist(self) -> float:
+        """Tw of the state, in turns."""
+        return float(twist(self.state.quaternion) / (2 * np.pi))
+
+    def smallest_gap(self) -> float:
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
+        return self.contact.smallest_gap(self._nodes[0], self._nodes[1])
+
+    def pressing(self) -> int:
+        """Number of pairs of points that press on each other."""
+        return self.contact.pressing
+
+    def compile(self) -> None:
+        """Have every kernel compiled that a run may need."""
+        self.contact.compile()
+        self._guess(1.0)
+        self.relative_increment(1.0)
+
+    def _place_nodes(self, R: Array, omega: Array, base: Array, centres: Array) -> None:
+        place_nodes(self.chain, R, omega, base, centres[0], centres[1], self._nodes[0], self._nodes[1])
+
+    def _bend(self, quaternion: Array) -> tuple[Array, Array]:
+        """Rotation vectors of the joints and moments q, (N + 1, 3) each."""
+        bend, q, left, right = (np.zeros((len(self.s), 3)) for _ in range(4))
+        bend_joints(self.chain, quaternion, bend, q, left, right)
+        return bend, q
+
+    def _bending(self, quaternion: Array) -> float:
+        bend, _ = self._bend(quaternion)
+        return float(np.hypot(bend[:, 0], bend[:, 1]).sum())
+
+    def _orientations(self) -> Array:
+        """Orientations (N + 1, 4) at the nodes: half way between the segments, and those of the ends."""
+        quaternion = self.state.quaternion
+        left, right = quaternion[1:-2], quaternion[2:-1]
+        middle = left + np.sign(np.sum(left * right, axis=1))[:, None] * right
+        middle /= np.linalg.norm(middle, axis=1)[:, None]
+        return np.concatenate([quaternion[:1], middle, quaternion[-1:]])
+
+    def _end_velocities(self) -> Array:
+        """V (3, 2, 3) of the first and the last node at the stages, lab."""
+        stages = self.stages
+        omega, R = stages.omega[:, -2], stages.R[:, -2]
+        swing = R[:, :, 0] * omega[:, 1:2] - R[:, :, 1] * omega[:, 0:1]
+        return np.stack([stages.base[:, 1], stages.V[:, -1] + 0.5 * self.chain.h * swing], axis=1)
+
+    def _guess(self, dt: float) -> None:
+        """The motion of the last step goes on; after a start, that of the state."""
+        stages, state = self.stages, self.state
+        if self._last_dt > 0.0:
+            ratio = dt / self._last_dt
+            weights = tableau.extrapolation(ratio)
+            theta, shift, force = self._last
+            extrapolate(self.trial, theta, self._last_dt, state, tableau.C, weights, ratio, stages)
+            stages.shift[:] = weights @ shift - shift[2]
+            stages.F[:] = np.tensordot(tableau.quadratic_extrapolation(ratio), force, 1)
+            return
+        tau = (tableau.C * dt)[:, None, None]
+        stages.theta[:] = 0.5 * tau**2 * state.alpha
+        stages.shift[:] = tau[:, 0] * state.base[1] + 0.5 * tau[:, 0] ** 2 * state.base[2]
+        stages.F[:] = state.F
+
+    def _drive(self, t: float, dt: float) -> None:
+        """Write what is given at the stages of a step."""
+        driven = self.driven
+        driven.push[:] = 0.0
+        for i, c in enumerate(tableau.C):
+            self._loads = self.applied.at(t + c * dt)
+            driven.lab[i], driven.material[i] = self._loads.lab, self._loads.material
+            for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
+                values = end.values(t, c * dt, FEEDBACK / dt)
+                loaded = end.kinds % 2 == 1
+                values[loaded] += self.applied.at_end(t + c * dt, s, "material")[loaded]
+                driven.values[i, side] = values
+                driven.dead[i, side] = self.applied.at_end(t + c * dt, s, "lab")
+                driven.kinds[side] = end.kinds

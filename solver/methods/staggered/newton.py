@@ -1,0 +1,267 @@
+"""One Radau IIA step: simplified Newton on the three stages at once, and the estimate of its error.
+
+With delta = T d the stages' increments fall apart into one real and one complex system (Hairer & Wanner II, IV.8); the
+tangents are those at the middle stage of the first guess, for all stages and iterations.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.contact.forces import Touch, touching
+from solver.ends import LOAD, RATE
+from solver.kernel import kernel
+from solver.loads.applied import Loads
+from solver.methods.staggered.chain import STAGES, Chain, Residuals, Stages, State
+from solver.methods.staggered.coupling import Coupling, press_stages, solve_with_contact
+from solver.methods.staggered.joints import bend_joints
+from solver.methods.staggered.motion import LARGEST_TURN, move, spin_steadily
+from solver.methods.staggered.segments import Driven, Tangents, balance_segments, condition_ends, segment_tangents
+from solver.methods.staggered.tridiagonal import Factors, displace, factor, load_rows, node_moves, solve, solve_stages
+from solver.methods.status import CONVERGED, SINGULAR, STALLED
+from solver.rod import Array
+
+LARGEST_ITERATIONS = 12
+LARGEST_INCREMENT = 1e3
+"""Increment at which an iteration is given up."""
+TOLERANCE = 1e-10
+"""Remaining increment, rotation (rad) and force in EJ/L^2 relative to its largest, at which an iteration has converged:
+far below a buckling seed."""
+
+
+class Scheme(NamedTuple):
+    """Radau's coefficients as the kernels take them: see `tableau`."""
+
+    nodes: Array
+    inverse: Array
+    transform: Array
+    back: Array
+    gamma: float
+    pair: complex
+    error: Array
+
+
+class Work(NamedTuple):
+    """Arrays that a step writes and nobody keeps: residuals and their transforms, tangents, both factored systems."""
+
+    residuals: Residuals
+    transformed: Residuals
+    tangents: Tangents
+    real: Factors
+    pair: Factors
+    coupling: Coupling
+
+    @classmethod
+    def empty(cls, intervals: int, touching: bool) -> Work:
+        """Zeros for N = `intervals`."""
+        return cls(Residuals.empty(intervals), Residuals.empty(intervals), Tangents.empty(intervals),
+                   Factors.empty(intervals, np.float64), Factors.empty(intervals, np.complex128),
+                   Coupling.empty(intervals if touching else 0))  # fmt: skip
+
+
+@kernel
+def _mix(weights: Array, source: Array, target: Array) -> None:
+    """target[i] = sum over j of weights[i, j] source[j], stages first."""
+    for m in range(source.shape[1]):
+        for k in range(source.shape[2]):
+            a, b, c = source[0, m, k], source[1, m, k], source[2, m, k]
+            for i in range(STAGES):
+                target[i, m, k] = weights[i, 0] * a + weights[i, 1] * b + weights[i, 2] * c
+
+
+@kernel
+def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, touch: Touch, work: Work) -> None:
+    """Write the residuals of all stages, whose motion is known."""
+    if touching(touch):
+        press_stages(chain, stages, driven, touch, work.coupling)
+    for i in range(STAGES):
+        bend_joints(chain, stages.quaternion[i], stages.bend[i], stages.moment[i], stages.left[i], stages.right[i])
+        balance_segments(chain, loads, driven, stages, work.residuals, i)
+        condition_ends(chain, driven, stages, work.residuals, i)
+
+
+@kernel
+def _turn_residuals(driven: Driven, stages: Stages, R: Array, residuals: Residuals) -> None:
+    """Turn the rows in material components from the stages' own frames into the tangents' frames `R`.
+
+    Where an end's conditions are of two kinds, only among components of one kind: exact for a frame that spins about
+    the axis of the odd one. Without it a rod that spins by an angle x in a step converges by a factor of only about x.
+    """
+    n = len(R)
+    old, turned = np.empty(3), np.empty((3, 3))
+    for i in range(STAGES):
+        for a in range(n):
+            Q, row = stages.R[i, a], residuals.rotation[i, a]
+            x = Q[0, 0] * row[0] + Q[0, 1] * row[1] + Q[0, 2] * row[2]
+            y = Q[1, 0] * row[0] + Q[1, 1] * row[1] + Q[1, 2] * row[2]
+            z = Q[2, 0] * row[0] + Q[2, 1] * row[1] + Q[2, 2] * row[2]
+            if 0 < a < n - 1:
+                for k in range(3):
+                    row[k] = R[a, 0, k] * x + R[a, 1, k] * y + R[a, 2, k] * z
+                continue
+            side = 0 if a == 0 else 1
+            for k in range(3):
+                for m in range(3):
+                    turned[k, m] = R[a, 0, k] * Q[0, m] + R[a, 1, k] * Q[1, m] + R[a, 2, k] * Q[2, m]
+            for first, rows in ((3, row), (0, residuals.ends[i, side])):
+                old[:] = rows
+                for k in range(3):
+                    kind = driven.kinds[side, first + k]
+                    if kind in (RATE, LOAD):
+                        rows[k] = 0.0
+                        for m in range(3):
+                            if driven.kinds[side, first + m] == kind:
+                                rows[k] += turned[k, m] * old[m]
+
+
+@kernel
+def _update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: Stages, work: Work) -> float:
+    """Add a fraction of the increments to the stages; return their size."""
+    T, frame = scheme.transform, work.tangents.R
+    real, pair = work.real, work.pair
+    turned, forced, largest = 0.0, 0.0, unit
+    for i in range(STAGES):
+        t0, t1, t2 = fraction * T[i, 0], fraction * T[i, 1], fraction * T[i, 2]
+        for a in range(stages.theta.shape[1]):
+            x, z = real.x[a], pair.x[a]
+            c0 = t0 * x[0] + t1 * z[0].real + t2 * z[0].imag
+            c1 = t0 * x[1] + t1 * z[1].real + t2 * z[1].imag
+            c2 = t0 * x[2] + t1 * z[2].real + t2 * z[2].imag
+            Q, R = frame[a], stages.start[a]
+            u = Q[0, 0] * c0 + Q[0, 1] * c1 + Q[0, 2] * c2
+            v = Q[1, 0] * c0 + Q[1, 1] * c1 + Q[1, 2] * c2
+            w = Q[2, 0] * c0 + Q[2, 1] * c1 + Q[2, 2] * c2
+            p0 = R[0, 0] * u + R[1, 0] * v + R[2, 0] * w
+            p1 = R[0, 1] * u + R[1, 1] * v + R[2, 1] * w
+            p2 = R[0, 2] * u + R[1, 2] * v + R[2, 2] * w
+            theta = stages.theta[i, a]
+            u, v, w = theta[0], theta[1], theta[2]
+            # a rotation by p in the frame of R_n changes theta by p - theta x p / 2 + ...
+            c0, c1, c2 = v * p2 - w * p1, w * p0 - u * p2, u * p1 - v * p0
+            theta[0] += p0 - 0.5 * c0 + (v * c2 - w * c1) / 12.0
+            theta[1] += p1 - 0.5 * c1 + (w * c0 - u * c2) / 12.0
+            theta[2] += p2 - 0.5 * c2 + (u * c1 - v * c0) / 12.0
+            turned = max(turned, abs(p0), abs(p1), abs(p2))
+            if not np.isfinite(p0):
+                return np.inf
+        for a in range(stages.F.shape[1]):
+            for k in range(3):
+                change = t0 * real.x[a, 3 + k] + t1 * pair.x[a, 3 + k].real + t2 * pair.x[a, 3 + k].imag
+                stages.F[i, a, k] += change
+                forced = max(forced, abs(change))
+                largest = max(largest, abs(stages.F[i, a, k]))
+        for k in range(3):
+            z0 = node_moves(chain, work.tangents, pair, 0, k)
+            stages.shift[i, k] += t0 * node_moves(chain, work.tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
+    return max(turned, forced / largest) / fraction
+
+
+@kernel
+def _increment(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stages: Stages, touch: Touch,
+               work: Work) -> float:  # fmt: skip
+    """Solve for the increments of the stages; return how much of them may be taken."""
+    residuals, transformed, tangents = work.residuals, work.transformed, work.tangents
+    _turn_residuals(driven, stages, tangents.R, residuals)
+    _mix(scheme.back, residuals.rotation, transformed.rotation)
+    _mix(scheme.back, residuals.translation, transformed.translation)
+    _mix(scheme.back, residuals.ends, transformed.ends)
+    gamma, pair = scheme.gamma / dt, scheme.pair / dt
+    if touching(touch):
+        return solve_with_contact(chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma, pair,
+                                  dt, transformed, work.real, work.pair, touch, work.coupling)  # fmt: skip
+    solve_stages(chain, driven, tangents, gamma, pair, transformed, work.real, work.pair)
+    return 1.0
+
+
+@kernel
+def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, unit: float, state: State,
+         stages: Stages, touch: Touch, work: Work) -> tuple[int, int]:  # fmt: skip
+    """Solve for the stages of a step of dt; theta, shift and F hold the first guess. `unit` = EJ/L^2 (N).
+
+    Returns how it ended and the iterations.
+    """
+    before = 0.0
+    spin_steadily(state, scheme.nodes, dt, stages)
+    for iteration in range(1, LARGEST_ITERATIONS + 1):
+        if not move(state, stages, scheme.inverse, dt, chain.h) < LARGEST_TURN:
+            return STALLED, iteration
+        evaluate(chain, loads, driven, stages, touch, work)
+        if iteration == 1:
+            segment_tangents(chain, loads, driven, stages, 1, work.tangents)
+            if not factor(chain, driven, work.tangents, scheme.gamma / dt, work.real):
+                return SINGULAR, iteration
+            if not factor(chain, driven, work.tangents, scheme.pair / dt, work.pair):
+                return SINGULAR, iteration
+        fraction = _increment(chain, driven, scheme, dt, stages, touch, work)
+        size = _update(chain, scheme, unit, fraction, stages, work)
+        if not size < LARGEST_INCREMENT:
+            return STALLED, iteration
+        rate = size / before if before > 0.0 else 1.0
+        if size < TOLERANCE or (before > 0.0 and rate < 1.0 and size * rate / (1.0 - rate) < TOLERANCE):
+            move(state, stages, scheme.inverse, dt, chain.h)
+            evaluate(chain, loads, driven, stages, touch, work)
+            return CONVERGED, iteration
+        if before > 0.0 and rate > 2.0 and fraction == 1.0:
+            return STALLED, iteration
+        before = size if fraction == 1.0 else 0.0
+    return STALLED, LARGEST_ITERATIONS
+
+
+@kernel
+def estimate_error(chain: Chain, driven: Driven, scheme: Scheme, dt: float, state: State, centres: Array,
+                   stages: Stages, work: Work) -> tuple[float, float, float, float]:  # fmt: skip
+    """The embedded estimate of the step's error, and the motion: rotation (rad) error, motion; position (m) likewise.
+
+    `centres` (3, N, 3): position, velocity and acceleration of the centres at the start of the step. The estimate of
+    order 3, g = dt/gamma y'(t) + sum of e_i (Y_i - y), is smoothed by the real system, M mu^2 + C mu + K.
+    """
+    mu, e = scheme.gamma / dt, scheme.error
+    residuals, factors = work.transformed, work.real
+    rotation, translation = residuals.rotation[0], residuals.translation[0]
+    residuals.ends[0] = 0.0
+    rotation[:] = 0.0
+    turned, moved = 0.0, 0.0
+    for a in range(1, len(rotation) - 1):
+        for k in range(3):
+            place, rate = 0.0, state.alpha[a, k] / mu
+            for i in range(STAGES):
+                place += e[i] * stages.theta[i, a, k]
+                rate += e[i] * stages.theta_t[i, a, k]
+            rotation[a, k] = -chain.h * chain.inertia[a - 1, k] * mu * (mu * place + rate)
+            turned = max(turned, abs(stages.theta[2, a, k] + dt * state.omega[a, k]))
+    place3, rate3 = np.zeros(3), np.zeros(3)
+    for j in range(len(translation)):
+        for k in range(3):
+            place3[k], rate3[k] = centres[1, j, k] / mu, centres[2, j, k] / mu
+            for i in range(STAGES):
+                place3[k] += e[i] * (stages.r[i, j, k] - centres[0, j, k])
+                rate3[k] += e[i] * (stages.V[i, j, k] - centres[1, j, k])
+            moved = max(moved, abs(stages.r[2, j, k] - centres[0, j, k]))
+        for k in range(3):
+            translation[j, k] = 0.0
+            for m in range(3):
+                translation[j, k] -= work.tangents.M[j, k, m] * mu * (mu * place3[m] + rate3[m])
+    load_rows(chain, driven, work.tangents, mu, rotation, translation, residuals.ends[0], factors)
+    solve(factors)
+    displace(factors)
+    turn_error, move_error = 0.0, 0.0
+    for a in range(1, len(rotation) - 1):
+        for k in range(3):
+            turn_error = max(turn_error, abs(factors.x[a, k]))
+    for j in range(len(translation)):
+        for k in range(3):
+            move_error = max(move_error, abs(factors.moved[j, k]))
+    return turn_error, turned, move_error, moved
+
+
+@kernel
+def finish(state: State, stages: Stages, new: State) -> None:
+    """Write the state at the end of the step, the last stage, into `new`."""
+    last = STAGES - 1
+    new.quaternion[:] = stages.quaternion[last]
+    new.omega[:] = stages.omega[last]
+    new.alpha[:] = stages.alpha[last]
+    new.base[:] = stages.base[last]
+    new.F[:] = stages.F[last]

@@ -1,0 +1,313 @@
+"""Newton's linear system: 6 x 6 block tridiagonal, for one eigenvalue lambda of the time scheme, real or complex.
+
+Unknown at block a = 0 ... N + 1: the rotation psi of orientation a and the force F at node a (none in the last block).
+A segment's displacement is eliminated by its own balance: with P = M lambda^2 + C lambda and X = P^-1,
+
+    delta r_j = X (delta F_j+1 - delta F_j + E psi - residual),
+
+and what remains of translation is that neighbours stay joined: delta r_j+1 - delta r_j = d(h/2 T_j + h/2 T_j+1). The
+rows of F are minus positive and those of psi positive definite but for loads, so no pivots are searched between blocks.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.ends import LOAD, RATE, RATE_LAB
+from solver.kernel import kernel
+from solver.methods.staggered.chain import Chain, Residuals
+from solver.methods.staggered.segments import Driven, Tangents
+from solver.rod import Array
+
+
+class Factors(NamedTuple):
+    """The factored system: `X`, `Y` = X E (N, 3, 3); `lower`, `inverse` of the reduced diagonal, `upper` = inverse
+    times the blocks above (N + 2, 6, 6); right-hand side and solution `x` (N + 2, 6); `moved` (N, 3): displacements of
+    the centres; `load` (N, 3): the residuals of translation."""
+
+    X: Array
+    Y: Array
+    lower: Array
+    inverse: Array
+    upper: Array
+    x: Array
+    moved: Array
+    load: Array
+
+    @classmethod
+    def empty(cls, intervals: int, dtype: type) -> Factors:
+        """Zeros for N = `intervals`."""
+        N = intervals
+        shapes = ((N, 3, 3), (N, 3, 3), (N + 2, 6, 6), (N + 2, 6, 6), (N + 2, 6, 6), (N + 2, 6), (N, 3), (N, 3))
+        return cls(*(np.zeros(shape, dtype) for shape in shapes))
+
+
+@kernel
+def _invert3(P: Array, X: Array) -> None:
+    a = P[1, 1] * P[2, 2] - P[1, 2] * P[2, 1]
+    b = P[1, 2] * P[2, 0] - P[1, 0] * P[2, 2]
+    c = P[1, 0] * P[2, 1] - P[1, 1] * P[2, 0]
+    d = 1.0 / (P[0, 0] * a + P[0, 1] * b + P[0, 2] * c)
+    X[0, 0], X[1, 0], X[2, 0] = a * d, b * d, c * d
+    X[0, 1] = (P[0, 2] * P[2, 1] - P[0, 1] * P[2, 2]) * d
+    X[1, 1] = (P[0, 0] * P[2, 2] - P[0, 2] * P[2, 0]) * d
+    X[2, 1] = (P[0, 1] * P[2, 0] - P[0, 0] * P[2, 1]) * d
+    X[0, 2] = (P[0, 1] * P[1, 2] - P[0, 2] * P[1, 1]) * d
+    X[1, 2] = (P[0, 2] * P[1, 0] - P[0, 0] * P[1, 2]) * d
+    X[2, 2] = (P[0, 0] * P[1, 1] - P[0, 1] * P[1, 0]) * d
+
+
+@kernel
+def _translate(chain: Chain, tangents: Tangents, eigenvalue: complex, P: Array, factors: Factors) -> None:
+    """Write X and Y of all segments."""
+    square = eigenvalue * eigenvalue
+    for j in range(len(chain.mass)):
+        for k in range(3):
+            for m in range(3):
+                P[k, m] = tangents.M[j, k, m] * square + tangents.C[j, k, m] * eigenvalue
+        _invert3(P, factors.X[j])
+        X, Y = factors.X[j], factors.Y[j]
+        for k in range(3):
+            for m in range(3):
+                Y[k, m] = X[k, 0] * tangents.E[j, 0, m] + X[k, 1] * tangents.E[j, 1, m] + X[k, 2] * tangents.E[j, 2, m]
+
+
+@kernel
+def _arm(R: Array, h: float, k: int, m: int) -> float:
+    """d(h/2 T)_k by psi_m: T changes by R (psi x a3)."""
+    return -0.5 * h * R[k, 1] if m == 0 else (0.5 * h * R[k, 0] if m == 1 else 0.0)
+
+
+@kernel
+def _fill(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors, a: int,
+          lower: Array, D: Array, upper: Array) -> None:  # fmt: skip
+    """Write the blocks of row a."""
+    N, h = len(chain.mass), chain.h
+    X, Y, R = factors.X, factors.Y, tangents.R
+    D[:, :] = 0.0
+    upper[:, :] = 0.0
+    lower[:, :] = 0.0
+    if 0 < a <= N:
+        for k in range(3):
+            D[k, k] += h * chain.inertia[a - 1, k] * eigenvalue * eigenvalue
+            for m in range(3):
+                D[k, m] += tangents.stiff[a, k, m] + tangents.spin[a - 1, k, m] * eigenvalue
+                lower[k, m] = tangents.before[a, k, m]
+                upper[k, m] = tangents.behind[a, k, m]
+                turned = _arm(R[a], h, m, k)
+                D[k, 3 + m] = -turned
+                lower[k, 3 + m] = -turned
+    else:
+        side = 0 if a == 0 else 1
+        for k in range(3):
+            if driven.kinds[side, 3 + k] == RATE:
+                D[k, k] = 1.0
+            else:
+                for m in range(3):
+                    D[k, m] = tangents.stiff[a, k, m]
+                    lower[k, m] = tangents.before[a, k, m]
+                    upper[k, m] = tangents.behind[a, k, m]
+    if a == N + 1:
+        for k in range(3):
+            D[3 + k, 3 + k] = 1.0
+        return
+    for k in range(3):
+        for m in range(3):
+            if a < N:
+                D[3 + k, 3 + m] -= X[a, k, m]
+                upper[3 + k, 3 + m] += X[a, k, m]
+                upper[3 + k, m] += Y[a, k, m] - _arm(R[a + 1], h, k, m)
+            if a > 0:
+                D[3 + k, 3 + m] -= X[a - 1, k, m]
+                lower[3 + k, 3 + m] += X[a - 1, k, m]
+                D[3 + k, m] -= Y[a - 1, k, m] + _arm(R[a], h, k, m)
+    if a == 0:
+        _condition(driven, tangents, eigenvalue, 0, D, upper, D, lower)
+    elif a == N:
+        _condition(driven, tangents, eigenvalue, 1, D, lower, upper, upper)
+
+
+@kernel
+def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: int,
+               D: Array, neighbour: Array, frame: Array, other: Array) -> None:  # fmt: skip
+    """Turn the rows "the end stays where it is" in D and `neighbour` into the end's conditions.
+
+    `frame` is the block that holds the rotation of the end's own frame; `other` is emptied of what is not the frame's.
+    """
+    R = tangents.R[0] if side == 0 else tangents.R[-1]
+    rows, beside = D[3:, :].copy(), neighbour[3:, :].copy()
+    sign = 1.0 if side == 0 else -1.0
+    for k in range(3):
+        kind = driven.kinds[side, k]
+        for m in range(6):
+            D[3 + k, m] = 0.0
+            neighbour[3 + k, m] = 0.0
+            other[3 + k, m] = 0.0
+        if kind in (RATE_LAB, RATE):
+            for n in range(3):
+                weight = R[n, k] if kind == RATE else (1.0 if n == k else 0.0)
+                for m in range(6):
+                    D[3 + k, m] += weight * rows[n, m]
+                    neighbour[3 + k, m] += weight * beside[n, m]
+            for m in range(3):
+                frame[3 + k, m] += sign * tangents.turn[side, k, m] / eigenvalue
+        else:
+            for n in range(3):
+                D[3 + k, 3 + n] = R[n, k] if kind == LOAD else (1.0 if n == k else 0.0)
+            for m in range(3):
+                frame[3 + k, m] += tangents.turn[side, k, m]
+
+
+@kernel
+def _invert6(D: Array, inverse: Array) -> bool:
+    """Write D^-1 by Gauss-Jordan with row pivoting inside the block; False if a pivot vanishes. D is used up."""
+    for k in range(6):
+        for m in range(6):
+            inverse[k, m] = 0.0
+        inverse[k, k] = 1.0
+    for p in range(6):
+        best, size = p, abs(D[p, p])
+        for k in range(p + 1, 6):
+            if abs(D[k, p]) > size:
+                best, size = k, abs(D[k, p])
+        if not size > 0.0:
+            return False
+        if best != p:
+            for m in range(6):
+                D[p, m], D[best, m] = D[best, m], D[p, m]
+                inverse[p, m], inverse[best, m] = inverse[best, m], inverse[p, m]
+        pivot = 1.0 / D[p, p]
+        for m in range(6):
+            D[p, m] *= pivot
+            inverse[p, m] *= pivot
+        for k in range(6):
+            if k != p:
+                factor = D[k, p]
+                for m in range(6):
+                    D[k, m] -= factor * D[p, m]
+                    inverse[k, m] -= factor * inverse[p, m]
+    return True
+
+
+@kernel
+def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> bool:
+    """Factor the system for one eigenvalue; False if it is singular."""
+    D, upper = np.zeros_like(factors.lower[0]), np.zeros_like(factors.lower[0])
+    _translate(chain, tangents, eigenvalue, D, factors)
+    for a in range(len(factors.lower)):
+        lower = factors.lower[a]
+        _fill(chain, driven, tangents, eigenvalue, factors, a, lower, D, upper)
+        if a > 0:
+            before = factors.upper[a - 1]
+            for k in range(6):
+                for m in range(6):
+                    for n in range(6):
+                        D[k, m] -= lower[k, n] * before[n, m]
+        inverse, W = factors.inverse[a], factors.upper[a]
+        if not _invert6(D, inverse):
+            return False
+        for k in range(6):
+            for m in range(6):
+                W[k, m] = 0.0
+                for n in range(6):
+                    W[k, m] += inverse[k, n] * upper[n, m]
+    return True
+
+
+@kernel
+def load_rows(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, rotation: Array,
+              translation: Array, ends: Array, factors: Factors) -> None:  # fmt: skip
+    """Write the right-hand side for residuals `rotation` (N + 2, 3), `translation` (N, 3), `ends` (2, 3) into x."""
+    N = len(chain.mass)
+    X, b = factors.X, factors.x
+    factors.load[:] = translation
+    b[:] = 0.0
+    for a in range(N + 2):
+        for k in range(3):
+            b[a, k] = -rotation[a, k]
+    for side in range(2):
+        frame = 0 if side == 0 else N + 1
+        for k in range(3):
+            if driven.kinds[side, 3 + k] == RATE:
+                b[frame, k] /= eigenvalue
+            elif side == 0:
+                b[frame, k] = -b[frame, k]
+    for j in range(N):
+        for k in range(3):
+            moved = X[j, k, 0] * translation[j, 0] + X[j, k, 1] * translation[j, 1] + X[j, k, 2] * translation[j, 2]
+            b[j, 3 + k] += moved
+            b[j + 1, 3 + k] -= moved
+    for side in range(2):
+        node, R = (0, tangents.R[0]) if side == 0 else (N, tangents.R[N + 1])
+        x, y, z = b[node, 3], b[node, 4], b[node, 5]
+        sign = 1.0 if side == 0 else -1.0
+        for k in range(3):
+            kind = driven.kinds[side, k]
+            if kind == RATE:
+                b[node, 3 + k] = R[0, k] * x + R[1, k] * y + R[2, k] * z - sign * ends[side, k] / eigenvalue
+            elif kind == RATE_LAB:
+                b[node, 3 + k] -= sign * ends[side, k] / eigenvalue
+            else:
+                b[node, 3 + k] = -ends[side, k]
+
+
+@kernel
+def solve(factors: Factors) -> None:
+    """Replace the right-hand side in x by the solution."""
+    x, n = factors.x, len(factors.x)
+    y = np.zeros_like(x[0])
+    for a in range(n):
+        for k in range(6):
+            y[k] = x[a, k]
+        if a > 0:
+            lower = factors.lower[a]
+            for k in range(6):
+                for m in range(6):
+                    y[k] -= lower[k, m] * x[a - 1, m]
+        inverse = factors.inverse[a]
+        for k in range(6):
+            x[a, k] = 0.0
+            for m in range(6):
+                x[a, k] += inverse[k, m] * y[m]
+    for a in range(n - 2, -1, -1):
+        upper = factors.upper[a]
+        for k in range(6):
+            for m in range(6):
+                x[a, k] -= upper[k, m] * x[a + 1, m]
+
+
+@kernel
+def displace(factors: Factors) -> None:
+    """Write the displacements of the centres that belong to the solution."""
+    x, X, Y = factors.x, factors.X, factors.Y
+    for j in range(len(factors.moved)):
+        for k in range(3):
+            total = 0.0 * x[0, 0]
+            for m in range(3):
+                total += X[j, k, m] * (x[j + 1, 3 + m] - x[j, 3 + m] - factors.load[j, m]) + Y[j, k, m] * x[j + 1, m]
+            factors.moved[j, k] = total
+
+
+@kernel
+def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k: int) -> complex:
+    """Component k of a node's displacement in the solution."""
+    j, side = (node - 1, 1.0) if node > 0 else (0, -1.0)
+    R, x = tangents.R[j + 1], factors.x[j + 1]
+    moved: complex = factors.moved[j, k] + side * 0.5 * chain.h * (R[k, 0] * x[1] - R[k, 1] * x[0])
+    return moved
+
+
+@kernel
+def solve_stages(chain: Chain, driven: Driven, tangents: Tangents, gamma: float, pair: complex, rows: Residuals,
+                 real_factors: Factors, pair_factors: Factors) -> None:  # fmt: skip
+    """Solve both systems for the transformed residuals `rows`."""
+    load_rows(chain, driven, tangents, gamma, rows.rotation[0], rows.translation[0], rows.ends[0], real_factors)
+    solve(real_factors)
+    displace(real_factors)
+    translation = rows.translation[1] + 1j * rows.translation[2]
+    load_rows(chain, driven, tangents, pair, rows.rotation[1] + 1j * rows.rotation[2], translation,
+              rows.ends[1] + 1j * rows.ends[2], pair_factors)  # fmt: skip
+    solve(pair_factors)
+    displace(pair_factors)

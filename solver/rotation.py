@@ -47,11 +47,14 @@ def tangents_of(quaternion: Array, T: Array) -> None:
 def turn(quaternion: Array, theta: Array, turned: Array) -> None:
     """Write quaternion * exp(theta), normalised, into `turned` (4,)."""
     square = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]
-    if square > 1e-8:
+    if square < 1.0:
+        # cos(a/2) and sin(a/2)/a by their series, exact to rounding
+        p = 0.25 * square
+        cosine = 1.0 - p / 2 * (1.0 - p / 12 * (1.0 - p / 30 * (1.0 - p / 56 * (1.0 - p / 90 * (1.0 - p / 132)))))
+        sinc = 0.5 - p / 12 * (1.0 - p / 20 * (1.0 - p / 42 * (1.0 - p / 72 * (1.0 - p / 110 * (1.0 - p / 156)))))
+    else:
         angle = np.sqrt(square)
         cosine, sinc = np.cos(0.5 * angle), np.sin(0.5 * angle) / angle
-    else:
-        cosine, sinc = 1.0 - square / 8.0, 0.5 - square / 48.0
     x, y, z = sinc * theta[0], sinc * theta[1], sinc * theta[2]
     a, b, c, d = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
     turned[0] = a * cosine - b * x - c * y - d * z

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.ends import LOAD, RATE, RATE_LAB
-from solver.kernel import kernel
+from solver.kernel import inlined, kernel
 from solver.methods.staggered.chain import Chain, Residuals
 from solver.methods.staggered.segments import Driven, Tangents
 from solver.rod import Array
@@ -45,11 +45,15 @@ class Factors(NamedTuple):
 
 
 @kernel
-def _invert3(P: Array, X: Array) -> None:
+def _invert3(P: Array, X: Array) -> bool:
+    """Write P^-1 (3, 3) into X; False if P is singular."""
     a = P[1, 1] * P[2, 2] - P[1, 2] * P[2, 1]
     b = P[1, 2] * P[2, 0] - P[1, 0] * P[2, 2]
     c = P[1, 0] * P[2, 1] - P[1, 1] * P[2, 0]
-    d = 1.0 / (P[0, 0] * a + P[0, 1] * b + P[0, 2] * c)
+    determinant = P[0, 0] * a + P[0, 1] * b + P[0, 2] * c
+    if not abs(determinant) > 0.0:
+        return False
+    d = 1.0 / determinant
     X[0, 0], X[1, 0], X[2, 0] = a * d, b * d, c * d
     X[0, 1] = (P[0, 2] * P[2, 1] - P[0, 1] * P[2, 2]) * d
     X[1, 1] = (P[0, 0] * P[2, 2] - P[0, 2] * P[2, 0]) * d
@@ -57,6 +61,7 @@ def _invert3(P: Array, X: Array) -> None:
     X[0, 2] = (P[0, 1] * P[1, 2] - P[0, 2] * P[1, 1]) * d
     X[1, 2] = (P[0, 2] * P[1, 0] - P[0, 0] * P[1, 2]) * d
     X[2, 2] = (P[0, 0] * P[1, 1] - P[0, 1] * P[1, 0]) * d
+    return True
 
 
 @kernel
@@ -75,54 +80,71 @@ def _translate(chain: Chain, tangents: Tangents, eigenvalue: complex, P: Array, 
 
 
 @kernel
-def _arm(R: Array, h: float, k: int, m: int) -> float:
-    """d(h/2 T)_k by psi_m: T changes by R (psi x a3)."""
-    return -0.5 * h * R[k, 1] if m == 0 else (0.5 * h * R[k, 0] if m == 1 else 0.0)
+def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factors, a: int,
+          lower: Array, D: Array, upper: Array) -> None:  # fmt: skip
+    """Write the blocks of row a of a chain that goes on at both sides. The zero blocks of lower and upper stay."""
+    half = 0.5 * chain.h
+    X, Y, R, ahead = factors.X, factors.Y, tangents.R[a], tangents.R[a + 1]
+    before, behind, stiff, spin = tangents.before[a], tangents.behind[a], tangents.stiff[a], tangents.spin[a - 1]
+    for k in range(3):
+        for m in range(3):
+            D[k, m] = stiff[k, m] + spin[k, m] * eigenvalue
+            lower[k, m] = before[k, m]
+            upper[k, m] = behind[k, m]
+            D[3 + k, m] = -Y[a - 1, k, m]
+            D[3 + k, 3 + m] = -X[a, k, m] - X[a - 1, k, m]
+            lower[3 + k, 3 + m] = X[a - 1, k, m]
+            upper[3 + k, 3 + m] = X[a, k, m]
+            upper[3 + k, m] = Y[a, k, m]
+        D[k, k] += chain.h * chain.inertia[a - 1, k] * eigenvalue * eigenvalue
+        # (h/2) T turns by (h/2) R (psi x a3)
+        x, y = half * R[k, 0], half * R[k, 1]
+        D[3 + k, 0] += y
+        D[3 + k, 1] -= x
+        D[0, 3 + k], lower[0, 3 + k] = y, y
+        D[1, 3 + k], lower[1, 3 + k] = -x, -x
+        D[2, 3 + k], lower[2, 3 + k] = 0.0, 0.0
+        upper[3 + k, 0] += half * ahead[k, 1]
+        upper[3 + k, 1] -= half * ahead[k, 0]
 
 
 @kernel
-def _fill(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors, a: int,
-          lower: Array, D: Array, upper: Array) -> None:  # fmt: skip
-    """Write the blocks of row a."""
-    N, h = len(chain.mass), chain.h
-    X, Y, R = factors.X, factors.Y, tangents.R
+def _fill_end(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors, a: int,
+              lower: Array, D: Array, upper: Array) -> None:  # fmt: skip
+    """Write the blocks of rows 0, N and N + 1: those of the ends' frames and of the forces at the ends."""
+    N, half = len(chain.mass), 0.5 * chain.h
+    X, Y = factors.X, factors.Y
+    side = 0 if a == 0 else 1
     D[:, :] = 0.0
     upper[:, :] = 0.0
     lower[:, :] = 0.0
-    if 0 < a <= N:
-        for k in range(3):
-            D[k, k] += h * chain.inertia[a - 1, k] * eigenvalue * eigenvalue
-            for m in range(3):
-                D[k, m] += tangents.stiff[a, k, m] + tangents.spin[a - 1, k, m] * eigenvalue
+    for k in range(3):
+        held = a != N and driven.kinds[side, 3 + k] == RATE
+        for m in range(3):
+            if held:
+                D[k, m] = 1.0 if k == m else 0.0
+            else:
+                D[k, m] = tangents.stiff[a, k, m]
                 lower[k, m] = tangents.before[a, k, m]
                 upper[k, m] = tangents.behind[a, k, m]
-                turned = _arm(R[a], h, m, k)
-                D[k, 3 + m] = -turned
-                lower[k, 3 + m] = -turned
-    else:
-        side = 0 if a == 0 else 1
-        for k in range(3):
-            if driven.kinds[side, 3 + k] == RATE:
-                D[k, k] = 1.0
-            else:
-                for m in range(3):
-                    D[k, m] = tangents.stiff[a, k, m]
-                    lower[k, m] = tangents.before[a, k, m]
-                    upper[k, m] = tangents.behind[a, k, m]
-    if a == N + 1:
-        for k in range(3):
-            D[3 + k, 3 + k] = 1.0
-        return
-    for k in range(3):
-        for m in range(3):
-            if a < N:
-                D[3 + k, 3 + m] -= X[a, k, m]
-                upper[3 + k, 3 + m] += X[a, k, m]
-                upper[3 + k, m] += Y[a, k, m] - _arm(R[a + 1], h, k, m)
-            if a > 0:
+        if a == N:
+            D[k, k] += chain.h * chain.inertia[a - 1, k] * eigenvalue * eigenvalue
+            x, y = half * tangents.R[a, k, 0], half * tangents.R[a, k, 1]
+            D[0, 3 + k], lower[0, 3 + k], D[3 + k, 0] = y, y, y
+            D[1, 3 + k], lower[1, 3 + k], D[3 + k, 1] = -x, -x, -x
+            for m in range(3):
+                D[k, m] += tangents.spin[a - 1, k, m] * eigenvalue
                 D[3 + k, 3 + m] -= X[a - 1, k, m]
                 lower[3 + k, 3 + m] += X[a - 1, k, m]
-                D[3 + k, m] -= Y[a - 1, k, m] + _arm(R[a], h, k, m)
+                D[3 + k, m] -= Y[a - 1, k, m]
+        elif a == 0:
+            upper[3 + k, 0], upper[3 + k, 1] = half * tangents.R[1, k, 1], -half * tangents.R[1, k, 0]
+            for m in range(3):
+                D[3 + k, 3 + m] -= X[0, k, m]
+                upper[3 + k, 3 + m] += X[0, k, m]
+                upper[3 + k, m] += Y[0, k, m]
+        else:
+            D[3 + k, 3 + k] = 1.0
     if a == 0:
         _condition(driven, tangents, eigenvalue, 0, D, upper, D, lower)
     elif a == N:
@@ -160,59 +182,90 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
                 frame[3 + k, m] += tangents.turn[side, k, m]
 
 
+@inlined
+def _times(A: Array, i: int, j: int, B: Array, k: int, m: int, out: Array, row: int, column: int) -> None:
+    """Write the 3 x 3 block (i, j) of A times the block (k, m) of B into the block of `out`."""
+    for p in range(3):
+        x, y, z = A[i + p, j], A[i + p, j + 1], A[i + p, j + 2]
+        for q in range(3):
+            out[row + p, column + q] = x * B[k, m + q] + y * B[k + 1, m + q] + z * B[k + 2, m + q]
+
+
+@inlined
+def _subtract_times(A: Array, i: int, j: int, B: Array, k: int, m: int, out: Array, row: int, column: int) -> None:
+    """Subtract the 3 x 3 block (i, j) of A times the block (k, m) of B from the block of `out`."""
+    for p in range(3):
+        x, y, z = A[i + p, j], A[i + p, j + 1], A[i + p, j + 2]
+        for q in range(3):
+            out[row + p, column + q] -= x * B[k, m + q] + y * B[k + 1, m + q] + z * B[k + 2, m + q]
+
+
 @kernel
-def _invert6(D: Array, inverse: Array) -> bool:
-    """Write D^-1 by Gauss-Jordan with row pivoting inside the block; False if a pivot vanishes. D is used up."""
-    for k in range(6):
-        for m in range(6):
-            inverse[k, m] = 0.0
-        inverse[k, k] = 1.0
-    for p in range(6):
-        best, size = p, abs(D[p, p])
-        for k in range(p + 1, 6):
-            if abs(D[k, p]) > size:
-                best, size = k, abs(D[k, p])
-        if not size > 0.0:
-            return False
-        if best != p:
-            for m in range(6):
-                D[p, m], D[best, m] = D[best, m], D[p, m]
-                inverse[p, m], inverse[best, m] = inverse[best, m], inverse[p, m]
-        pivot = 1.0 / D[p, p]
-        for m in range(6):
-            D[p, m] *= pivot
-            inverse[p, m] *= pivot
-        for k in range(6):
-            if k != p:
-                factor = D[k, p]
-                for m in range(6):
-                    D[k, m] -= factor * D[p, m]
-                    inverse[k, m] -= factor * inverse[p, m]
+def _invert6(D: Array, scratch: Array, inverse: Array) -> bool:
+    """Write D^-1 by its 3 x 3 blocks, that of the forces first: it is definite. False if a block is singular.
+
+    With D = (A B; C E), P = E^-1, S = (A - B P C)^-1: (S, -S B P; -P C S, P + P C S B P).
+    """
+    E, P = scratch[0:3, 0:3], scratch[3:6, 0:3]
+    for k in range(3):
+        for m in range(3):
+            E[k, m] = D[3 + k, 3 + m]
+    if not _invert3(E, P):
+        return False
+    # (P C) into the lower left block, (B P) into the upper right one, for now
+    _times(scratch, 3, 0, D, 3, 0, inverse, 3, 0)
+    _times(D, 0, 3, scratch, 3, 0, inverse, 0, 3)
+    for k in range(3):
+        for m in range(3):
+            E[k, m] = D[k, m]
+    _subtract_times(D, 0, 3, inverse, 3, 0, scratch, 0, 0)
+    S = inverse[0:3, 0:3]
+    if not _invert3(E, S):
+        return False
+    # S B P into scratch, then P + P C (S B P)
+    _times(inverse, 0, 0, inverse, 0, 3, scratch, 0, 3)
+    for k in range(3):
+        for m in range(3):
+            inverse[3 + k, 3 + m] = P[k, m]
+            scratch[3 + k, 3 + m] = -inverse[3 + k, m]
+            inverse[k, 3 + m] = -scratch[k, 3 + m]
+    _subtract_times(scratch, 3, 3, scratch, 0, 3, inverse, 3, 3)
+    _times(scratch, 3, 3, inverse, 0, 0, inverse, 3, 0)
     return True
 
 
 @kernel
 def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> bool:
     """Factor the system for one eigenvalue; False if it is singular."""
-    D, upper = np.zeros_like(factors.lower[0]), np.zeros_like(factors.lower[0])
+    D, upper, scratch = (np.zeros_like(factors.lower[0]), np.zeros_like(factors.lower[0]),
+                         np.zeros_like(factors.lower[0]))  # fmt: skip
     _translate(chain, tangents, eigenvalue, D, factors)
-    for a in range(len(factors.lower)):
+    last = len(factors.lower) - 1
+    for a in range(last + 1):
         lower = factors.lower[a]
-        _fill(chain, driven, tangents, eigenvalue, factors, a, lower, D, upper)
+        if 0 < a < last - 1:
+            _fill(chain, tangents, eigenvalue, factors, a, lower, D, upper)
+        else:
+            _fill_end(chain, driven, tangents, eigenvalue, factors, a, lower, D, upper)
         if a > 0:
             before = factors.upper[a - 1]
-            for k in range(6):
-                for m in range(6):
-                    for n in range(6):
-                        D[k, m] -= lower[k, n] * before[n, m]
+            for column in (0, 3):
+                _subtract_times(lower, 0, 0, before, 0, column, D, 0, column)
+                _subtract_times(lower, 0, 3, before, 3, column, D, 0, column)
+                _subtract_times(lower, 3, 3, before, 3, column, D, 3, column)
         inverse, W = factors.inverse[a], factors.upper[a]
-        if not _invert6(D, inverse):
+        if not _invert6(D, scratch, inverse):
             return False
-        for k in range(6):
-            for m in range(6):
-                W[k, m] = 0.0
-                for n in range(6):
-                    W[k, m] += inverse[k, n] * upper[n, m]
+        for row in (0, 3):
+            _times(inverse, row, 3, upper, 3, 3, W, row, 3)
+            _times(inverse, row, 0, upper, 0, 0, W, row, 0)
+            for k in range(3):
+                for m in range(3):
+                    scratch[k, m] = W[row + k, m]
+            _times(inverse, row, 3, upper, 3, 0, W, row, 0)
+            for k in range(3):
+                for m in range(3):
+                    W[row + k, m] += scratch[k, m]
     return True
 
 

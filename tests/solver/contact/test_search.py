@@ -134,7 +134,7 @@ def test_the_points_and_nodes_of_the_pairs_are_listed_once_each() -> None:
     members = {i for pair in listed(pairs) for i in pair}
     assert members
     assert sorted(pairs.points[: pairs.counts[1]]) == sorted(members)
-    nodes = {int(points.interval[i]) + side for i in members for side in (0, 1)}
+    nodes = {int(points.first[i]) + side for i in members for side in range(4)}
     assert sorted(pairs.nodes[: pairs.counts[2]]) == sorted(nodes)
     for place, node in enumerate(pairs.nodes[: pairs.counts[2]]):
         assert pairs.slot[node] == place

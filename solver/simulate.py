@@ -45,7 +45,7 @@ class Simulation:
             self._outputs.append(scene.t_end)
         ends = self._method.start.corners() + self._method.end.corners()
         self._control = StepControl(
-            scene.numerics, self._method.increment_order, self._method.shortest_step,
+            scene.numerics, self._method.increment_order, self._method.easy_iterations, self._method.shortest_step,
             ends + self._method.applied.corners(), self._outputs
         )
         self._switches = sorted({c.since for e in (scene.start, scene.end)

@@ -20,11 +20,10 @@ tried where a shape violates its end conditions, so that a boundary layer has to
 class StepControl:
     """Chooses steps that end exactly on every corner and output time."""
 
-    def __init__(
-        self, numerics: Numerics, order: float, shortest: float, corners: Iterable[float], outputs: Iterable[float]
-    ) -> None:
-        """`order`: power of the step with which a step's relative increment falls."""
-        self._exponent = 1.0 / order
+    def __init__(self, numerics: Numerics, order: float, easy: int, shortest: float, corners: Iterable[float],
+                 outputs: Iterable[float]) -> None:  # fmt: skip
+        """`order`: power of the step with which the relative increment falls; `easy`: iterations of an easy step."""
+        self._exponent, self._easy = 1.0 / order, easy
         self._dt_max = numerics.dt_max
         self._tolerance = numerics.increment_tolerance
         self._first = max(numerics.dt_max * FIRST_STEP, shortest)
@@ -52,7 +51,7 @@ class StepControl:
         taken = max(dt, 0.5 * self._wanted)
         # growth starts from the step that was wanted: from one that was cut to end on a frame it would never double
         grown = GROWTH * (self._wanted if 2.0 * dt >= self._wanted else taken)
-        longest = grown if iterations <= 4 else (taken if iterations <= 7 else 0.7 * taken)
+        longest = grown if iterations <= self._easy else (taken if iterations <= self._easy + 3 else 0.7 * taken)
         if relative_increment > 0.0:
             accurate = 0.9 * dt * (self._tolerance / relative_increment) ** self._exponent
             longest = min(longest, max(0.5 * taken, accurate))

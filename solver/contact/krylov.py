@@ -16,8 +16,6 @@ from solver.rod import Array
 
 KRYLOV = 60
 """Largest number of products."""
-SOLVED = 1e-6
-"""Relative residual at which it stops."""
 
 
 class Krylov(NamedTuple):
@@ -49,10 +47,10 @@ def begin(krylov: Krylov, size: int) -> bool:
 
 
 @kernel
-def unsolved(krylov: Krylov, used: int, size: int) -> bool:
-    """Whether another product is needed after `used`."""
+def unsolved(krylov: Krylov, used: int, size: int, solved: float) -> bool:
+    """Whether another product is needed after `used` for a relative residual of `solved`."""
     g = krylov.g
-    return bool(used < min(KRYLOV, size) and abs(g[used]) > SOLVED * abs(g[0]) + 1e-300)
+    return bool(used < min(KRYLOV, size) and abs(g[used]) > solved * abs(g[0]) + 1e-300)
 
 
 @kernel

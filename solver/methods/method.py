@@ -15,7 +15,8 @@ class Method(Protocol):
     """A discretization in space and time of one scene.
 
     `s` (n,): arclengths of the nodes (m); `start`, `end`: the driven ends; `applied`: the given loads; `shortest_step`
-    (s): no shorter step is possible; `increment_order`: power of dt with which `relative_increment` falls.
+    (s): no shorter step is possible; `increment_order`: power of dt with which `relative_increment` falls;
+    `easy_iterations`: Newton iterations up to which a step may be followed by a longer one.
     """
 
     s: Array
@@ -24,6 +25,7 @@ class Method(Protocol):
     applied: AppliedLoads
     shortest_step: float
     increment_order: float
+    easy_iterations: int
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt; how it ended (see `status`) and the Newton iterations.

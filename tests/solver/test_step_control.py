@@ -13,7 +13,7 @@ EASY, MODERATE, HARD = 3, 6, 9
 
 def control(dt_max: float, outputs: list[float]) -> StepControl:
     """Steps up to `dt_max` that end on `outputs`; the error tolerated is the default, 0.1 of the motion."""
-    return StepControl(Numerics(dt_max=dt_max), 2.0, 0.0, [], outputs)
+    return StepControl(Numerics(dt_max=dt_max), 2.0, 4, 0.0, [], outputs)
 
 
 def steps(of: StepControl, t_end: float, increment: float = 0.0, iterations: int = EASY) -> list[float]:

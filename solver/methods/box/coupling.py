@@ -13,6 +13,9 @@ from solver.methods.box.elimination import solve
 from solver.methods.box.fields import KAPPA, Linear, Nodes, State, V
 from solver.rod import Array
 
+SOLVED = 1e-6
+"""Relative residual at which GMRES stops: far below what Newton's quadratic convergence would notice."""
+
 
 class Coupling(NamedTuple):
     """Scratch of the solve with contact: `krylov`; a right-hand side `force` (N, 12) and its solution `x` (n, 12);
@@ -98,7 +101,7 @@ def solve_with_contact(c0: float, h: float, system: Linear, touch: Touch, coupli
     change_forces(touch, 0, krylov.y)
     used = 0
     if begin(krylov, size):
-        while unsolved(krylov, used, size):
+        while unsolved(krylov, used, size, SOLVED):
             _solve_for_forces(krylov.basis[used], h, system, touch, 1.0, 0.0, coupling)
             _move(coupling.x, c0, system, touch, coupling)
             change_forces(touch, 0, krylov.z)

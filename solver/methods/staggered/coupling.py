@@ -18,6 +18,9 @@ from solver.methods.staggered.segments import Driven, Tangents, share
 from solver.methods.staggered.tridiagonal import Factors, node_moves, solve_stages
 from solver.rod import Array
 
+SOLVED = 1e-2
+"""Relative residual at which GMRES stops: the frozen tangents of the rod do not converge faster than that."""
+
 
 class Coupling(NamedTuple):
     """Scratch of the solve with contact: `krylov`; `rows` residuals of the transformed stages; forces on the nodes
@@ -131,7 +134,7 @@ def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transfo
     _change(touch, coupling, krylov.y)
     used = 0
     if begin(krylov, size):
-        while unsolved(krylov, used, size):
+        while unsolved(krylov, used, size, SOLVED):
             _clear(rows)
             _load_with_forces(chain, tangents, back, krylov.basis[used], -1.0, touch, coupling)
             solve_stages(chain, driven, tangents, gamma, lam, rows, real, pair)

@@ -35,6 +35,7 @@ class StaggeredMethod:
     """Rigid segments joined at the nodes; Radau IIA of order 5 in time."""
 
     increment_order = 4.0
+    easy_iterations = 7
     shortest_step = 0.0
 
     def __init__(self, scene: Scene) -> None:

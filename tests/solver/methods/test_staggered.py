@@ -1,0 +1,115 @@
+"""Runs of the staggered method: what is exact by construction, its orders, and its steps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solver import Condition, Curve, DistributedLoad, End, Initial, Numerics, Scene, simulate
+from solver.curve import constant_vector
+from solver.methods.staggered.method import StaggeredMethod
+from solver.rod import Array
+from tests.solver.scenes import ARC, ARC_ROD, EJ, FIXED_STEPS, LENGTH, ROD, turned_clamp
+
+ROUNDING = 1e-12
+
+
+def staggered(intervals: int, dt: float, tolerance: float = FIXED_STEPS) -> Numerics:
+    return Numerics(method="staggered", intervals=intervals, dt_max=dt, increment_tolerance=tolerance)
+
+
+def twisted_arc(turns: float, numerics: Numerics, t_end: float = 1.0) -> Scene:
+    """The arc, one end turned about its tangent: it bends out of its plane."""
+    turned = Curve.table([0.0, 0.4, t_end], [0.0, 2 * np.pi * turns, 2 * np.pi * turns], "smoothstep")
+    return Scene(ARC_ROD, ARC, End.clamp(), turned_clamp(Condition("position", turned)), t_end, 0.1, damping=2.0,
+                 numerics=numerics)  # fmt: skip
+
+
+def test_what_is_exact_by_construction_is_exact() -> None:
+    frames = list(simulate(twisted_arc(1.0, staggered(40, 0.02))))
+    assert max(abs(frame.Wr) for frame in frames) > 0.1
+    for frame in frames:
+        assert np.abs(np.linalg.norm(np.diff(frame.r, axis=0), axis=1) * 40 / LENGTH - 1.0).max() <= ROUNDING
+        assert abs(frame.Tw + frame.Wr - frame.Lk) <= ROUNDING
+
+
+def test_an_end_that_is_held_stays_where_it_is() -> None:
+    first, *_, last = simulate(twisted_arc(1.0, staggered(40, 0.02, 1e-4)))
+    assert np.abs(last.r[-1] - first.r[-1]).max() <= 1e-6 * LENGTH
+
+
+def momenta(method: StaggeredMethod) -> tuple[Array, Array]:
+    """Linear and angular momentum of the segments."""
+    place, velocity, _ = method._centres
+    R, omega, chain = method._R[1:-1], method.state.omega[1:-1], method.chain
+    spin = np.einsum("jkm,jm->jk", R, chain.inertia * omega)
+    mass = chain.mass[:, None]
+    return chain.h * (mass * velocity).sum(axis=0), chain.h * (mass * np.cross(place, velocity) + spin).sum(axis=0)
+
+
+def test_free_flight_conserves_momentum_and_angular_momentum() -> None:
+    initial = Initial(ARC.centreline, velocity=(0.1, 0.2, -0.3), angular_velocity=(1.0, 2.0, 0.5))
+    scene = Scene(ROD, initial, End.free(), End.free(), 2.0, 1.0, numerics=staggered(30, 5e-3))
+    simulation = simulate(scene)
+    run = iter(simulation)
+    next(run)
+    before = momenta(simulation._method)  # type: ignore[arg-type]
+    for _ in run:
+        pass
+    after = momenta(simulation._method)  # type: ignore[arg-type]
+    assert np.abs(after[0] - before[0]).max() <= ROUNDING * np.abs(before[0]).max()
+    assert np.abs(after[1] - before[1]).max() <= 5e-7 * np.abs(before[1]).max()
+
+
+def swung(numerics: Numerics) -> Scene:
+    """A cantilever under a load that comes and goes smoothly."""
+    schedule = Curve.table([0.0, 0.3, 0.6], [0.0, 1.0, 0.0], "smoothstep")
+    load = DistributedLoad(constant_vector((5.0 * EJ / LENGTH**3, 2.0 * EJ / LENGTH**3, 0.0)), schedule=schedule)
+    return Scene(ROD, Initial.straight(), End.clamp(), End.free(), 0.3, 0.3, distributed=(load,), damping=1.0,
+                 numerics=numerics)  # fmt: skip
+
+
+def last_r(scene: Scene) -> Array:
+    *_, frame = simulate(scene)
+    return frame.r
+
+
+def test_the_time_scheme_is_of_order_five_on_a_smooth_load() -> None:
+    dts = np.array([0.06, 0.03, 0.015])
+    reference = last_r(swung(staggered(20, 0.002)))
+    errors = [np.abs(last_r(swung(staggered(20, dt))) - reference).max() for dt in dts]
+    # the first few steps grow up to dt: the order is that of the rest
+    assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx(5.0, abs=1.0)
+
+
+@pytest.mark.parametrize(("load", "deflection"), [(1.0, 0.301721), (5.0, 0.713792), (10.0, 0.810609)])
+def test_a_damped_cantilever_comes_to_rest_at_the_elastica_with_order_two(load: float, deflection: float) -> None:
+    def error(intervals: int) -> float:
+        force = Curve.constant(load * EJ / LENGTH**2)
+        tip = End(((Condition("load", force),), (Condition("load"),), (Condition("load"),)),
+                  tuple((Condition("load"),) for _ in range(3)), frame="lab")  # type: ignore[arg-type]  # fmt: skip
+        scene = Scene(ROD, Initial.straight(), End.clamp(), tip, 60.0, 60.0, damping=8.0,
+                      numerics=staggered(intervals, 0.5, 1e-2))  # fmt: skip
+        return float(last_r(scene)[-1, 0] / LENGTH - deflection)
+
+    coarse, fine = error(20), error(40)
+    assert abs(fine) <= 5e-4
+    assert coarse / fine == pytest.approx(4.0, rel=0.15)
+
+
+def test_a_run_is_repeatable_to_the_bit() -> None:
+    one, two = (last_r(twisted_arc(0.5, staggered(16, 0.05), t_end=0.5)) for _ in range(2))
+    assert np.array_equal(one, two)
+
+
+def test_both_methods_agree_to_the_order_of_their_meshes() -> None:
+    def gap(intervals: int) -> float:
+        box = Numerics(intervals=intervals, dt_max=0.004, rho_inf=0.8, increment_tolerance=FIXED_STEPS)
+        scene = twisted_arc(0.5, staggered(intervals, 0.02), t_end=0.6)
+        return float(np.abs(last_r(scene) - last_r(replace(scene, numerics=box))).max())
+
+    coarse, fine = gap(20), gap(40)
+    assert fine <= 2e-3 * LENGTH
+    assert coarse / fine == pytest.approx(4.0, rel=0.4)

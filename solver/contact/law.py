@@ -22,8 +22,8 @@ PAPER_SPACING = 1e-3
 """The grid of the paper (m), at which the printed sum and the density agree."""
 TAPER = 0.3
 """Outer part of the cutoff over which the force fades."""
-LINEAR_BELOW = 0.25
-"""In D: distance d - D/2 below which the force goes on linearly."""
+LINEAR_BELOW = 0.02
+"""In D: distance d - D/2 below which the force goes on linearly: so small that a stiff rod, too, is held before it."""
 
 
 class Law(NamedTuple):

@@ -18,6 +18,8 @@ SKIN = 0.5
 """In cutoffs: how much farther than the cutoff a search looks."""
 LARGEST_APPROACH = 0.7
 """Part of its distance that a pair may move in a step: less than all of it, so nothing passes through."""
+LARGEST_SHIFT = 0.2
+"""Part of the search's slack that a point may move in a step at its present speed; 0.25 is left before each step."""
 TIME_TO_TOUCH = 0.5
 """Part of the time to closure, gap / closing speed, that the next step may take."""
 
@@ -75,7 +77,10 @@ class SelfContact:
         if largest_displacement(points) > 0.5 * self._slack:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
+        speed = fastest(points)
         self.step_limit = TIME_TO_TOUCH * time_to_touch
+        if speed > 0.0:
+            self.step_limit = min(self.step_limit, LARGEST_SHIFT * self._slack / speed)
         return "two parts of the rod could have passed through each other" if approach > LARGEST_APPROACH else ""
 
     def smallest_gap(self, r: Array, velocity: Array) -> float:
@@ -99,6 +104,7 @@ class SelfContact:
         find_pairs(self.touch.points, self._law.skip, 0.0, self.touch.pairs)
         keep_separations(self.touch.points, self.touch.pairs)
         approaches(self.touch.points, self.touch.pairs)
+        fastest(self.touch.points)
         largest_displacement(self.touch.points)
 
     def _search(self) -> None:
@@ -128,6 +134,15 @@ def keep_separations(points: Points, pairs: Pairs) -> None:
     for pair in range(pairs.counts[0]):
         for k in range(3):
             pairs.before[pair, k] = points.p[pairs.first[pair], k] - points.p[pairs.second[pair], k]
+
+
+@kernel
+def fastest(points: Points) -> float:
+    """The largest speed (m/s) of a point."""
+    largest = 0.0
+    for i in range(len(points.p)):
+        largest = max(largest, points.w[i, 0] ** 2 + points.w[i, 1] ** 2 + points.w[i, 2] ** 2)
+    return float(np.sqrt(largest))
 
 
 @kernel

@@ -172,7 +172,7 @@ def test_below_a_small_gap_the_force_goes_on_linearly() -> None:
     below = np.linspace(0.1 * D, floor, 12)
     forces = np.array([elastic_force(float(d)) for d in below])
     assert_allclose(np.diff(forces, 2), 0.0, atol=1e-12 * forces.max())
-    step = 1e-6 * D
+    step = 4e-6 * LINEAR_BELOW * D
     just_above = (elastic_force(floor + step) - elastic_force(floor)) / step
     just_below = (elastic_force(floor) - elastic_force(floor - step)) / step
     # the slope changes by some k2 + 1 times the step over the gap

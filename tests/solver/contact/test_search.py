@@ -142,7 +142,7 @@ def test_the_points_and_nodes_of_the_pairs_are_listed_once_each() -> None:
 
 
 def test_points_lie_on_the_rod_evenly_from_end_to_end() -> None:
-    T = tangents(S, 5, 2.0)
+    T = tangents(S, 5, 0.5)
     points = points_of(T)
     r = curve_of(T, S[1])
     assert len(points.p) == round(LENGTH / SPACING) + 1

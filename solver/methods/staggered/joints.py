@@ -27,7 +27,7 @@ def _coefficient(square: float) -> tuple[float, float]:
     half = 0.5 * np.sqrt(square)
     cot = np.cos(half) / np.sin(half)
     b = (1.0 - half * cot) / square
-    slope = (0.25 * (1.0 + cot * cot) - 0.25 * cot / half - b) / square
+    slope = (0.125 * (1.0 + cot * cot) - 0.125 * cot / half - b) / square
     return b, slope
 
 

@@ -86,7 +86,7 @@ def problem(term: str, kinds: str, fluid: Fluid | None = None) -> Problem:
     method = StaggeredMethod(scene)
     stages, driven = method.stages, method.driven
     for a in range(N + 2):
-        turn(method.state.quaternion[a], 0.3 * random.normal(size=3), stages.quaternion[STAGE, a])
+        turn(method.state.quaternion[a], 0.6 * random.normal(size=3), stages.quaternion[STAGE, a])
         matrix_of(stages.quaternion[STAGE, a], stages.R[STAGE, a])
     for array in (stages.omega, stages.alpha, stages.V, stages.A, stages.base):
         array[STAGE] = random.normal(size=array[STAGE].shape)

@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install --no-com
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: demo test serve lint bench load fuzz validate lock clean
+.PHONY: demo test serve lint bench load chaos fuzz validate lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -29,6 +29,9 @@ bench: .venv/.runtime  ## cost per Newton iteration and per scene
 
 load: .venv/.runtime  ## what the service bears: pollers, submissions, events, a queue of 10,000 jobs
 	$(BIN)/python -m benchmarks.load
+
+chaos: .venv/.dev  ## faults on purpose, on SQLite and PostgreSQL: what became of every job (an hour or two)
+	$(BIN)/python -m chaos
 
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
 	FUZZ=long $(BIN)/python -m pytest -s tests/service/api/test_fuzz.py

@@ -7,11 +7,13 @@ from typing import Any
 
 from celery import Celery
 from kombu.exceptions import OperationalError
+from redis.exceptions import RedisError
 
 from service.settings import Settings
 
 TASK = "hockle.run_next"
 QUEUE = "hockle"
+BROKEN = (OperationalError, OSError, RedisError)  # the last where Redis answers, but has no room
 ONCE_MORE = {"max_retries": 1, "interval_start": 0}  # a connection may have gone stale
 log = logging.getLogger(__name__)
 
@@ -57,7 +59,7 @@ class Doorbell:
         """Have one worker look for a job; False if the broker could not be reached."""
         try:
             self._celery.send_task(TASK, retry_policy=ONCE_MORE)
-        except (OperationalError, OSError) as error:
+        except BROKEN as error:
             log.warning("the broker took no message, it will be told again: %s", error)
             return False
         return True
@@ -68,7 +70,7 @@ class Doorbell:
             with self._celery.connection_for_write() as connection:
                 connection.ensure_connection(**ONCE_MORE)
                 unanswered = connection.default_channel.queue_declare(QUEUE, passive=False).message_count
-        except (OperationalError, OSError) as error:
+        except BROKEN as error:
             log.warning("the broker cannot be reached, it will be told again: %s", error)
             return
         for _ in range(wanted - unanswered):
@@ -81,7 +83,7 @@ class Doorbell:
             with self._celery.connection_for_write() as connection:
                 connection.ensure_connection(**ONCE_MORE)
                 connection.default_channel  # noqa: B018  # opening it asks the broker
-        except (OperationalError, OSError):
+        except BROKEN:
             return False
         return True
 

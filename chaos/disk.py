@@ -1,0 +1,23 @@
+"""A disk that is soon full: a small file system in memory, where this process may mount one."""
+
+from __future__ import annotations
+
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+SIZE = "300m"
+
+
+@contextmanager
+def small_disk(directory: Path) -> Iterator[bool]:
+    """Mount one at `directory`, which is made, while the block runs; yields whether that could be done."""
+    directory.mkdir(parents=True, exist_ok=True)
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={SIZE},mode=700", "hockle-chaos", str(directory)],
+                             capture_output=True, check=False).returncode == 0  # fmt: skip
+    try:
+        yield mounted
+    finally:
+        if mounted:
+            subprocess.run(["umount", "--lazy", str(directory)], check=True)

@@ -1,0 +1,105 @@
+"""What became of every job of a seed, read from the database and the datasets afterwards."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+
+from sqlalchemy import func, select
+
+from chaos.campaign import Record
+from chaos.cases import digest
+from chaos.watch import Watch
+from service.jobs import ENDED, Database, Job, Registry, Status
+from service.jobs.registry import Selection
+from service.jobs.tables import events
+from service.settings import Settings
+
+MOST_REDONE = 0.10
+ALLOWED = {"completed", "cancelled"}
+"""Outcomes that any job may have, here; others need the fault that explains them."""
+
+
+@dataclass
+class Verdict:
+    """Counts over jobs. All but the first four and the steps must be zero."""
+
+    jobs: int = 0
+    faults: int = 0
+    published: int = 0
+    looks: int = 0
+    lost: int = 0
+    duplicated: int = 0
+    overlaps: int = 0
+    not_identical: int = 0
+    wrong_outcome: int = 0
+    left_over: int = 0
+    steps: int = 0
+    steps_redone: int = 0
+    outcomes: Counter[str] = field(default_factory=Counter)
+
+    @property
+    def redone(self) -> float:
+        """The part of the steps that was computed again."""
+        return self.steps_redone / max(self.steps, 1)
+
+    @property
+    def good(self) -> bool:
+        """Whether all that must be zero is, and little was computed again."""
+        bad = (self.lost, self.duplicated, self.overlaps, self.not_identical, self.wrong_outcome, self.left_over)
+        return not any(bad) and self.redone < MOST_REDONE
+
+    def __add__(self, other: Verdict) -> Verdict:
+        return Verdict(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+
+
+def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[str, str]) -> Verdict:
+    """The verdict on one seed; `expected` are the digests of undisturbed runs by the name of their case."""
+    database = Database(settings.database_url)
+    found = {job.id: job for job in _all_jobs(Registry(database))}
+    verdict = Verdict(jobs=len(found), faults=record.faults.total(), overlaps=watch.overlaps, looks=watch.looks)
+    verdict.lost = sum(job_id not in found for job_id in record.accepted)
+    ends, labels = _ends(database), Counter(job.label for job in found.values())
+    for job in found.values():
+        verdict.lost += job.status not in ENDED
+        verdict.duplicated += ends.get(job.id, 0) > 1 or labels[job.label] > 1
+        verdict.steps += job.reached.steps
+        verdict.steps_redone += job.reached.steps_redone
+        verdict.outcomes[job.outcome] += 1
+        verdict.wrong_outcome += not _explained(job, record)
+        if job.status is Status.SUCCESSFUL and job.dataset is not None:
+            verdict.published += 1
+            name = record.accepted.get(job.id)
+            made = digest(settings.datasets / job.dataset.file)
+            verdict.not_identical += made not in ([expected[name]] if name else expected.values())
+    named = {job.dataset.file for job in found.values() if job.dataset}
+    verdict.left_over = len({path.name for path in settings.datasets.iterdir()} ^ named)
+    database.close()
+    return verdict
+
+
+def _explained(job: Job, record: Record) -> bool:
+    """Whether the job may have ended so, after what was done."""
+    if job.id in record.starved:
+        return job.outcome in ("out_of_memory", "cancelled", "worker_lost")
+    if job.outcome == "worker_lost":
+        return job.id in record.poisoned or job.fruitless >= 3
+    if job.outcome in ("disk_full", "dataset_not_written"):
+        return record.faults["fill_disk"] > 0
+    return job.outcome in ALLOWED
+
+
+def _all_jobs(registry: Registry) -> list[Job]:
+    page = registry.page(200)
+    found = page.jobs
+    while page.next is not None:
+        page = registry.page(200, Selection(after=page.next))
+        found += page.jobs
+    return found
+
+
+def _ends(database: Database) -> dict[str, int]:
+    ended = select(events.c.job_id, func.count().label("number")).where(events.c.kind == "ended")
+    with database.reading() as connection:
+        return {row.job_id: row.number for row in connection.execute(ended.group_by(events.c.job_id))}

@@ -1,0 +1,49 @@
+"""A short faults campaign on each database: every job ends exactly once, as if nothing had happened."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from chaos.campaign import environment, run_seed
+from chaos.cases import cases, undisturbed
+from chaos.faults import (
+    double_messages,
+    kill_at_rename,
+    kill_child,
+    lose_message,
+    stop_child_past_its_lease,
+    tear_checkpoint,
+    wipe_broker,
+)
+from chaos.judge import judge
+from chaos.postgres import binaries
+from hockle.broker import redis_binary
+
+JOBS = FAULTS = 4
+QUICK = (kill_child, stop_child_past_its_lease, wipe_broker, double_messages, lose_message, tear_checkpoint,
+         kill_at_rename)  # fmt: skip
+
+pytestmark = [
+    pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc"),
+    pytest.mark.skipif(redis_binary() is None, reason="no Redis on this machine"),
+]
+
+
+@pytest.mark.parametrize("kind", [
+    "sqlite",
+    pytest.param("postgresql", marks=pytest.mark.skipif(binaries() is None, reason="no PostgreSQL on this machine")),
+])  # fmt: skip
+def test_every_job_ends_exactly_once_whatever_is_killed_lost_or_stopped(kind, tmp_path: Path):
+    known = {name: case for name, case in cases().items() if name in ("short-loop", "free-flight")}
+    expected = {name: undisturbed(case) for name, case in known.items()}
+    with environment(kind, tmp_path / "data") as (settings, server, small):
+        record, watch = run_seed(1, settings, server, small, known, JOBS, FAULTS, QUICK)
+        verdict = judge(record, watch, settings, expected)
+    assert record.all_ended
+    assert verdict.jobs >= JOBS and verdict.published > 0
+    bad = (verdict.lost, verdict.duplicated, verdict.overlaps, verdict.not_identical, verdict.left_over)
+    assert bad == (0, 0, 0, 0, 0), verdict
+    assert verdict.wrong_outcome == 0, verdict

@@ -12,9 +12,11 @@ from typing import TYPE_CHECKING, Any
 from hockle.failure import Failure
 
 if TYPE_CHECKING:
+    from xarray import Dataset
+
     from service.cases import CaseSpec
     from service.results import DatasetWriter
-    from solver import RunFailed, Simulation
+    from solver import Run, RunFailed
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
@@ -48,7 +50,8 @@ def validate(told: argparse.Namespace) -> int:
     """Print what a case would cost, or everything that is wrong with it."""
     spec = _spec(told)
     nodes, steps = spec.numerics.intervals + 1, spec.t_end / spec.numerics.dt_max
-    print(f"{spec.name} is valid: {nodes} nodes, {spec.frames} frames, {steps:.0f} steps or more")
+    least = spec.frames - 1 if spec.analysis == "static" else steps
+    print(f"{spec.name} is valid: {nodes} nodes, {spec.frames} frames, {least:.0f} steps or more")
     return 0
 
 
@@ -90,11 +93,19 @@ def summary(path: Path) -> str:
             lines += [
                 f"  at t = {float(last.time):g} s: Tw {float(last.Tw):.4f}, Wr {float(last.Wr):.4f}, "
                 f"Lk {float(last.Lk):.4f}",
-                f"  energy {stored:.4g} J, balance {float(last.energy_balance):.2g} J",
+                f"  energy {stored:.4g} J, " + _trust(last),
             ]
     return "\n".join(
         [*lines, f"  {path} ({path.stat().st_size / 1e6:.1f} MB, {dataset.sizes['time']} frames)"]
     )
+
+
+def _trust(last: Dataset) -> str:
+    """What a dynamic run's last frame says of its error, or a static one's of its stability."""
+    if "negative_modes" not in last:
+        return f"balance {float(last.energy_balance):.2g} J"
+    modes = int(last.negative_modes)
+    return f"parameter {float(last.parameter):g} s, " + (f"unstable in {modes} directions" if modes else "stable")
 
 
 def _spec(told: argparse.Namespace) -> CaseSpec:
@@ -127,7 +138,7 @@ def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
     return failure
 
 
-def _progress(spec: CaseSpec, simulation: Simulation, writer: DatasetWriter) -> Iterator[dict[str, Any]]:
+def _progress(spec: CaseSpec, simulation: Run, writer: DatasetWriter) -> Iterator[dict[str, Any]]:
     """Write the frames as they come, and tell of each what the progress bar shows."""
     yield {"status": spec.name, "progress": 0.0, "t": 0.0}
     for frame in simulation:

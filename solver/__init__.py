@@ -3,8 +3,10 @@
 from solver.curve import Curve, Vector, constant_vector
 from solver.frame import Frame, Statistics
 from solver.kernel import code_digest
+from solver.methods.statics.ends import check_end
 from solver.outcome import REMEDY, Outcome, RunFailed
 from solver.rod import Rod
+from solver.run import Run
 from solver.scene import (
     FIXED,
     FREE,
@@ -22,6 +24,6 @@ from solver.simulate import Simulation, simulate, warm
 
 __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
-    "Initial", "Numerics", "Outcome", "PointLoad", "Rod", "RunFailed", "Scene", "Simulation", "Statistics",
-    "Vector", "code_digest", "constant_vector", "simulate", "warm",
+    "Initial", "Numerics", "Outcome", "PointLoad", "Rod", "Run", "RunFailed", "Scene", "Simulation", "Statistics",
+    "Vector", "check_end", "code_digest", "constant_vector", "simulate", "warm",
 ]

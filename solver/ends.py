@@ -75,7 +75,7 @@ class DrivenEnd:
             until = component[i + 1].since if i + 1 < len(component) else t
             if condition.kind not in ("rate", "position"):
                 return None
-            total += _travel(condition, min(until, t))
+            total += travel(condition, min(until, t))
             if until >= t:
                 break
         return total
@@ -94,7 +94,7 @@ class DrivenEnd:
             return condition.curve.value(t + dt)
         if condition.kind == "stop":
             return self._stopping_from[i] * (1.0 - _smoothstep((t + dt - condition.since) / condition.within))
-        behind = _travel(condition, t) - float(self.travel[i] - self._travel_at_switch[i])
+        behind = travel(condition, t) - float(self.travel[i] - self._travel_at_switch[i])
         return _rate(condition, t + dt, dt) + gain * behind
 
 
@@ -105,7 +105,7 @@ def _rate(condition: Condition, t: float, dt: float) -> float:
     return condition.curve.derivative(t - 1e-9 * dt)
 
 
-def _travel(condition: Condition, t: float) -> float:
+def travel(condition: Condition, t: float) -> float:
     """The exact displacement or rotation from the time the condition came into force to t."""
     if condition.kind == "rate":
         return condition.curve.integral(t) - condition.curve.integral(condition.since)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import nan
 from typing import NamedTuple
 
 from solver.rod import Array
@@ -31,6 +32,10 @@ class Frame:
     `Tw`, `Wr`, `Lk` in turns (`Wr`, `Lk` NaN if not asked for). `min_gap` (m): smallest surface-to-surface
     distance of points more than the contact's skip of arc apart (NaN without contact); `contacts`: number
     of point pairs that press on each other. `dt` (s) and `newton_iterations`: of the step that ended here.
+
+    Of a static analysis: `parameter` (s), the time in the schedules, which goes back behind a fold while `t`, by how
+    much it has changed, grows; `negative_modes`: in how many directions the energy falls, 0 if the equilibrium is
+    stable. Its works, dissipation and balance are NaN.
     """
 
     t: float
@@ -58,6 +63,8 @@ class Frame:
     contacts: int
     dt: float
     newton_iterations: int
+    parameter: float = nan
+    negative_modes: int = -1
 
 
 @dataclass

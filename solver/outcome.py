@@ -14,6 +14,8 @@ class Outcome(StrEnum):
     ROD_CROSSED_ITSELF = "rod_crossed_itself"
     SHOOTING_LOST_DIGITS = "shooting_lost_digits"
     SINGULAR_SYSTEM = "singular_system"
+    EQUILIBRIUM_LOST = "equilibrium_lost"
+    PATH_TURNED_BACK = "path_turned_back"
 
 
 REMEDY: dict[Outcome, str] = {
@@ -33,6 +35,14 @@ REMEDY: dict[Outcome, str] = {
     Outcome.SINGULAR_SYSTEM: (
         "the linear system is singular: check that the end conditions leave no motion undetermined, and that a "
         "straight rod, which cannot stretch, is not held along its axis at both ends"
+    ),
+    Outcome.EQUILIBRIUM_LOST: (
+        "the branch of equilibria could not be followed: where a symmetric rod buckles, add a small load that says to "
+        "which side; look for ends that ask for more than the rod's length; or let a damped dynamic run come to rest"
+    ),
+    Outcome.PATH_TURNED_BACK: (
+        "the branch of equilibria led back past the start of the schedules: take a smaller t_end, or begin the "
+        "schedules earlier"
     ),
 }
 

@@ -273,6 +273,8 @@ class Scene:
     numerics: Numerics = field(default_factory=Numerics)
     topology: bool = True
     """Whether the frames carry Wr and Lk (O(N^2) each)."""
+    analysis: Literal["dynamic", "static"] = "dynamic"
+    """"static": a branch of equilibria, with time as the parameter of loads and ends."""
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.t_end) and self.t_end > 0):
@@ -282,8 +284,25 @@ class Scene:
         if not (np.isfinite(self.damping) and self.damping >= 0):
             raise ValueError(f"damping must be >= 0 1/s, got {self.damping}")
         _require_finite("gravity", self.gravity)
+        if self.analysis == "static":
+            self._check_statics()
         if self.contact is not None and self.numerics.intervals < 3:
             raise ValueError(f"intervals must be >= 3 with contact, got {self.numerics.intervals}")
         for load in self.points:
             if not 0 <= load.s <= self.rod.length:
                 raise ValueError(f"s of a point load must be in [0, {self.rod.length}] m, got {load.s}")
+
+    def _check_statics(self) -> None:
+        if self.contact is not None:
+            raise ValueError("contact must not be given with a static analysis")
+        if any((*self.initial.velocity, *self.initial.angular_velocity)):
+            raise ValueError("velocity and angular_velocity must be 0 in a static analysis")
+
+    @property
+    def outputs(self) -> list[float]:
+        """The times (s) of the frames, but for that of t = 0."""
+        count = round(self.t_end / self.output_interval)
+        times = [min(k * self.output_interval, self.t_end) for k in range(1, count + 1)]
+        if not times or times[-1] < self.t_end * (1 - 1e-12):
+            times.append(self.t_end)
+        return times

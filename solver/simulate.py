@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
-from time import process_time
-from typing import Any
 
-from solver.checkpoint import Saved, restore, saved
-from solver.frame import Frame, Statistics
+from solver.frame import Frame
 from solver.measures.accounts import Accounts
 from solver.methods.box.method import BoxMethod
 from solver.methods.method import Method
 from solver.methods.staggered.method import StaggeredMethod
+from solver.methods.statics.run import Equilibria
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
 from solver.rod import Array, Rod
+from solver.run import Run
 from solver.scene import Contact, End, Fluid, Initial, Numerics, Scene
 from solver.step_control import CONSISTENT_STEPS, StepControl
 
@@ -27,22 +26,18 @@ FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
 METHODS: dict[str, Callable[[Scene], Method]] = {"box": BoxMethod, "staggered": StaggeredMethod}
 
 
-def simulate(scene: Scene) -> Simulation:
+def simulate(scene: Scene) -> Run:
     """The run of a scene: iterate over it for its frames, from t = 0 to t_end."""
-    return Simulation(scene)
+    return Equilibria(scene) if scene.analysis == "static" else Simulation(scene)
 
 
-class Simulation:
-    """A run: an iterable of `Frame`, once. Raises `RunFailed` where it cannot go on."""
+class Simulation(Run):
+    """Motion, by steps in time."""
 
     def __init__(self, scene: Scene) -> None:
-        self._scene = scene
+        super().__init__(scene)
         self._method: Method = METHODS[scene.numerics.method](scene)
         self._accounts = Accounts(scene, self._method)
-        count = round(scene.t_end / scene.output_interval)
-        self._outputs = [min(k * scene.output_interval, scene.t_end) for k in range(1, count + 1)]
-        if not self._outputs or self._outputs[-1] < scene.t_end * (1 - 1e-12):
-            self._outputs.append(scene.t_end)
         ends = self._method.start.corners() + self._method.end.corners()
         self._control = StepControl(
             scene.numerics, self._method.increment_order, self._method.easy_iterations, self._method.shortest_step,
@@ -50,62 +45,29 @@ class Simulation:
         )
         self._switches = sorted({c.since for e in (scene.start, scene.end)
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
-        self.statistics = Statistics()
-        self.t = 0.0
-        self._frames, self._turns = 0, 0.0
+        self._turns = 0.0
 
     @property
     def s(self) -> Array:
         """Arclengths of the nodes (n,), m."""
         return self._method.s
 
-    def __iter__(self) -> Iterator[Frame]:
-        while not self.finished:
-            frame = self.advance()
-            if frame is not None:
-                yield frame
-
-    @property
-    def finished(self) -> bool:
-        """Whether the last frame has been given."""
-        return self._frames > len(self._outputs)
-
-    def advance(self) -> Frame | None:
-        """Take one step; give the frame where it ends, if one is due there. The first one starts, at t = 0."""
-        if self._frames == 0:
-            warm(self._scene.numerics.method)
-        started = process_time()
-        frame = self._first_frame() if self._frames == 0 else self._next_frame()
-        self.statistics.cpu_time += process_time() - started
-        return frame
-
-    def checkpoint(self) -> Saved:
-        """All that this run remembers, as arrays and numbers by name."""
-        return saved(self)
-
-    def restore(self, checkpoint: Mapping[str, Any]) -> None:
-        """Go on where a run of the same scene, by the same code, was: bit by bit as it would have.
-
-        That scene and code are the same is for the caller to know; ValueError is raised where it shows.
-        """
-        restore(self, checkpoint)
+    def _warm(self) -> None:
+        warm(self._scene.numerics.method)
 
     def _first_frame(self) -> Frame:
         frame = self._accounts.frame(0.0)
         self.t = self._begin()
-        self._frames = 1
         self._turns = frame.Tw + frame.Wr - frame.Lk
         # forces are no part of what is given at t = 0, they follow from it
         return replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
 
-    def _next_frame(self) -> Frame | None:
-        output = self._outputs[self._frames - 1]
+    def _next_frame(self, output: float) -> Frame | None:
         if self.t < output:
             self.t = self._advance(self.t, *self._control.step_from(self.t, self._method.step_limit()))
         if self.t < output:
             return None
         frame = self._accounts.frame(output)
-        self._frames += 1
         before, self._turns = self._turns, frame.Tw + frame.Wr - frame.Lk
         if self._scene.contact is not None and abs(self._turns - before) > 1.0:
             # a rod that passes through itself makes Tw + Wr - Lk jump by 2

@@ -44,7 +44,11 @@ def energy(frame: Frame) -> float:
     )
 
 
-@pytest.mark.parametrize("name", shipped_cases())
+def moving_cases() -> list[str]:
+    return [name for name in shipped_cases() if "static" not in name]
+
+
+@pytest.mark.parametrize("name", moving_cases())
 def test_the_energy_balance_closes(name: str):
     _, frames = run(name)
     height = frames[0].energy_potential
@@ -206,3 +210,13 @@ def test_the_loop_is_held_apart_by_its_contact():
     assert last.energy_contact > 0.0
     assert 0.0 < last.min_gap < frames[0].min_gap / 2
     assert max(abs(f.Tw + f.Wr - frames[0].Tw - frames[0].Wr) for f in frames) < 0.01
+
+
+def test_the_static_elastica_is_eulers_at_every_load():
+    _, frames = run("static-elastica")
+    for alpha, deflection in ((1, 0.301721), (2, 0.493457), (5, 0.713792), (10, 0.810609)):
+        frame = frames[alpha]
+        assert frame.parameter == pytest.approx(alpha)
+        # second order in ds = 0.01, as above
+        assert frame.r[-1, 0] == pytest.approx(deflection, abs=1e-4)
+        assert frame.negative_modes == 0

@@ -15,7 +15,7 @@ from service.jobs.held import HeldJob
 from service.results import DatasetWriter
 from service.results.durable import size_of
 from service.settings import Settings
-from solver import Outcome, RunFailed, Scene, Simulation, code_digest, simulate
+from solver import Outcome, Run, RunFailed, Scene, code_digest, simulate
 from worker import stopping
 from worker.checkpoints import Checkpoint, Checkpoints
 from worker.endings import Ending, OutOfDisk
@@ -73,7 +73,7 @@ class Attempt:
             published = writer.publish(outcome, message, simulation.statistics)
         return Ending(status, outcome, message, Dataset(self._path.name, published.sha256, published.bytes))
 
-    def _compute(self, simulation: Simulation, scene: Scene, writer: DatasetWriter) -> None:
+    def _compute(self, simulation: Run, scene: Scene, writer: DatasetWriter) -> None:
         self._due = time.monotonic() + self._interval
         while not simulation.finished:
             frame = simulation.advance()
@@ -90,7 +90,7 @@ class Attempt:
             if time.monotonic() >= self._due:
                 self._save(simulation, writer)
 
-    def _save(self, simulation: Simulation, writer: DatasetWriter) -> None:
+    def _save(self, simulation: Run, writer: DatasetWriter) -> None:
         """Write a checkpoint, and put off the next one the longer the longer it took.
 
         A run whose checkpoint cannot be written goes on: it may still come to its end.

@@ -14,7 +14,7 @@ from service.cases.ends import build_end
 from service.cases.errors import CaseError, FieldError
 from service.cases.initial import InitialSpec
 from service.cases.rod import RodSpec
-from solver import Curve, Initial, Rod, Scene, Vector
+from solver import Curve, Initial, Rod, Scene, Vector, check_end
 from solver.initial import nodes_at_rest
 
 Part = TypeVar("Part")
@@ -28,6 +28,9 @@ def build_scene(spec: CaseSpec) -> Scene:
     centreline that is not as long as the rod.
     """
     rod = _part("/rod", lambda: _rod(spec.rod))
+    if spec.analysis == "static":
+        _part("/ends/start", lambda: check_end(build_end(spec.ends.start)))
+        _part("/ends/end", lambda: check_end(build_end(spec.ends.end)))
     initial = _part("/initial", lambda: _initial(spec.initial, spec.rod.length))
     if spec.rod.kappa0 == "initial":
         rod = replace(rod, kappa0=_curvature(spec.initial, spec.rod.length, spec.numerics.intervals))
@@ -74,6 +77,7 @@ def _scene(spec: CaseSpec, rod: Rod, initial: Initial) -> Scene:
         contact=spec.contact.build() if spec.contact else None,
         numerics=spec.numerics.build(),
         topology=spec.output.topology,
+        analysis=spec.analysis,
     )
 
 

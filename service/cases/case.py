@@ -65,6 +65,7 @@ class CaseSpec(Spec):
     """One case. All quantities in SI units; s is the arclength from the start, t the time."""
 
     schema_version: Annotated[int, Field(ge=1, le=1)]  # a Literal would take true for 1
+    analysis: Literal["dynamic", "static"] = "dynamic"
     name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=80)] = "unnamed"
     title: Annotated[str, Field(max_length=200)] = ""
     description: Annotated[str, Field(max_length=5000)] = ""
@@ -96,6 +97,12 @@ class CaseSpec(Spec):
         return self
 
     @model_validator(mode="after")
+    def _check_statics(self) -> Self:
+        if self.analysis == "static" and self.contact is not None:
+            raise refusal("contact", None, "must not be given with analysis static")
+        return self
+
+    @model_validator(mode="after")
     def _check_size(self) -> Self:
         if self.output.interval > self.t_end:
             raise refusal("output/interval", self.output.interval, f"must be <= t_end ({self.t_end} s)")
@@ -104,7 +111,7 @@ class CaseSpec(Spec):
             rule = f"must leave at most {MOST_NODE_FRAMES:,} nodes times frames, not {stored:,}"
             raise refusal("output/interval", self.output.interval, rule)
         steps = self.t_end / self.numerics.dt_max
-        if steps > MOST_STEPS:
+        if self.analysis == "dynamic" and steps > MOST_STEPS:
             rule = f"must leave at most {MOST_STEPS:,} steps, not {steps:,.0f}"
             raise refusal("numerics/dt_max", self.numerics.dt_max, rule)
         return self

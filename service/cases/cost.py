@@ -2,6 +2,7 @@
 
     steps   = t_end / dt_max, and no fewer than frames
     seconds = steps (STEP + STEP_NODE n) + frames (FRAME + FRAME_NODE n + WRITHE n^2)        n nodes
+    of statics: steps = 2 frames + 10, seconds = steps STATIC_NODE n + ...
     bytes   = 8 frames n (components of the stored fields), before compression
 
 The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
@@ -19,6 +20,7 @@ from service.cases.case import CaseSpec
 from service.cases.errors import CaseError, FieldError
 
 STEP, STEP_NODE = 130e-6, 6.1e-6
+STATIC_NODE = 26e-6  # four linearisations
 FRAME, FRAME_NODE = 100e-6, 4e-6
 WRITHE = 5.9e-9
 COMPONENTS = {"orientation": 4}  # the others are vectors of three
@@ -39,8 +41,11 @@ def estimate(spec: CaseSpec) -> Cost:
     """The cost of a case, by the model above."""
     nodes, frames = spec.numerics.intervals + 1, spec.frames
     steps = max(ceil(spec.t_end / spec.numerics.dt_max), frames - 1)
+    step = STEP + STEP_NODE * nodes
+    if spec.analysis == "static":
+        steps, step = 2 * frames + 10, STATIC_NODE * nodes
     frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
-    seconds = steps * (STEP + STEP_NODE * nodes) + frames * frame
+    seconds = steps * step + frames * frame
     components = sum(COMPONENTS.get(name, 3) for name in spec.output.fields)
     return Cost(nodes, frames, steps, seconds, 8 * frames * nodes * components)
 

@@ -49,6 +49,8 @@ class Variable:
     long_name: str
     frame: Literal["material", "lab", ""] = ""
     type: Literal["f8", "i4"] = "f8"
+    statics: bool = False
+    """Whether only a static analysis has it."""
 
     @property
     def along_rod(self) -> bool:
@@ -96,9 +98,12 @@ VARIABLES: tuple[Variable, ...] = (
     _number("contacts", "1", "number of point pairs that press on each other", "i4"),
     _number("dt", "s", "length of the time step that ended here"),
     _number("newton_iterations", "1", "Newton iterations of the time step that ended here", "i4"),
+    Variable("parameter", ("time",), "s", "time in the schedules, which may go back", statics=True),
+    Variable("negative_modes", ("time",), "1", "directions in which the energy falls, 0 if stable", "", "i4", True),
 )
 
 
 def stored_variables(spec: CaseSpec) -> tuple[Variable, ...]:
     """The variables of a case's dataset: the fields that it asks for, and every number in time."""
-    return tuple(v for v in VARIABLES if not v.along_rod or v.name in spec.output.fields)
+    asked = (v for v in VARIABLES if not v.along_rod or v.name in spec.output.fields)
+    return tuple(v for v in asked if spec.analysis == "static" or not v.statics)

@@ -91,7 +91,7 @@ class DatasetWriter:
         return {
             "Conventions": "CF-1.11, ACDD-1.3",
             "title": spec.title or spec.name,
-            "summary": spec.description or f"Dynamics of an elastic rod: case {spec.name}.",
+            "summary": spec.description or f"An elastic rod, {spec.analysis} analysis: case {spec.name}.",
             "keywords": "Kirchhoff rod, elastic rod dynamics, self-contact, twist, writhe",
             "source": "hockle, a simulator of Kirchhoff rod dynamics",
             "institution": "hockle",

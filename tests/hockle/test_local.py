@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import service.cases
@@ -54,6 +55,15 @@ def test_a_run_writes_its_dataset_and_sums_it_up(path: Path, capsys: pytest.Capt
     with open_dataset(path) as dataset:
         assert dataset.attrs["outcome"] == "completed"
         assert dataset.sizes == {"time": 6, "s": 21, "body": 3, "lab": 3, "quaternion": 4}
+
+
+def test_a_static_run_tells_of_stability(path: Path, capsys: pytest.CaptureFixture[str]):
+    assert main(["run", "static-elastica", "-o", str(path), "--set", "numerics.intervals=20"]) == 0
+    assert "parameter 10 s, stable" in capsys.readouterr().out
+    with open_dataset(path) as dataset:
+        assert dataset.negative_modes.values.tolist() == [0] * 11
+        assert dataset.parameter.values.tolist() == pytest.approx(list(range(11)))
+        assert np.isnan(dataset.energy_balance).all()
 
 
 def test_the_dataset_is_named_after_the_case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):

@@ -54,3 +54,9 @@ def test_a_case_beyond_the_bound_is_refused_with_what_it_asks_for():
     [fault] = refused.value.errors
     assert (fault.pointer, fault.value) == ("/t_end", 1000.0)
     assert "steps" in fault.rule
+
+
+def test_a_static_analysis_costs_by_its_frames():
+    told = parse_case(apply_settings(load_case("static-elastica"), {"numerics.dt_max": 1e-3}))
+    assert estimate(told).steps == 2 * 11 + 10
+    assert estimate(told).seconds < 1.0

@@ -231,3 +231,17 @@ def test_the_schema_tells_every_field_of_a_case():
     schema = case_schema()
     assert set(small_case()) <= set(schema["properties"])
     assert schema["additionalProperties"] is False
+
+
+@pytest.mark.parametrize(
+    ("settings", "pointer", "rule"),
+    [
+        ({"contact": load_case("short-loop")["contact"]}, "/contact", "analysis static"),
+        ({"ends.end": {"preset": "clamp", "switches": [{"at": 1.0, "f3": 0.0}]}}, "/ends/end", "switches"),
+        ({"initial.velocity": [1.0, 0.0, 0.0]}, "", "velocity"),
+    ],
+)
+def test_what_a_static_analysis_cannot_do_is_refused(settings: dict[str, Any], pointer: str, rule: str):
+    with pytest.raises(CaseError, match=rule) as refused:
+        parse_case(apply_settings(load_case("static-elastica"), settings))
+    assert [fault.pointer for fault in refused.value.errors] == [pointer]

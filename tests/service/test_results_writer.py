@@ -19,6 +19,7 @@ import xarray as xr
 from service.cases import CaseSpec, parse_case
 from service.cases.case import FieldName
 from service.results import VARIABLES, DatasetWriter, Published, durable, netcdf, open_dataset, segments
+from service.results.schema import stored_variables
 from solver import Statistics
 from tests.service.frames import frames, nodes, small_spec
 
@@ -46,7 +47,7 @@ def test_a_dataset_gives_back_every_frame(path: Path):
         assert dataset.time.values.tolist() == [0.5 * i for i in range(7)]
         assert dataset.s.values == pytest.approx(nodes(spec))
         for i, frame in enumerate(frames(spec, 7)):
-            for variable in VARIABLES:
+            for variable in stored_variables(spec):
                 assert np.array_equal(dataset[variable.name][i], variable.of(frame), equal_nan=True), (
                     variable.name
                 )
@@ -69,7 +70,7 @@ def test_a_plain_xarray_opens_it(path: Path):
 def test_every_variable_tells_its_unit_and_meaning(path: Path):
     write(path, small_spec(), 2)
     with open_dataset(path) as dataset:
-        for name in [v.name for v in VARIABLES] + ["time", "s"]:
+        for name in [v.name for v in stored_variables(small_spec())] + ["time", "s"]:
             assert dataset[name].attrs["units"], name
             assert dataset[name].attrs["long_name"], name
         assert dataset.kappa.attrs["frame"] == "material"

@@ -11,7 +11,8 @@ import pytest
 from solver import Condition, Curve, End, Fluid, Frame, Numerics, Scene, simulate
 from solver.scene import FIXED
 from tests.solver.contact.test_self_contact import CONTACT, looped
-from tests.solver.scenes import ARC, ARC_ROD, FIXED_STEPS
+from tests.solver.methods.test_statics import arch, ramp
+from tests.solver.scenes import ARC, ARC_ROD, EJ, FIXED_STEPS, LENGTH
 
 SPIN = Curve.table([0.0, 0.3, 1.0], [0.0, 6.0, 6.0], "smoothstep")
 STOPPED = (Condition("rate", Curve.constant(0.05)), Condition("stop", since=0.45, within=0.1))
@@ -36,6 +37,11 @@ def pressed() -> Scene:
     return looped(replace(CONTACT, k1=3e-6), 0.02, t_end=0.6)
 
 
+def balanced() -> Scene:
+    """A branch of equilibria, past a fold."""
+    return arch(Condition("load", ramp(-10.0 * EJ / LENGTH**2, 10.0)), 6.0, 0.5)
+
+
 def interrupted(scene: Scene, after: int) -> list[Frame]:
     """The frames of a run that is begun anew, and restored, after each `after` steps."""
     found: list[Frame | None] = []
@@ -55,7 +61,7 @@ def assert_same(one: list[Frame], other: list[Frame]) -> None:
             assert np.array_equal(getattr(a, field.name), getattr(b, field.name), equal_nan=True), (a.t, field.name)
 
 
-@pytest.mark.parametrize("make", [switched, shot, pressed])
+@pytest.mark.parametrize("make", [switched, shot, pressed, balanced])
 @pytest.mark.parametrize("after", [1, 3, 10])
 def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], Scene], after: int) -> None:
     assert_same(list(simulate(make())), interrupted(make(), after))

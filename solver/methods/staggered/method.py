@@ -131,7 +131,7 @@ class StaggeredMethod:
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
-        orientation = self._orientations()
+        orientation = orientations_at_nodes(self.state.quaternion)
         omega = self._R @ self.state.omega[:, :, None]
         between = 0.5 * (omega[1:-2] + omega[2:-1])
         omega_lab = np.concatenate([omega[:1], between, omega[-1:]])[:, :, 0]
@@ -179,14 +179,6 @@ class StaggeredMethod:
         bend, _ = self._bend(quaternion)
         return float(np.hypot(bend[:, 0], bend[:, 1]).sum())
 
-    def _orientations(self) -> Array:
-        """Orientations (N + 1, 4) at the nodes: half way between the segments, and those of the ends."""
-        quaternion = self.state.quaternion
-        left, right = quaternion[1:-2], quaternion[2:-1]
-        middle = left + np.sign(np.sum(left * right, axis=1))[:, None] * right
-        middle /= np.linalg.norm(middle, axis=1)[:, None]
-        return np.concatenate([quaternion[:1], middle, quaternion[-1:]])
-
     def _end_velocities(self) -> Array:
         """V (3, 2, 3) of the first and the last node at the stages, lab."""
         stages = self.stages
@@ -224,3 +216,11 @@ class StaggeredMethod:
                 driven.values[i, side] = values
                 driven.dead[i, side] = self.applied.at_end(t + c * dt, s, "lab")
                 driven.kinds[side] = end.kinds
+
+
+def orientations_at_nodes(quaternion: Array) -> Array:
+    """Orientations (N + 1, 4) at the nodes: half way between the segments, and those of the ends."""
+    left, right = quaternion[1:-2], quaternion[2:-1]
+    middle = left + np.sign(np.sum(left * right, axis=1))[:, None] * right
+    middle /= np.linalg.norm(middle, axis=1)[:, None]
+    return np.concatenate([quaternion[:1], middle, quaternion[-1:]])

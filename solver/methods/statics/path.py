@@ -117,6 +117,9 @@ class Path:
                     continue
             self.failed += 1
             length *= 0.5
+        _, solver = self._equations.linearise(point)
+        if solver.singular:
+            raise self._failure(Outcome.SINGULAR_SYSTEM, "a pivot vanished")
         raise self._failure(Outcome.EQUILIBRIUM_LOST, "no step was short enough")
 
     def _accept(self, found: Point, direction: Direction, modes: int, swept: float, length: float) -> None:

@@ -243,3 +243,10 @@ def test_ends_that_do_not_say_where_they_are_are_refused(end: End, request: pyte
 def test_motion_at_the_start_is_refused() -> None:
     with pytest.raises(ValueError, match="velocity"):
         static(initial=Initial.straight(velocity=(1.0, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize("ends", [(End.clamp(), End.clamp()), (End.free(), End.free())], ids=["held twice", "loose"])
+def test_a_rod_without_a_single_equilibrium_ends_by_name(ends: tuple[End, End]) -> None:
+    with pytest.raises(RunFailed) as failure:
+        list(simulate(static(start=ends[0], end=ends[1])))
+    assert failure.value.outcome == Outcome.SINGULAR_SYSTEM

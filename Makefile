@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install --no-com
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: demo test serve lint bench load chaos fuzz validate lock clean
+.PHONY: demo test serve lint bench bench-work-precision load chaos fuzz validate lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -36,12 +36,16 @@ chaos: .venv/.dev  ## faults on purpose, on SQLite and PostgreSQL: what became o
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
 	FUZZ=long $(BIN)/python -m pytest -s tests/service/api/test_fuzz.py
 
+bench-work-precision: .venv/.bench  ## CPU time against error, beside PyElastica and MuJoCo's cable
+	$(BIN)/python -m benchmarks.work_precision
+
 validate: .venv/.runtime  ## published scenes, and what they must show
 	$(BIN)/python -m validation
 
 lock:  ## after a change of a requirements*.in (needs uv)
 	$(LOCK) requirements.in requirements-build.in -o requirements.txt
 	$(LOCK) requirements-dev.in -o requirements-dev.txt
+	$(LOCK) requirements-bench.in -o requirements-bench.txt
 
 clean:  ## the environment and all that was made
 	rm -rf .venv var demo *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
@@ -60,4 +64,9 @@ clean:  ## the environment and all that was made
 .venv/.dev: requirements-dev.txt .venv/.runtime
 	@echo "installing what the tests and checks need"
 	$(PIP) --require-hashes -r requirements-dev.txt
+	@touch $@
+
+.venv/.bench: requirements-bench.txt .venv/.runtime
+	@echo "installing the peers of the benchmark"
+	$(PIP) --require-hashes -r requirements-bench.txt
 	@touch $@

@@ -1,0 +1,1 @@
+"""What is solved: one file a scene, each with `runs()`."""

@@ -105,6 +105,9 @@ class Simulation(Run):
         self._take(t, dt, iterations)
         if not consistent:
             self._control.accepted(dt, increment, iterations)
+            if self._control.stuck:
+                detail = "the motion is faster than the steps, however short"
+                raise RunFailed(Outcome.STEP_TOO_SMALL, self.t, self.statistics.steps, detail)
         if self._switches and self._switches[0] <= target + 1e-12:
             self._switches.pop(0)
             self._method.switch_ends(target)

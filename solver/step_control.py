@@ -7,7 +7,7 @@ from math import ceil
 
 from solver.scene import Numerics
 
-SMALLEST_STEP = 2.0**-26
+SMALLEST_STEP = 2.0**-22
 """In dt_max: a step below it is given up."""
 GROWTH = 1.5
 FIRST_STEP = 2.0**-4
@@ -56,6 +56,11 @@ class StepControl:
             accurate = 0.9 * dt * (self._tolerance / relative_increment) ** self._exponent
             longest = min(longest, max(0.5 * taken, accurate))
         self._wanted = min(self._dt_max, longest)
+
+    @property
+    def stuck(self) -> bool:
+        """Whether accuracy asks for steps below the smallest: at that pace a run would not end."""
+        return self._wanted < self._dt_max * SMALLEST_STEP
 
     def too_coarse(self, relative_increment: float) -> bool:
         """Whether a step's error is so large that it must be taken again."""

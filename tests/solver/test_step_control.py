@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import pytest
 
 from solver import Numerics
@@ -77,3 +79,16 @@ def test_a_step_that_was_refused_is_halved() -> None:
     dt, _ = of.step_from(0.0, 1.0)
     of.rejected(dt)
     assert of.step_from(0.0, 1.0)[0] == pytest.approx(0.5 * dt)
+
+
+def test_a_run_whose_steps_only_shrink_is_stuck() -> None:
+    steps = control(1.0, [1.0])
+    dt, _ = steps.step_from(0.0, inf)
+    for _ in range(60):
+        assert dt > 0.0
+        if steps.stuck:
+            break
+        steps.accepted(dt, 0.3, 3)
+        dt *= 0.6
+    assert steps.stuck
+    assert dt > 1e-8

@@ -45,7 +45,7 @@ validate: .venv/.runtime  ## published scenes, and what they must show
 lock:  ## after a change of a requirements*.in (needs uv)
 	$(LOCK) requirements.in requirements-build.in -o requirements.txt
 	$(LOCK) requirements-dev.in -o requirements-dev.txt
-	$(LOCK) requirements-bench.in -o requirements-bench.txt
+	$(LOCK) --constraint requirements.txt requirements-bench.in -o requirements-bench.txt
 
 clean:  ## the environment and all that was made
 	rm -rf .venv var demo *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis

@@ -37,6 +37,18 @@ def pressed() -> Scene:
     return looped(replace(CONTACT, k1=3e-6), 0.02, t_end=0.6)
 
 
+def staggered() -> Scene:
+    """The switched scene by the staggered method."""
+    numerics = Numerics(method="staggered", intervals=20, dt_max=0.05, increment_tolerance=1e-3)
+    return replace(switched(), numerics=numerics)
+
+
+def staggered_pressed() -> Scene:
+    """The pressed strands by the staggered method."""
+    numerics = Numerics(method="staggered", intervals=40, dt_max=0.02, increment_tolerance=1e-2)
+    return replace(pressed(), numerics=numerics)
+
+
 def balanced() -> Scene:
     """A branch of equilibria, past a fold."""
     return arch(Condition("load", ramp(-10.0 * EJ / LENGTH**2, 10.0)), 6.0, 0.5)
@@ -61,14 +73,15 @@ def assert_same(one: list[Frame], other: list[Frame]) -> None:
             assert np.array_equal(getattr(a, field.name), getattr(b, field.name), equal_nan=True), (a.t, field.name)
 
 
-@pytest.mark.parametrize("make", [switched, shot, pressed, balanced])
+@pytest.mark.parametrize("make", [switched, shot, pressed, staggered, staggered_pressed, balanced])
 @pytest.mark.parametrize("after", [1, 3, 10])
 def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], Scene], after: int) -> None:
     assert_same(list(simulate(make())), interrupted(make(), after))
 
 
-def test_strands_press_in_the_run_that_is_interrupted_in_contact() -> None:
-    *_, last = simulate(pressed())
+@pytest.mark.parametrize("make", [pressed, staggered_pressed])
+def test_strands_press_in_the_run_that_is_interrupted_in_contact(make: Callable[[], Scene]) -> None:
+    *_, last = simulate(make())
     assert last.contacts > 0
 
 

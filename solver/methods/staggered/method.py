@@ -65,9 +65,15 @@ class StaggeredMethod:
         self._place_nodes(R, self.state.omega, self.state.base, self._centres)
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
-        """Try to go from t to t + dt; how it ended and the Newton iterations. Radau needs no other start."""
+        """Try to go from t to t + dt; how it ended and the Newton iterations.
+
+        With `consistent`, from rest: an end that is set going at once gives forces that say nothing of what follows.
+        """
         self._drive(t, dt)
-        self._guess(dt)
+        if consistent:
+            self._guess_rest()
+        else:
+            self._guess(dt)
         self.contact.prepare(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1])
         status, iterations = step(self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self.state,
                                   self.stages, self.contact.touch, self.work)  # fmt: skip
@@ -201,6 +207,12 @@ class StaggeredMethod:
         stages.theta[:] = 0.5 * tau**2 * state.alpha
         stages.shift[:] = tau[:, 0] * state.base[1] + 0.5 * tau[:, 0] ** 2 * state.base[2]
         stages.F[:] = state.F
+
+    def _guess_rest(self) -> None:
+        """Steady motion, and no forces."""
+        self.stages.theta[:] = 0.0
+        self.stages.shift[:] = 0.0
+        self.stages.F[:] = 0.0
 
     def _drive(self, t: float, dt: float) -> None:
         """Write what is given at the stages of a step."""

@@ -97,7 +97,8 @@ def postgres() -> Iterator[Postgres]:
     found = binaries()
     if found is None:
         raise FileNotFoundError("no initdb: install PostgreSQL")
-    directory = Path(tempfile.mkdtemp(prefix="hockle-pg-"))  # a socket's path must be short
+    # a socket's path must be short; and where another user runs it, TMPDIR may be closed to that user
+    directory = Path(tempfile.mkdtemp(prefix="hockle-pg-", dir="/tmp" if os.geteuid() == 0 else None))
     try:
         server = Postgres(found, directory)
         try:

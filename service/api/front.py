@@ -1,4 +1,4 @@
-"""/ is the dashboard; /livez and /readyz say whether the service lives, and whether it can do its work."""
+"""/ is the dashboard; /livez and /readyz (also /healthz) say whether the service lives, and can do its work."""
 
 from __future__ import annotations
 
@@ -39,6 +39,7 @@ async def alive() -> Literal["ok"]:
     return "ok"
 
 
+@router.get("/healthz", include_in_schema=False)
 @router.get("/readyz", tags=["service"], responses={503: {"model": Readiness, "description": "No database"}})
 def ready(parts: InParts, response: Response) -> Readiness:
     """Whether jobs can be taken: 200 with a database, 503 without; a missing broker is told of."""

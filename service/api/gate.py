@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from service.api.parts import Parts
 
 READING = ("GET", "HEAD", "OPTIONS")
-OPEN_TO_ALL = frozenset({"/", "/livez", "/readyz", "/v1/openapi.json"})
+OPEN_TO_ALL = frozenset({"/", "/healthz", "/livez", "/readyz", "/v1/openapi.json"})
 log = logging.getLogger(__name__)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from sqlalchemy.exc import OperationalError
 
 from service.cases import parse_case, shipped_cases
@@ -28,8 +29,9 @@ def test_validation_says_what_a_case_asks_for_and_makes_no_job(client, case):
     assert client.get("/v1/jobs").json()["jobs"] == []
 
 
-def test_health_tells_of_database_and_broker(client):
-    assert client.get("/readyz").json() == {"status": "ok", "database": "ok", "broker": "ok"}
+@pytest.mark.parametrize("path", ["/readyz", "/healthz"])
+def test_health_tells_of_database_and_broker(client, path):
+    assert client.get(path).json() == {"status": "ok", "database": "ok", "broker": "ok"}
 
 
 def test_without_its_broker_the_service_is_degraded_but_there(client, monkeypatch):

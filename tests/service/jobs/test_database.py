@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sqlite3
 import threading
 
 import pytest
@@ -30,6 +31,13 @@ def test_many_processes_may_open_a_new_database_at_once(url):
     assert len(opened) == 6
     for one in opened:
         one.close()
+
+
+def test_opening_waits_for_another_process_that_makes_the_file(tmp_path):
+    with sqlite3.connect(tmp_path / "registry.db", isolation_level=None, check_same_thread=False) as other:
+        other.execute("BEGIN IMMEDIATE")
+        threading.Timer(0.3, lambda: other.execute("COMMIT")).start()
+        Database(f"sqlite:///{tmp_path}/registry.db").close()
 
 
 def test_a_registry_of_a_newer_version_is_refused(database, url):

@@ -22,12 +22,12 @@ QUEUED = 10_000
 HOW = """\
 Two API processes as `hockle serve` starts them, SQLite in WAL mode with synchronous=FULL, on loopback; the clients
 are one process beside them (asyncio with uvloop), on the same cores. Latency is from the write of the request to
-the last byte of the answer. Status: 1000 keep-alive connections, each once a second, out of step. Submissions: 16
+the last byte of the answer. Status: 1000 keep-alive connections, each once a second, out of step. Submissions: 32
 connections, each one after the other, every case another one. These are measured without workers, so that what
-jobs cost is not in them; the rest with the whole of `hockle serve` and one worker. First step: one job at a time,
-from the request to the worker's claim, and to the end of a job of a single step, its dataset published; the first
-step lies between. Events: from the time in `ended` to its arrival at 200 listeners. The load of the machine,
-beside ours, is in the figures."""
+jobs cost is not in them; the rest with the whole of `hockle serve` and one worker, warmed by a job. First step: one
+job at a time, from the request to the worker's claim, and to the end of a job of a single step, its dataset
+published; the first step lies between. Events: from the time in `ended` to its arrival at 200 listeners. The load
+of the machine, beside ours, is in the figures."""
 
 
 def row(name: str, seconds: Sequence[float], aim: str, rate: str = "") -> dict[str, Any]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Engine, create_engine, event, insert, update
+from sqlalchemy.exc import OperationalError
 
 from service.jobs.lifecycle import ENDED, Status, allowed_before
 from service.jobs.migrations import migrate
@@ -89,7 +90,7 @@ def _engine(url: str, reading: bool = False) -> Engine:
     told: dict[str, Any] = {"isolation_level": "AUTOCOMMIT"} if reading else {}
     if not url.startswith("sqlite"):
         return create_engine(url, pool_pre_ping=True, pool_timeout=BUSY, **told)
-    engine = create_engine(url, connect_args={"timeout": BUSY}, pool_timeout=BUSY, **told)
+    engine = create_engine(url, connect_args={"timeout": BUSY if reading else 0.0}, pool_timeout=BUSY, **told)
     event.listen(engine, "connect", _set_up_sqlite)
     if not reading:
         event.listen(engine, "begin", _begin_sqlite)
@@ -98,24 +99,28 @@ def _engine(url: str, reading: bool = False) -> Engine:
 
 def _set_up_sqlite(connection: Any, _record: object) -> None:
     connection.isolation_level = None  # the driver shall begin nothing by itself
-    _use_wal(connection)
+    _patiently(connection.execute, "PRAGMA journal_mode=WAL")
     connection.execute("PRAGMA synchronous=FULL")  # a 202 outlives a power cut
 
 
-def _use_wal(connection: Any) -> None:
-    """SQLite itself does not wait here, though a new file may well be in the hands of another process."""
+def _begin_sqlite(connection: Connection) -> None:
+    """Writers wait where they begin: one that first reads cannot be refused in its middle."""
+    _patiently(connection.exec_driver_sql, "BEGIN IMMEDIATE")
+
+
+def _patiently(execute: Callable[[str], object], statement: str) -> None:
+    """Execute what needs the database for itself as soon as it is free.
+
+    SQLite's own waiting does not serve: it sleeps up to 0.1 s while another process writes again and again, and
+    where the journal mode changes it does not wait at all.
+    """
     deadline = time.monotonic() + BUSY
     while True:
         try:
-            connection.execute("PRAGMA journal_mode=WAL")
-        except sqlite3.OperationalError as error:
-            if error.sqlite_errorcode != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
+            execute(statement)
+        except (sqlite3.OperationalError, OperationalError) as error:
+            if getattr(error, "orig", error).sqlite_errorcode != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
                 raise
-            time.sleep(0.01)
+            time.sleep(0.001)
         else:
             return
-
-
-def _begin_sqlite(connection: Connection) -> None:
-    """Writers queue where they begin: one that first reads cannot be refused in its middle."""
-    connection.exec_driver_sql("BEGIN IMMEDIATE")

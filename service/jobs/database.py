@@ -119,7 +119,8 @@ def _patiently(execute: Callable[[str], object], statement: str) -> None:
         try:
             execute(statement)
         except (sqlite3.OperationalError, OperationalError) as error:
-            if getattr(error, "orig", error).sqlite_errorcode != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
+            code = getattr(getattr(error, "orig", error), "sqlite_errorcode", None)
+            if code != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
                 raise
             time.sleep(0.001)
         else:

@@ -13,6 +13,8 @@ from urllib.parse import urlsplit
 from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
+from service.jobs.job import LEAST_MEMORY, Limits
+
 FILE = "HOCKLE_SETTINGS"
 """The variable that names the settings file (TOML, with the names of the fields below)."""
 
@@ -51,6 +53,7 @@ class Settings:
     `longest_run`: the most computing that a case may ask for, by its estimate. Of one owner: `quota`, the most
     unfinished jobs; `rate`, the requests a second. `require_keys`: ask for API keys on loopback too, as behind a
     proxy. `hosts`: names by which clients know the service, with commas between.
+    `limit_wall`, `limit_memory`, `limit_disk`: the most that one job may use, in seconds and bytes.
     """
 
     data: Path = Path("var")
@@ -65,6 +68,14 @@ class Settings:
     rate: Annotated[float, Positive] = 100.0
     require_keys: bool = False
     hosts: str = ""
+    limit_wall: Annotated[float, Positive] = Limits.wall
+    limit_memory: Annotated[int, Field(ge=LEAST_MEMORY)] = Limits.memory
+    limit_disk: Annotated[int, Positive] = Limits.disk
+
+    @property
+    def limits(self) -> Limits:
+        """What a job may use that asks for no less."""
+        return Limits(self.limit_wall, self.limit_memory, self.limit_disk)
 
     @property
     def database_url(self) -> str:

@@ -37,6 +37,7 @@ class Verdict(BaseModel):
 def validate(_: Submitter, wanted: InWanted, parts: InParts) -> Verdict:
     """Look at a case as a submission would, and say what it would cost."""
     cost = check_cost(wanted.spec, parts.settings.longest_run)
+    wanted.told.limits.within(parts.settings.limits)
     return Verdict(case=wanted.spec.document(), cost=CostDocument(**vars(cost)))
 
 

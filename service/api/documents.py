@@ -21,6 +21,14 @@ class DatasetDocument(BaseModel):
     bytes: int
 
 
+class LimitsDocument(BaseModel):
+    """What a job may use: seconds of running, bytes of memory and of disk."""
+
+    wall: float
+    memory: int
+    disk: int
+
+
 class JobDocument(BaseModel):
     """A job. `progress` goes from 0 to 1, `t` is simulated seconds; `message` says what to do next."""
 
@@ -40,6 +48,7 @@ class JobDocument(BaseModel):
     started: datetime | None
     finished: datetime | None
     case_sha256: str
+    limits: LimitsDocument
     dataset: DatasetDocument | None
     links: dict[str, str]
 
@@ -65,7 +74,7 @@ def document(job: Job) -> JobDocument:
         message=job.message, cancel_requested=job.cancel_requested, attempts=job.attempts,
         created=_instant(job.created), started=job.started and _instant(job.started),
         finished=job.finished and _instant(job.finished), case_sha256=job.case_sha256,
-        dataset=dataset, links=links,
+        limits=LimitsDocument(**vars(job.limits)), dataset=dataset, links=links,
     )
 
 

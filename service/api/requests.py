@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from fastapi import Depends
@@ -10,6 +10,8 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, Validatio
 
 from service.api.bodies import json_object
 from service.cases import CaseError, CaseSpec, FieldError, apply_settings, load_case, parse_case, shipped_cases
+from service.jobs import Limits
+from service.jobs.job import LEAST_MEMORY
 
 SHIPPED = tuple(shipped_cases())
 
@@ -26,6 +28,27 @@ CaseOrName = Annotated[
 ]
 
 
+class LimitsRequest(BaseModel):
+    """What a job may use before it is ended by name, where that is to be less than the operator allows.
+
+    `wall`: seconds of running; `memory` and `disk`: bytes.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+    wall: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
+    memory: Annotated[int, Field(ge=LEAST_MEMORY)] | None = None
+    disk: Annotated[int, Field(gt=0)] | None = None
+
+    def within(self, most: Limits) -> Limits:
+        """The limits that the job gets. Raises CaseError for those beyond `most`."""
+        asked = self.model_dump(exclude_none=True)
+        beyond = [FieldError(f"/limits/{name}", value, f"must be <= {getattr(most, name):g}, which this service allows")
+                  for name, value in asked.items() if value > getattr(most, name)]
+        if beyond:
+            raise CaseError(beyond)
+        return replace(most, **asked)
+
+
 class JobRequest(BaseModel):
     """A case with what belongs to its job, not to its physics.
 
@@ -39,6 +62,7 @@ class JobRequest(BaseModel):
     priority: Annotated[int, Field(ge=-100, le=100)] = 0
     webhook: Annotated[str, Field(max_length=2000, pattern="^https?://")] | None = None
     reuse: bool = True
+    limits: LimitsRequest = LimitsRequest()
 
 
 @dataclass(frozen=True)

@@ -55,12 +55,13 @@ async def submit(
 
 
 def told_submission(wanted: Wanted, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
-    """What the registry is asked for. Raises CaseError if it would cost too much, Problem for its webhook."""
+    """What the registry is asked for. Raises CaseError for its cost or its limits, Problem for its webhook."""
     spec, told = wanted.spec, wanted.told
     check_cost(spec, parts.settings.longest_run)
     if told.webhook is not None and not caller.key:
         raise Problem(422, "webhook_needs_key", "a webhook is signed with the API key that asks for it: send one")
-    new = NewJob(spec.document(), spec.title or spec.name, caller.owner, told.label, told.priority)
+    limits = told.limits.within(parts.settings.limits)
+    new = NewJob(spec.document(), spec.title or spec.name, caller.owner, told.label, told.priority, limits)
     digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest() if key else ""
     return Submission(new, caller.actor, key, digest, told.reuse, told.webhook or "")
 

@@ -146,6 +146,30 @@ def test_what_would_cost_too_much_is_refused_before_it_is_written(settings, case
         assert client.get("/v1/jobs").json()["jobs"] == []
 
 
+def test_a_job_may_ask_for_less_than_the_operator_allows(settings, case):
+    with TestClient(create_app(replace(settings, limit_wall=60.0)), base_url="http://127.0.0.1") as client:
+        asked = client.post("/v1/jobs", json={"case": case, "limits": {"memory": 10**9}}).json()
+        silent = client.post("/v1/jobs", json=case).json()
+    most = {"wall": 60.0, "memory": settings.limit_memory, "disk": settings.limit_disk}
+    assert (asked["limits"], silent["limits"]) == (most | {"memory": 10**9}, most)
+
+
+def test_what_a_client_asked_for_ends_its_job(client, registry, settings, case):
+    job_id = client.post("/v1/jobs", json={"case": case, "limits": {"disk": 1}}).json()["id"]
+    run_next(registry.database, settings)
+    assert client.get(f"/v1/jobs/{job_id}").json()["outcome"] == "disk_limit_exceeded"
+
+
+@pytest.mark.parametrize("where", ["/v1/validate", "/v1/jobs", "/ogc/processes/simulate/execution"])
+def test_more_than_the_operator_allows_is_refused_by_its_name(client, settings, case, where):
+    body = {"case": case, "limits": {"wall": settings.limit_wall + 1, "disk": settings.limit_disk}}
+    before = "/inputs/case" if "ogc" in where else ""
+    answer = client.post(where, json={"inputs": {"case": body}} if before else body)
+    assert problem(answer) == (422, "invalid_case")
+    (error,) = answer.json()["errors"]
+    assert (error["pointer"], error["rule"][:9]) == (f"{before}/limits/wall", "must be <")
+
+
 def test_a_webhook_needs_the_key_that_signs_it(client, case):
     body = {"case": case, "webhook": "https://hooks.example/1"}
     assert problem(client.post("/v1/jobs", json=body)) == (422, "webhook_needs_key")

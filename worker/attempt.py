@@ -9,8 +9,8 @@ from pathlib import Path
 
 from sqlalchemy.exc import DBAPIError
 
-from service.cases import build_scene, parse_case
-from service.jobs import Dataset, Job, Reached, Status
+from service.cases import CaseSpec, build_scene, parse_case
+from service.jobs import Dataset, Drift, Job, Reached, Status
 from service.jobs.held import HeldJob
 from service.results import DatasetWriter
 from service.results.durable import size_of
@@ -18,6 +18,7 @@ from service.settings import Settings
 from solver import Outcome, Run, RunFailed, Scene, code_digest, simulate
 from worker import stopping
 from worker.checkpoints import Checkpoint, Checkpoints
+from worker.drift import drift_of
 from worker.endings import Ending, OutOfDisk
 from worker.lease import Lease
 from worker.lock import JobLock
@@ -71,7 +72,8 @@ class Attempt:
             writer.flush()
             self._check_size()
             published = writer.publish(outcome, message, simulation.statistics)
-        return Ending(status, outcome, message, Dataset(self._path.name, published.sha256, published.bytes))
+        dataset = Dataset(self._path.name, published.sha256, published.bytes)
+        return Ending(status, outcome, message, dataset, self._drift(spec))
 
     def _compute(self, simulation: Run, scene: Scene, writer: DatasetWriter) -> None:
         self._due = time.monotonic() + self._interval
@@ -109,6 +111,15 @@ class Attempt:
     def _check_size(self) -> None:
         if size_of(self._directory) > self._held.job.limits.disk:
             raise OutOfDisk
+
+    def _drift(self, spec: CaseSpec) -> Drift | None:
+        """Of what is published; a run is not lost because it cannot be told."""
+        method = "static" if spec.analysis == "static" else spec.numerics.method
+        try:
+            return drift_of(self._path, method)
+        except (OSError, MemoryError):
+            log.exception("job %s: its drift cannot be read from its dataset", self._held.job.id)
+            return None
 
     def _tell_lost(self, found: Checkpoint | None) -> None:
         """Tell of the steps that were taken already, but after the checkpoint: they are lost with their worker."""

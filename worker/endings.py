@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from service.cases import CaseError
-from service.jobs import Dataset, Job, Status
+from service.jobs import Dataset, Drift, Job, Status
 from solver import Outcome
 from worker.lease import Cancelled, OutOfTime
 
@@ -24,12 +24,13 @@ class OutOfDisk(Exception):
 
 @dataclass(frozen=True)
 class Ending:
-    """The status, the outcome's name, a sentence for the owner, and the dataset if there is one."""
+    """The status, the outcome's name, a sentence for the owner, and the dataset if there is one, with its drift."""
 
     status: Status
     outcome: str
     message: str
     dataset: Dataset | None = None
+    drift: Drift | None = None
 
 
 def ending_of(error: Exception, job: Job, store: Path) -> Ending:

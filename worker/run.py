@@ -72,7 +72,8 @@ def _finish(held: HeldJob, ending: Ending, lease: Lease) -> bool:
     """Write how the job ended, however long the database is away: the lease bounds it."""
     while True:
         try:
-            return held.finish(ending.status, ending.outcome, ending.message, ending.dataset, lease.reached)
+            return held.finish(ending.status, ending.outcome, ending.message, ending.dataset, lease.reached,
+                               ending.drift)
         except DBAPIError as error:
             log.warning("job %s: its end could not be written, trying again: %s", held.job.id, error)
             time.sleep(TRY_AGAIN)

@@ -9,14 +9,14 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Response
 from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, generate_latest
-from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily, Metric
 from prometheus_client.registry import Collector
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.description import problems
 from service.api.parts import InParts, Operator
 from service.jobs.audit import trail
-from service.jobs.measures import Measures, measure
+from service.jobs.measures import BOUNDS, Histogram, Measures, measure
 
 TEXT: dict[int | str, dict[str, object]] = {
     200: {"description": "The metrics", "content": {"text/plain": {"schema": {"type": "string"}}}}
@@ -52,7 +52,7 @@ class Stretch(BaseModel):
 
 @router.get("/metrics", response_class=Response, responses={**TEXT})
 def metrics(parts: InParts, _: Operator) -> Response:
-    """Queue, leases, steps and outcomes, from the registry, in the text format of Prometheus."""
+    """Queue, leases, steps, outcomes and drift, from the registry, in the text format of Prometheus."""
     registry = CollectorRegistry()
     registry.register(_Told(measure(parts.registry.database, parts.settings.lease, time.time())))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
@@ -86,3 +86,14 @@ class _Told(Collector):
         yield GaugeMetricFamily("hockle_lease_age_seconds", "Since the most silent worker renewed", told.lease_age)
         yield CounterMetricFamily("hockle_steps", "Steps of the solver that count", told.steps)
         yield CounterMetricFamily("hockle_steps_redone", "Steps lost and computed again", told.steps_redone)
+        yield _histogram("hockle_drift_topology_turns", "|Tw + Wr - Lk| at the end of a run", told.drift_topology)
+        yield _histogram("hockle_drift_energy_ratio", "Energy balance at the end over the energy that changed its form",
+                         told.drift_energy)
+
+
+def _histogram(name: str, text: str, of_methods: list[Histogram]) -> Metric:
+    family = HistogramMetricFamily(name, text, labels=["method"])
+    for told in of_methods:
+        buckets = [(str(bound), float(below)) for bound, below in zip(BOUNDS, told.below, strict=True)]
+        family.add_metric([told.method], [*buckets, ("+Inf", float(told.count))], told.total)
+    return family

@@ -10,7 +10,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, case, exists, func, select, update
 
 from service.jobs.database import Database
-from service.jobs.job import Dataset, Job, Reached
+from service.jobs.job import Dataset, Drift, Job, Reached
 from service.jobs.lifecycle import Status
 from service.jobs.tables import JOB_COLUMNS, job_of, jobs, owners
 
@@ -87,12 +87,14 @@ class HeldJob:
                 checkpoint_steps=case((farther, reached.steps), else_=jobs.c.checkpoint_steps), **asdict(reached),
             ))  # fmt: skip
 
-    def finish(self, status: Status, outcome: str, message: str, dataset: Dataset | None, reached: Reached) -> bool:
+    def finish(self, status: Status, outcome: str, message: str, dataset: Dataset | None, reached: Reached,
+               drift: Drift | None = None) -> bool:
         """Write how the job ended; False if it is another's now, and nothing was written.
 
         It may be tried again after a failure that leaves open whether it was written.
         """
         told = {f"dataset_{name}": value for name, value in asdict(dataset).items()} if dataset else {}
+        told |= {f"drift_{name}": value for name, value in asdict(drift).items()} if drift else {}
         with self.database.writing() as transaction:
             transaction.change(*self._mine, event="ended", status=status, outcome=outcome, message=message,
                                **told, **asdict(reached))

@@ -25,6 +25,16 @@ class Dataset:
     bytes: int
 
 
+@dataclass(frozen=True)
+class Drift:
+    """How far a run by `method` has drifted from what the physics keeps: |Tw + Wr - Lk| (turn), and its energy
+    balance over the energy that changed its form; None where a run does not tell."""
+
+    method: str
+    topology: float | None = None
+    energy: float | None = None
+
+
 LEAST_MEMORY = 64_000_000
 """Bytes; below, the libraries that compile and solve end the process themselves, without a name for it."""
 

@@ -4,11 +4,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sqlalchemy import func, select
+from sqlalchemy import Column, case, func, select
 
 from service.jobs.database import Database
 from service.jobs.lifecycle import ENDED, Status
 from service.jobs.tables import jobs
+
+BOUNDS = [10.0**exponent for exponent in range(-15, 1)]
+"""Of the histograms: what is drift at all lies anywhere between rounding and one."""
+
+
+@dataclass(frozen=True)
+class Histogram:
+    """Ended runs by one method: how many lie below each of BOUNDS, how many there are, and the sum of their values."""
+
+    method: str
+    below: list[int]
+    count: int
+    total: float
 
 
 @dataclass(frozen=True)
@@ -16,6 +29,7 @@ class Measures:
     """Jobs by status and, of those that ended, by status and outcome; ages in seconds; steps of all jobs together.
 
     `queue_age`: how long the oldest waiting job waits. `lease_age`: how long ago the most silent worker renewed.
+    `drift_topology` (turn) and `drift_energy`: of ended runs, as service.jobs.Drift has them.
     """
 
     by_status: dict[str, int]
@@ -24,6 +38,8 @@ class Measures:
     lease_age: float
     steps: int
     steps_redone: int
+    drift_topology: list[Histogram]
+    drift_energy: list[Histogram]
 
 
 def measure(database: Database, lease: float, now: float) -> Measures:
@@ -45,4 +61,15 @@ def measure(database: Database, lease: float, now: float) -> Measures:
         max(0.0, now - (silent - lease)) if silent is not None else 0.0,
         sum(int(steps) for *_, steps, _ in many),
         sum(int(redone) for *_, redone in many),
+        _histograms(database, jobs.c.drift_topology),
+        _histograms(database, jobs.c.drift_energy),
     )
+
+
+def _histograms(database: Database, column: Column[float]) -> list[Histogram]:
+    """The values of a column by the method of their runs."""
+    below = [func.sum(case((column <= bound, 1), else_=0)) for bound in BOUNDS]
+    query = select(jobs.c.drift_method, func.count(column), func.sum(column), *below).where(column.is_not(None))
+    with database.reading() as connection:
+        found = connection.execute(query.group_by(jobs.c.drift_method).order_by(jobs.c.drift_method)).all()
+    return [Histogram(method, [int(n) for n in below], count, total) for method, count, total, *below in found]

@@ -59,6 +59,9 @@ jobs = Table(
     Column("dataset_file", Text),
     Column("dataset_sha256", String(64)),
     Column("dataset_bytes", BigInteger),
+    Column("drift_method", String(16)),
+    Column("drift_topology", Double),
+    Column("drift_energy", Double),
     Index("jobs_by_status", "status", "id"),
     Index("jobs_by_owner", "owner", "id"),
     Index("jobs_by_case", "case_sha256", "status"),
@@ -126,7 +129,8 @@ webhooks = Table(
     Column("answer", Text, nullable=False, default=""),
 )
 
-JOB_COLUMNS = [column for column in jobs.columns if column.name not in ("case_json", "checkpoint_steps")]
+NOT_OF_THE_JOB = ("case_json", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
+JOB_COLUMNS = [column for column in jobs.columns if column.name not in NOT_OF_THE_JOB]
 
 
 def job_of(row: Mapping[Any, Any]) -> Job:

@@ -17,6 +17,7 @@ from sqlalchemy.exc import OperationalError
 from service.cases import apply_settings, load_case
 from service.jobs import Database, Job, Limits, NewJob, Registry, Status
 from service.jobs.held import HeldJob, claim
+from service.jobs.measures import measure
 from service.jobs.reconciler import beats, take_back
 from service.results import DatasetWriter, open_dataset
 from service.settings import Settings
@@ -91,6 +92,15 @@ def test_a_job_ends_with_a_dataset_whose_hash_its_row_tells(job, registry, setti
         assert dataset.attrs["outcome"] == "completed"
         assert float(dataset.time[-1]) == pytest.approx(0.05)
     assert left_over(settings) == [path]
+
+
+def test_the_registry_learns_how_far_a_run_has_drifted(registry, settings):
+    ended(registry.submit(NewJob(SMALL)), registry, settings)
+    told = measure(registry.database, 1.0, 0.0)
+    (topology,), (energy,) = told.drift_topology, told.drift_energy
+    assert (topology.method, topology.count, energy.method, energy.count) == ("box", 1, "box", 1)
+    assert topology.total < 1e-3  # its twist and writhe hardly change, and Lk not at all
+    assert 0.0 < energy.total < 1.0  # of a coarse mesh, but no more than there is
 
 
 def test_a_message_that_comes_twice_does_nothing(job, registry, settings):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
-from service.jobs import Reached, Status
+from service.jobs import Drift, Reached, Status
 from service.jobs.held import claim
 from service.jobs.measures import measure
 
@@ -37,6 +37,20 @@ def test_ages_are_those_of_the_oldest_job_and_the_most_silent_worker(client, reg
     told = measure(registry.database, 9.0, created + 100.0)
     assert told.queue_age == pytest.approx(100.0)
     assert told.lease_age == pytest.approx(created + 100.0 - started)
+
+
+def test_drift_is_told_by_method(client, registry, case):
+    ids = [client.post("/v1/jobs", json={"case": case, "reuse": False}).json()["id"] for _ in range(4)]
+    drifts = [Drift("box", 2e-5, 3e-4), Drift("box", 2e-3, None), Drift("staggered", 1e-14, 1e-9), None]
+    for job_id, drift in zip(ids, drifts, strict=True):
+        held = claim(registry.database, job_id, 9.0, "here")
+        held.finish(Status.SUCCESSFUL, "completed", "", None, Reached(), drift)
+    told = metrics(client)
+    name = "hockle_drift_topology_turns"
+    counts = [told[f"{name}_bucket{bound}box"] for bound in ("1e-05", "0.0001", "0.001", "0.01", "+Inf")]
+    assert counts == [0, 1, 1, 2, 2]
+    assert (told[f"{name}_countbox"], told[f"{name}_sumbox"]) == (2, pytest.approx(2.02e-3))
+    assert told["hockle_drift_energy_ratio_countbox"] == told[f"{name}_countstaggered"] == 1
 
 
 def test_an_empty_registry_has_no_ages(client):

@@ -4,24 +4,22 @@ from __future__ import annotations
 
 import argparse
 import os
-import platform
 import sys
 import tempfile
 import time
-from collections import Counter
-from dataclasses import fields
 from pathlib import Path
 
 from chaos.campaign import environment, run_seed
 from chaos.cases import cases, undisturbed
-from chaos.judge import Verdict, judge
+from chaos.judge import judge
 from chaos.postgres import binaries
+from chaos.report import Report
 
 KINDS = ("sqlite", "postgresql")
 
 
 def main() -> int:
-    """Run the seeds on each database, and print a table for each."""
+    """Run the seeds on each database, and keep a table for each."""
     parser = argparse.ArgumentParser(prog="python -m chaos", description=__doc__)
     parser.add_argument("--database", choices=[*KINDS, "both"], default="both")
     parser.add_argument("--seeds", type=int, default=10)
@@ -44,8 +42,8 @@ def main() -> int:
 
 def campaign(kind: str, seeds: range, jobs: int, faults: int, known: dict[str, dict[str, object]],
              expected: dict[str, str]) -> bool:
-    """Run the seeds on one kind of database; whether all went well."""
-    total, done = Verdict(), Counter[str]()
+    """Run the seeds on one kind of database, keeping what is known after each; whether all went well."""
+    report = Report(kind)
     for seed in seeds:
         began = time.monotonic()
         with (
@@ -56,22 +54,11 @@ def campaign(kind: str, seeds: range, jobs: int, faults: int, known: dict[str, d
             verdict = judge(record, watch, settings, expected)
             if not verdict.good:
                 print(_logs(settings.data), file=sys.stderr)
-        total, done = total + verdict, done + record.faults
-        print(f"{kind}, seed {seed}: {verdict.jobs} jobs, {verdict.faults} faults, redone {verdict.redone:.1%}, "
-              f"{time.monotonic() - began:.0f} s, {'good' if verdict.good else f'BAD: {verdict}'}", flush=True)
-    print(table(kind, seeds, total, done))
-    return total.good
-
-
-def table(kind: str, seeds: range, total: Verdict, done: Counter[str]) -> str:
-    """What was done, and what became of the jobs."""
-    lines = [f"\n{kind}, seeds {seeds.start} to {seeds.stop - 1}, {platform.machine()}, {os.cpu_count()} cores"]
-    lines += [f"  {name:30} {count:6}" for name, count in done.most_common()]
-    lines += ["  " + "-" * 37]
-    counts = {field.name: getattr(total, field.name) for field in fields(total) if field.name != "outcomes"}
-    lines += [f"  {name:30} {count:6}" for name, count in counts.items()]
-    lines += [f"  outcome {name:22} {count:6}" for name, count in total.outcomes.most_common()]
-    return "\n".join([*lines, f"  {'redone':30} {total.redone:6.1%}", f"  {'GOOD' if total.good else 'BAD'}\n"])
+        report.add(seed, verdict, record.faults, time.monotonic() - began)
+        print(report.lines[-1], flush=True)
+        report.keep()
+    print(report.text())
+    return report.total.good
 
 
 def _logs(data: Path) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,3 +22,16 @@ def small_disk(directory: Path) -> Iterator[bool]:
     finally:
         if mounted:
             subprocess.run(["umount", "--lazy", str(directory)], check=True)
+
+
+def fill(ballast: Path) -> None:
+    """Give all that is free on a disk to a new file."""
+    with ballast.open("wb") as file:
+        size = block = 1 << 27
+        while block >= 1 << 12:
+            try:
+                os.posix_fallocate(file.fileno(), 0, size)
+                size += block
+            except OSError:
+                block >>= 1
+                size -= block

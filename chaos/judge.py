@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, fields
 
 from sqlalchemy import func, select
 
-from chaos.campaign import Record
 from chaos.cases import digest
+from chaos.record import Record
 from chaos.watch import Watch
 from service.jobs import ENDED, Database, Job, Registry, Status
 from service.jobs.registry import Selection
@@ -81,12 +81,12 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
 
 def _explained(job: Job, record: Record) -> bool:
     """Whether the job may have ended so, after what was done."""
-    if job.id in record.starved:
-        return job.outcome in ("out_of_memory", "cancelled", "worker_lost")
     if job.outcome == "worker_lost":
-        return job.id in record.poisoned or job.fruitless >= 3
+        return job.fruitless >= 3
     if job.outcome in ("disk_full", "dataset_not_written"):
-        return record.faults["fill_disk"] > 0
+        return record.faults["fill_disk"] + record.faults["fill_disk_at_consolidation"] > 0
+    if job.id in record.starved:
+        return job.outcome in ("out_of_memory", "cancelled")
     return job.outcome in ALLOWED
 
 

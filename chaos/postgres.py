@@ -9,15 +9,16 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
 import psycopg
 
 START_WITHIN = 60.0
-OPTIONS: Mapping[str, str] = {"listen_addresses": "", "max_connections": "200", "shared_buffers": "32MB"}
+OPTIONS: Mapping[str, str] = {"listen_addresses": "", "max_connections": "200", "shared_buffers": "32MB",
+                              "max_wal_size": "64MB"}
 
 
 def binaries() -> Path | None:
@@ -56,6 +57,11 @@ class Postgres:
                 raise TimeoutError((self.directory / "log").read_text()[-2000:])
             time.sleep(0.05)
 
+    @property
+    def ended(self) -> bool:
+        """Whether it has given up."""
+        return self.process.poll() is not None
+
     def kill(self) -> None:
         """End it as a power cut would, but for what the system keeps."""
         self.process.send_signal(signal.SIGQUIT)
@@ -92,18 +98,22 @@ class Postgres:
 
 
 @contextmanager
-def postgres() -> Iterator[Postgres]:
-    """A server while the block runs. Raises FileNotFoundError where none is installed."""
+def postgres(disk: Callable[[Path], AbstractContextManager[object]] = nullcontext) -> Iterator[Postgres]:
+    """A server while the block runs, in a directory where `disk` is mounted.
+
+    Raises FileNotFoundError where none is installed.
+    """
     found = binaries()
     if found is None:
         raise FileNotFoundError("no initdb: install PostgreSQL")
     # a socket's path must be short; and where another user runs it, TMPDIR may be closed to that user
     directory = Path(tempfile.mkdtemp(prefix="hockle-pg-", dir="/tmp" if os.geteuid() == 0 else None))
     try:
-        server = Postgres(found, directory)
-        try:
-            yield server
-        finally:
-            server.stop()
+        with disk(directory):
+            server = Postgres(found, directory)
+            try:
+                yield server
+            finally:
+                server.stop()
     finally:
         shutil.rmtree(directory, ignore_errors=True)

@@ -66,17 +66,17 @@ class Served:
         if self.process is not None and self.process.poll() is not None:
             self.start()
 
-    def api(self) -> int | None:
-        """The process of the API."""
-        return self._service("service.api")
+    def apis(self) -> list[int]:
+        """The processes of the API."""
+        return self._services("service.api")
 
     def worker(self) -> int | None:
         """The Celery worker, the parent of those that run jobs."""
-        return self._service("worker.app")
+        return next(iter(self._services("worker.app")), None)
 
     def broker(self) -> int | None:
         """Redis."""
-        return self._service("unixsocket:") or self._service("--unixsocket")
+        return next(iter(self._services("unixsocket:") or self._services("--unixsocket")), None)
 
     def children(self) -> list[int]:
         """The processes that run jobs."""
@@ -100,10 +100,10 @@ class Served:
         wait_for(lambda: process.poll() is not None or b"serves at" in self.log.read_bytes()[said:])
         return process.poll() is None
 
-    def _service(self, words: str) -> int | None:
+    def _services(self, words: str) -> list[int]:
         if self.process is None:
-            return None
-        return next((pid for pid in children(self.process.pid) if words in command_line(pid)), None)
+            return []
+        return [pid for pid in children(self.process.pid) if words in command_line(pid)]
 
 
 def wait_for(condition: Callable[[], object], patience: float = PATIENCE) -> bool:

@@ -10,7 +10,7 @@ from pathlib import Path
 from chaos.served import Served
 from service.settings import Settings
 
-EVERY = 0.02
+EVERY = 0.05
 
 
 class Watch:

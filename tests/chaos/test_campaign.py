@@ -9,15 +9,9 @@ import pytest
 
 from chaos.campaign import environment, run_seed
 from chaos.cases import cases, undisturbed
-from chaos.faults import (
-    double_messages,
-    kill_at_rename,
-    kill_child,
-    lose_message,
-    stop_child_past_its_lease,
-    tear_checkpoint,
-    wipe_broker,
-)
+from chaos.faults.broker import double_messages, lose_message, wipe_broker
+from chaos.faults.files import tear_checkpoint
+from chaos.faults.processes import kill_at_rename, kill_child, stop_child_past_its_lease
 from chaos.judge import judge
 from chaos.postgres import binaries
 from hockle.broker import redis_binary

@@ -1,0 +1,21 @@
+"""What was done in one seed, and what is known of its jobs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Record:
+    """What was done in one seed, and what is known of its jobs."""
+
+    seed: int
+    accepted: dict[str, str] = field(default_factory=dict)
+    """Case names by job id, of the jobs that are known to be on disk."""
+    starved: set[str] = field(default_factory=set)
+    """The jobs of too little memory."""
+    poisoned: set[str] = field(default_factory=set)
+    """The jobs whose every process is killed."""
+    faults: Counter[str] = field(default_factory=Counter)
+    all_ended: bool = False

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
+from solver.kernel import kernel
 from solver.rod import Array
 from solver.rotation import quaternion_of
 from solver.scene import Initial
@@ -62,17 +63,26 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
 
 
 def _transport(tangent: Array, first: Array) -> Array:
-    """Parallel transport of `first`, made normal to tangent[0], along unit tangents (n, 3): double reflection."""
-    carried = np.empty_like(tangent)
+    """Parallel transport of `first`, made normal to tangent[0], along unit tangents (n, 3)."""
     normal = first - np.dot(first, tangent[0]) * tangent[0]
     if np.linalg.norm(normal) < 1e-6 * np.linalg.norm(first):
         raise ValueError(f"a1 must not be parallel to the tangent at s = 0, got {first.tolist()}")
+    carried = np.empty_like(tangent)
     carried[0] = normal / np.linalg.norm(normal)
-    for i in range(1, len(tangent)):
-        # the shortest rotation from one tangent to the next
-        axis = np.cross(tangent[i - 1], tangent[i])
-        old = carried[i - 1]
-        new = old + np.cross(axis, old) + np.cross(axis, np.cross(axis, old)) / (1.0 + tangent[i - 1] @ tangent[i])
-        new -= (new @ tangent[i]) * tangent[i]
-        carried[i] = new / np.linalg.norm(new)
+    _carry(tangent, carried)
     return carried
+
+
+@kernel
+def _carry(tangent: Array, carried: Array) -> None:
+    """Turn carried[0] with the shortest rotations from each tangent to the next: x - (x . b) (a + b) / (1 + a . b)."""
+    for i in range(1, len(tangent)):
+        a, b, x = tangent[i - 1], tangent[i], carried[i - 1]
+        along = x[0] * b[0] + x[1] * b[1] + x[2] * b[2]
+        share = along / (1.0 + a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+        square = 0.0
+        for k in range(3):
+            carried[i, k] = x[k] - share * (a[k] + b[k])
+            square += carried[i, k] ** 2
+        for k in range(3):
+            carried[i, k] /= np.sqrt(square)

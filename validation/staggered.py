@@ -65,7 +65,7 @@ def momenta(method: StaggeredMethod) -> tuple[Array, Array]:
 def flight_rows() -> list[Row]:
     """The free flight of the box method's scene: the largest changes, relative to the vectors' lengths."""
     numerics = Numerics(method="staggered", intervals=100, dt_max=0.05, increment_tolerance=3e-6)
-    scene = replace(throw(), numerics=numerics)
+    scene = replace(throw(100, 1.25e-3), numerics=numerics)
     simulation = simulate(scene)
     method = simulation._method
     assert isinstance(method, StaggeredMethod)

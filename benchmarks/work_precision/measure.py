@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from math import nan
 from time import process_time
 
-BOX, STAGGERED, PAPER = "box", "staggered", "paper (box, shooting)"
-METHODS = (BOX, STAGGERED, PAPER)
+BOX, STAGGERED, STATICS, PAPER = "box", "staggered", "statics", "paper (box, shooting)"
+METHODS = (BOX, STAGGERED, STATICS, PAPER)
+"""hockle's; the last is there to be compared with."""
 PYELASTICA, MUJOCO = "PyElastica", "MuJoCo cable"
 AS_IT_COMES = ", clamp as it comes"
 """Ending of a peer's name where its clamp is left half an element inside the rod."""

@@ -1,13 +1,19 @@
-"""The static elastica: rod R under a tip load of 5 EI/L^2, brought to rest by damping."""
+"""The static elastica: rod R under a tip load of 5 EI/L^2. The statics solve for it, all others damp it to rest."""
 
 from __future__ import annotations
 
+from functools import partial
+
+import numpy as np
+
 from benchmarks.work_precision.cantilever import Cantilever, Motion, solve
-from benchmarks.work_precision.measure import Measured, Run
+from benchmarks.work_precision.measure import STATICS, Measured, Run, Stopwatch
 from benchmarks.work_precision.peers import peers
-from benchmarks.work_precision.scenes.ladder import box, ours, staggered
+from benchmarks.work_precision.scenes.ladder import box, or_outcome, ours, staggered
+from solver import Numerics
 from validation.elastica import exact
 from validation.rods import EJ, LENGTH
+from validation.statics import elastica
 
 SCENE = "static elastica"
 ALPHA = 5.0
@@ -22,11 +28,21 @@ def judge(motion: Motion) -> dict[str, Measured]:
     return {"tip": Measured(motion.cpu, max(abs(across - deflection), abs(along - shortening)), across)}
 
 
+def _static(numerics: Numerics) -> dict[str, Measured]:
+    watch = Stopwatch()
+    deflection, shortening, _ = elastica(ALPHA, numerics.intervals)
+    tip = np.array([[deflection, 0.0, 1.0 - shortening]]) * LENGTH
+    return judge(Motion(np.zeros(1), tip, np.zeros(1), watch.read()))
+
+
 def runs() -> list[Run]:
     """By hockle and the peers."""
     boxes = [box(n, 1.0, 0.5) for n in (10, 20, 40, 80, 160)]
     staggereds = [staggered(n, 2.5, 1e-2) for n in (10, 20, 40, 80, 160)]
+    statics = [Run(SCENE, STATICS, f"N {n}", partial(or_outcome, _static, Numerics(intervals=n)))
+               for n in (10, 20, 40, 80, 160)]  # fmt: skip
     return [
+        *statics,
         *ours(SCENE, boxes, staggereds, lambda numerics: judge(solve(CANTILEVER, numerics))),
         *peers(SCENE, CANTILEVER, judge, (10, 20, 40, 80), (20,)),
     ]

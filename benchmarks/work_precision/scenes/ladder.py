@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from benchmarks.work_precision.measure import METHODS, Measured, Run, Skipped
+from benchmarks.work_precision.measure import BOX, PAPER, STAGGERED, Measured, Run, Skipped
 from solver import Numerics, RunFailed
 
 
@@ -27,8 +27,8 @@ def staggered(intervals: int, dt: float, tolerance: float) -> Numerics:
 def ours(scene: str, boxes: list[Numerics], staggereds: list[Numerics],
          go: Callable[[Numerics], dict[str, Measured]]) -> list[Run]:  # fmt: skip
     """Runs of the three methods; the paper's takes the meshes and the steps of the box's."""
-    ladders = dict(zip(METHODS, (boxes, staggereds, [paper(one) for one in boxes]), strict=True))
-    return [Run(scene, solver, label(one), lambda one=one: _or_outcome(go, one))  # type: ignore[misc]
+    ladders = {BOX: boxes, STAGGERED: staggereds, PAPER: [paper(one) for one in boxes]}
+    return [Run(scene, solver, label(one), lambda one=one: or_outcome(go, one))  # type: ignore[misc]
             for solver, ladder in ladders.items() for one in ladder]  # fmt: skip
 
 
@@ -40,7 +40,8 @@ def label(numerics: Numerics) -> str:
     return f"N {numerics.intervals}, {steps}"
 
 
-def _or_outcome(go: Callable[[Numerics], dict[str, Measured]], numerics: Numerics) -> dict[str, Measured]:
+def or_outcome(go: Callable[[Numerics], dict[str, Measured]], numerics: Numerics) -> dict[str, Measured]:
+    """What was measured; raises `Skipped` with the outcome of a run that failed."""
     try:
         return go(numerics)
     except RunFailed as failure:

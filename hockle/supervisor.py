@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
 import fcntl
-import os
 import shutil
 import signal
 import sys
@@ -15,14 +13,13 @@ from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from hockle.broker import answers, redis_binary, redis_child
 from hockle.children import Child
 from hockle.failure import Failure
 from service.access import has_keys
 from service.api.listening import listen
-from service.settings import Settings, from_environment
+from service.settings import Settings
 
 START_WITHIN = 120.0
 APIS = 2
@@ -157,34 +154,6 @@ class Services:
         if len(deaths) == DEATHS and deaths[-1] - deaths[0] < WITHIN:
             raise Failure(f"the {child.name} died {DEATHS} times in {WITHIN:.0f} s; {_last_words(child.log)}")
         print(f"the {child.name} died and is started again; see {child.log}", file=sys.stderr)
-
-
-def register(subparsers: Any) -> None:
-    """Add `hockle serve`."""
-    parser = subparsers.add_parser("serve", help="run API, worker and broker until Ctrl-C")
-    parser.add_argument("--host", default="127.0.0.1", help="any other than loopback needs API keys")
-    parser.add_argument("--port", type=int, default=8000, help="0 for any free one")
-    parser.add_argument("--data", type=Path, help="directory of all it keeps (default HOCKLE_DATA, or ./var)")
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="jobs at the same time")
-    parser.set_defaults(run=serve)
-
-
-def serve(told: argparse.Namespace) -> int:
-    """Run the service until a signal."""
-    settings = from_environment()
-    if told.data is not None:
-        settings = replace(settings, data=told.data)
-    stop_on_signals()
-    with Services(settings, told.host, told.port, told.workers) as services:
-        print(f"hockle serves at {services.address}, data in {settings.data.absolute()}; Ctrl-C stops it",
-              flush=True)
-        try:
-            while True:
-                time.sleep(0.5)
-                services.look_after()
-        except KeyboardInterrupt:
-            print("stopping", flush=True)
-    return 0
 
 
 def stop_on_signals() -> None:

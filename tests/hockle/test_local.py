@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import json
 import os
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -143,3 +145,8 @@ def test_cases_lists_every_shipped_case(capsys: pytest.CaptureFixture[str]):
     lines = capsys.readouterr().out.splitlines()
     titles = service.cases.shipped_cases()
     assert [line.split(maxsplit=1) for line in lines] == [[name, title] for name, title in titles.items()]
+
+
+def test_a_local_command_does_not_load_the_registry():
+    told = "import hockle.cli, sys; hockle.cli.main(['cases']); sys.exit('sqlalchemy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", told], stdout=subprocess.DEVNULL).returncode == 0

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 from sqlalchemy.exc import DBAPIError
 
@@ -15,18 +17,21 @@ from service.jobs.held import HeldJob
 from service.results import DatasetWriter
 from service.results.durable import size_of
 from service.settings import Settings
-from solver import Outcome, Run, RunFailed, Scene, code_digest, simulate
+from solver import Frame, Outcome, Run, RunFailed, Scene, code_digest, simulate
 from worker import stopping
 from worker.checkpoints import Checkpoint, Checkpoints
 from worker.drift import drift_of
-from worker.endings import Ending, OutOfDisk
+from worker.endings import Ending, OutOfDisk, is_full
 from worker.lease import Lease
 from worker.lock import JobLock
 
 log = logging.getLogger(__name__)
+Made = TypeVar("Made")
 
 SHARE = 0.05
 """The part of the running time that checkpoints may take."""
+ROOM_WITHIN, TRY_AGAIN = 600.0, 1.0
+"""Seconds for which a run waits on a full disk before it is given up, and between two tries."""
 
 
 def dataset_file(job: Job) -> str:
@@ -47,7 +52,6 @@ class Attempt:
         self._interval = settings.checkpoint
         self._path = settings.datasets / dataset_file(held.job)
         self._directory = work_directory(settings, held.job.id)
-        self._directory.mkdir(mode=0o700, parents=True, exist_ok=True)
         key = f"{held.job.case_sha256} {code_digest()}"
         self._checkpoints = Checkpoints(self._directory, held.job.epoch, key)
         self._redone = 0
@@ -55,6 +59,7 @@ class Attempt:
 
     def run(self) -> Ending:
         """Compute the frames, write and publish the dataset. Raises whatever else ends a run."""
+        self._with_room(lambda: self._directory.mkdir(mode=0o700, parents=True, exist_ok=True))
         spec = parse_case(self._held.case)
         scene = build_scene(spec)
         simulation = simulate(scene)
@@ -69,9 +74,9 @@ class Attempt:
                 self._compute(simulation, scene, writer)
             except RunFailed as failure:
                 status, outcome, message = Status.FAILED, failure.outcome.value, str(failure)
-            writer.flush()
+            self._with_room(writer.flush)
             self._check_size()
-            published = writer.publish(outcome, message, simulation.statistics)
+            published = self._with_room(lambda: writer.publish(outcome, message, simulation.statistics))
         dataset = Dataset(self._path.name, published.sha256, published.bytes)
         return Ending(status, outcome, message, dataset, self._drift(spec))
 
@@ -80,7 +85,7 @@ class Attempt:
         while not simulation.finished:
             frame = simulation.advance()
             if frame is not None:
-                writer.append(frame)
+                self._keep(writer, frame)
             steps = simulation.statistics.steps
             self._lock.mark(steps)
             self._lease.tell(Reached(min(simulation.t / scene.t_end, 1.0), simulation.t, steps, self._redone))
@@ -91,6 +96,12 @@ class Attempt:
                 raise
             if time.monotonic() >= self._due:
                 self._save(simulation, writer)
+
+    def _keep(self, writer: DatasetWriter, frame: Frame) -> None:
+        try:
+            writer.append(frame)
+        except OSError:  # the frame itself is in memory
+            self._with_room(writer.flush)
 
     def _save(self, simulation: Run, writer: DatasetWriter) -> None:
         """Write a checkpoint, and put off the next one the longer the longer it took.
@@ -107,6 +118,23 @@ class Attempt:
         self._check_size()
         now = time.monotonic()
         self._due = now + max(self._interval, (now - began) / SHARE)
+
+    def _with_room(self, write: Callable[[], Made]) -> Made:
+        """What `write` makes, once the disk has room for it: hours of computing may be worth minutes of waiting.
+
+        Raises what `write` does, and whatever else ends a run.
+        """
+        deadline = time.monotonic() + ROOM_WITHIN
+        while True:
+            try:
+                return write()
+            except OSError as error:
+                if time.monotonic() >= deadline or not is_full(error, self._path.parent):
+                    raise
+            log.warning("job %s waits: the disk is full", self._held.job.id)
+            self._lease.tell(self._lease.reached)
+            stopping.check()
+            time.sleep(TRY_AGAIN)
 
     def _check_size(self) -> None:
         if size_of(self._directory) > self._held.job.limits.disk:

@@ -57,9 +57,14 @@ def ending_of(error: Exception, job: Job, store: Path) -> Ending:
                    f"Please report it with the case and the job id {job.id}")
 
 
+def is_full(error: OSError, store: Path) -> bool:
+    """Whether it is for want of room in `store`; the NetCDF library tells of that without its cause."""
+    return error.errno in FULL or shutil.disk_usage(store).free < LEAST_FREE
+
+
 def _not_written(error: OSError, store: Path) -> Ending:
-    """A full disk by its name; the NetCDF library tells of one without its cause."""
-    if error.errno in FULL or shutil.disk_usage(store).free < LEAST_FREE:
+    """A full disk by its name."""
+    if is_full(error, store):
         return _failed("disk_full", "the disk that holds the datasets is full, and nothing of the run is kept: "
                        "make room and submit the case again")
     return _failed("dataset_not_written",

@@ -58,7 +58,7 @@ class DatasetWriter:
         self._cleanup.close()
 
     def append(self, frame: Frame) -> None:
-        """Take one frame. Raises OSError where it cannot be kept."""
+        """Take one frame. Raises OSError where those so far cannot be written; `flush` tries that again."""
         self._segments.append(frame)
 
     def flush(self) -> list[Segment]:

@@ -19,7 +19,8 @@ from service.jobs import Database, Job, Limits, NewJob, Registry, Status
 from service.jobs.held import HeldJob, claim
 from service.jobs.measures import measure
 from service.jobs.reconciler import beats, take_back
-from service.results import DatasetWriter, open_dataset
+from service.results import DatasetWriter, open_dataset, segments
+from service.results.segments import Segments
 from service.settings import Settings
 from solver import Outcome, RunFailed, simulate
 from worker import attempt, lease, run
@@ -190,14 +191,38 @@ def test_an_end_is_written_though_the_database_was_away(job, registry, settings,
     assert left_over(settings) == [settings.datasets / done.dataset.file]
 
 
-@pytest.mark.parametrize("method", ["append", "publish"])
+WRITES = [(Segments, "flush"), (DatasetWriter, "publish")]
+
+
+@pytest.mark.parametrize(("written", "method"), WRITES)
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])
-def test_a_full_disk_has_a_name_and_leaves_nothing(job, registry, settings, monkeypatch, method, number):
-    monkeypatch.setattr(DatasetWriter, method, raising(OSError(number, "No space left on device")))
+def test_a_disk_that_stays_full_has_a_name_and_leaves_nothing(job, registry, settings, monkeypatch, written, method,
+                                                              number):
+    monkeypatch.setattr(segments, "SEGMENT_BYTES", 1)
+    monkeypatch.setattr(attempt, "ROOM_WITHIN", 0.0)
+    monkeypatch.setattr(written, method, raising(OSError(number, "No space left on device")))
     done = ended(job, registry, settings)
     assert (done.status, done.outcome, done.dataset) == (Status.FAILED, "disk_full", None)
     assert "make room" in done.message
     assert left_over(settings) == []
+
+
+@pytest.mark.parametrize(("written", "method"), WRITES)
+def test_a_disk_that_is_full_for_a_while_costs_nothing(job, registry, settings, monkeypatch, written, method):
+    write, failures = getattr(written, method), iter([OSError(errno.ENOSPC, "No space left on device")] * 3)
+
+    def at_last(self, *told):
+        for failure in failures:
+            raise failure
+        return write(self, *told)
+
+    monkeypatch.setattr(segments, "SEGMENT_BYTES", 1)
+    monkeypatch.setattr(attempt, "TRY_AGAIN", 0.0)
+    monkeypatch.setattr(written, method, at_last)
+    done = ended(job, registry, settings)
+    assert (done.status, done.attempts) == (Status.SUCCESSFUL, 1)
+    with open_dataset(settings.datasets / done.dataset.file) as dataset:
+        assert dataset.sizes["time"] == 6
 
 
 def test_another_fault_of_the_disk_is_not_called_full(job, registry, settings, monkeypatch):

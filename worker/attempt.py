@@ -157,4 +157,7 @@ class Attempt:
         if self._held.job.epoch > 1:
             self._lock.mark(steps)
             self._lease.tell(replace(before, steps=steps, steps_redone=self._redone))
-            self._lease.renew()
+            try:
+                self._lease.renew()
+            except DBAPIError as error:  # the lease goes on trying by itself
+                log.warning("job %s: what was lost cannot be told yet: %s", self._held.job.id, error)

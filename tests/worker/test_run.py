@@ -8,6 +8,7 @@ import itertools
 import logging
 import os
 import signal
+import threading
 import time
 from pathlib import Path
 
@@ -189,6 +190,20 @@ def test_an_end_is_written_though_the_database_was_away(job, registry, settings,
     done = ended(job, registry, settings)
     assert done.status is Status.SUCCESSFUL
     assert left_over(settings) == [settings.datasets / done.dataset.file]
+
+
+def test_a_job_begins_again_though_the_database_is_away_just_then(job, registry, settings, monkeypatch):
+    claim(registry.database, job.id, 9.0, "a worker that hands it back").release()
+    renew = HeldJob.renew
+
+    def only_from_its_own_thread(self, *told):
+        if threading.current_thread() is threading.main_thread():
+            raise OperationalError("x", {}, Exception("database or disk is full"))
+        return renew(self, *told)
+
+    monkeypatch.setattr(HeldJob, "renew", only_from_its_own_thread)
+    done = ended(job, registry, settings)
+    assert (done.status, done.epoch) == (Status.SUCCESSFUL, 2)
 
 
 WRITES = [(Segments, "flush"), (DatasetWriter, "publish")]

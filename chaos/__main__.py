@@ -14,6 +14,7 @@ from chaos.cases import cases, undisturbed
 from chaos.judge import judge
 from chaos.postgres import binaries
 from chaos.report import Report
+from hockle.supervisor import stop_on_signals
 
 KINDS = ("sqlite", "postgresql")
 
@@ -27,6 +28,7 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=50, help="at least so many in each seed")
     parser.add_argument("--faults", type=int, default=50, help="at least so many in each seed")
     told = parser.parse_args()
+    stop_on_signals()  # and clean up then
     os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     known = cases()
     expected = {name: undisturbed(case) for name, case in known.items()}

@@ -10,6 +10,7 @@ class Outcome(StrEnum):
 
     COMPLETED = "completed"
     CANCELLED = "cancelled"
+    NO_CONSISTENT_START = "no_consistent_start"
     STEP_TOO_SMALL = "step_too_small"
     ROD_CROSSED_ITSELF = "rod_crossed_itself"
     SHOOTING_LOST_DIGITS = "shooting_lost_digits"
@@ -21,6 +22,10 @@ class Outcome(StrEnum):
 REMEDY: dict[Outcome, str] = {
     Outcome.COMPLETED: "",
     Outcome.CANCELLED: "submit the case again to run it to its end",
+    Outcome.NO_CONSISTENT_START: (
+        "no forces were found with which the rod could start: do not hold or drive a straight rod, which cannot "
+        "stretch, along its axis at both ends; let loads and ends begin gently; or use more intervals"
+    ),
     Outcome.STEP_TOO_SMALL: (
         "no step was short enough: look for a load or an end that jumps, soften the contact law, or use "
         "more intervals"

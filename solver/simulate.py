@@ -85,7 +85,7 @@ class Simulation(Run):
                 return self._advance(dt, dt, 2 * dt, consistent=True)
             self.statistics.failed_steps += 1
         refusal, outcome = self._judge(status, 0.0)
-        raise RunFailed(outcome, 0.0, 0, f"no consistent start was found: {refusal}")
+        raise RunFailed(outcome if outcome in FATAL else Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
 
     def _advance(self, t: float, dt: float, target: float, consistent: bool = False) -> float:
         """Take one step from t, as long as dt or shorter if need be; return the time it reached."""

@@ -12,9 +12,10 @@ SMALLEST_STEP = 2.0**-22
 GROWTH = 1.5
 FIRST_STEP = 2.0**-4
 """In dt_max: the step after the start and after each switch of an end condition."""
-CONSISTENT_STEPS = (2.0**-14, 2.0**-10, 2.0**-6, 2.0**-2)
-"""In dt_max: backward Euler steps that find consistent accelerations and forces at the start; the longer ones are
-tried where a shape violates its end conditions, so that a boundary layer has to form within the first interval."""
+CONSISTENT_STEPS = (2.0**-14, 2.0**-18, 2.0**-22, 2.0**-10, 2.0**-6, 2.0**-2)
+"""In dt_max: steps that find consistent accelerations and forces at the start. The shorter ones are tried where a rod
+is let go with a stress that its ends do not bear; the longer ones where a shape violates its end conditions, so that a
+boundary layer has to form within the first interval."""
 
 
 class StepControl:

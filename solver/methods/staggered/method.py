@@ -16,8 +16,9 @@ from solver.methods.staggered.energies import energies, stage_powers, twist
 from solver.methods.staggered.initial import chain_of, lay_out
 from solver.methods.staggered.joints import bend_joints
 from solver.methods.staggered.motion import extrapolate, follow_segments
-from solver.methods.staggered.newton import Scheme, Work, estimate_error, finish, step
+from solver.methods.staggered.newton import LARGEST_ITERATIONS, Scheme, Work, estimate_error, finish, step
 from solver.methods.staggered.segments import Driven
+from solver.methods.status import CONVERGED
 from solver.rod import Array, sample
 from solver.rotation import matrix_of, rotate_back
 from solver.scene import Scene
@@ -77,6 +78,11 @@ class StaggeredMethod:
         self.contact.prepare(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1])
         status, iterations = step(self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self.state,
                                   self.stages, self.contact.touch, self.work)  # fmt: skip
+        if consistent and iterations == LARGEST_ITERATIONS and status != CONVERGED:
+            # an end that is let go turns at once, however short the step: go on from there, with new tangents
+            status, more = step(self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self.state,
+                                self.stages, self.contact.touch, self.work)  # fmt: skip
+            iterations += more
         return int(status), int(iterations)
 
     def relative_increment(self, dt: float) -> float:

@@ -203,7 +203,7 @@ def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, 
             move(state, stages, scheme.inverse, dt, chain.h)
             evaluate(chain, loads, driven, stages, touch, work)
             return CONVERGED, iteration
-        if before > 0.0 and rate > 2.0 and fraction == 1.0:
+        if iteration > 2 and before > 0.0 and rate > 2.0 and fraction == 1.0:
             return STALLED, iteration
         before = size if fraction == 1.0 else 0.0
     return STALLED, LARGEST_ITERATIONS

@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install --no-com
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: demo test serve lint bench bench-work-precision load chaos fuzz validate lock clean
+.PHONY: demo test serve lint bench bench-work-precision load chaos fuzz stress validate lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -35,6 +35,9 @@ chaos: .venv/.dev  ## faults on purpose, on SQLite and PostgreSQL: what became o
 
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
 	FUZZ=long $(BIN)/python -m pytest -s tests/service/api/test_fuzz.py
+
+stress: .venv/.dev  ## the solver at its limits: sweeps, maps and 10,000 random cases (half an hour)
+	$(BIN)/python -m stress
 
 bench-work-precision: .venv/.bench  ## CPU time against error, beside PyElastica and MuJoCo's cable
 	$(BIN)/python -m benchmarks.work_precision

@@ -13,6 +13,7 @@ class Outcome(StrEnum):
     NO_CONSISTENT_START = "no_consistent_start"
     STEP_TOO_SMALL = "step_too_small"
     ROD_CROSSED_ITSELF = "rod_crossed_itself"
+    MESH_TOO_COARSE = "mesh_too_coarse"
     SHOOTING_LOST_DIGITS = "shooting_lost_digits"
     SINGULAR_SYSTEM = "singular_system"
     EQUILIBRIUM_LOST = "equilibrium_lost"
@@ -33,6 +34,10 @@ REMEDY: dict[Outcome, str] = {
     Outcome.ROD_CROSSED_ITSELF: (
         "the rod passed through itself: use more intervals, a finer contact spacing, a stiffer contact law, "
         "or a smaller dt_max"
+    ),
+    Outcome.MESH_TOO_COARSE: (
+        "the rod bends or twists by more than half a turn from one node to the next, which no longer says how it lies: "
+        "use more intervals, or look for a load or an end that is far too strong for the rod"
     ),
     Outcome.SHOOTING_LOST_DIGITS: (
         "shooting cannot resolve this rod at this step: use linear_solver block_elimination, or a larger dt_max"

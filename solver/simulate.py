@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
+from math import pi
+
+import numpy as np
 
 from solver.frame import Frame
 from solver.measures.accounts import Accounts
@@ -68,6 +71,10 @@ class Simulation(Run):
         if self.t < output:
             return None
         frame = self._accounts.frame(output)
+        turn = float(np.linalg.norm(frame.kappa, axis=1).max() * (self.s[1] - self.s[0]))
+        if not turn < pi:
+            told = f"by {turn:.3g} rad within an interval"
+            raise RunFailed(Outcome.MESH_TOO_COARSE, self.t, self.statistics.steps, told)
         before, self._turns = self._turns, frame.Tw + frame.Wr - frame.Lk
         if self._scene.contact is not None and abs(self._turns - before) > 1.0:
             # a rod that passes through itself makes Tw + Wr - Lk jump by 2

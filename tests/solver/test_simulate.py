@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from solver import (
+    Condition,
     Curve,
     DistributedLoad,
     End,
@@ -30,7 +31,7 @@ from solver import (
 )
 from solver.outcome import REMEDY
 from solver.rod import Array
-from tests.solver.scenes import ARC, ARC_ROD, EJ, LENGTH, ROD, fixed_steps, last
+from tests.solver.scenes import ARC, ARC_ROD, EJ, LENGTH, ROD, fixed_steps, last, turned_clamp
 
 ZERO = Curve.constant(0.0)
 CRITICAL = 1.6
@@ -172,6 +173,17 @@ def test_a_rod_held_along_its_axis_is_told_so_where_a_load_hides_it(method: Lite
     with pytest.raises(RunFailed, match="along its axis at both ends") as caught:
         list(simulate(scene))
     assert caught.value.t == 0.0
+
+
+@pytest.mark.parametrize("method", ["box", "staggered"])
+def test_a_rod_that_curls_up_between_two_nodes_is_refused_by_name(method: Literal["box", "staggered"]) -> None:
+    """Found under stress: the box method made energy out of such bends, and said that it was done."""
+    turn = turned_clamp(Condition("position", Curve.table([0.0, 1.0], [0.0, 40.0])))
+    scene = Scene(ARC_ROD, ARC, End.clamp(), turn, 1.0, 0.05, damping=5.0,
+                  numerics=Numerics(method=method, intervals=5, dt_max=0.05))  # fmt: skip
+    with pytest.raises(RunFailed, match="rad within an interval") as caught:
+        list(simulate(scene))
+    assert caught.value.outcome is Outcome.MESH_TOO_COARSE
 
 
 @pytest.mark.parametrize("outcome", [o for o in Outcome if o is not Outcome.COMPLETED])

@@ -1,0 +1,96 @@
+"""One run of a stress test, in the process that calls it: stepped, watched and judged."""
+
+from __future__ import annotations
+
+import traceback
+from math import isfinite
+from time import process_time
+
+import numpy as np
+
+from service.cases import build_scene, parse_case
+from solver import REMEDY, Frame, Outcome, Run, RunFailed, Scene, Simulation, simulate, warm
+from stress.books import Books
+from stress.crossing import Crossings
+from stress.ending import FAILURES, Ending, Result, Task
+
+SEVERE = (Ending.NOT_FINITE, Ending.CROSSED)
+"""Faults that no name excuses."""
+PLACES = 11
+"""Of the centreline, equally spaced, that a result keeps."""
+
+
+def run(task: Task) -> Result:
+    """Run a task's case to its end, within its budget, and judge it."""
+    warm(task.case.get("numerics", {}).get("method", "box"))
+    started = process_time()
+    watch: Watch | None = None
+    ending, outcome, detail = Ending.CORRECT, "", ""
+    try:
+        watch = Watch(build_scene(parse_case(task.case)))
+        if not watch.follow(task.steps, started + task.cpu):
+            ending = Ending.OUT_OF_BUDGET
+    except RunFailed as failure:
+        ending, outcome, detail = _named(failure)
+    except Exception:
+        ending, detail = Ending.EXCEPTION, traceback.format_exc(limit=-3)
+    if watch is not None and ending is not Ending.EXCEPTION:
+        watch.books.close()
+        fault = watch.books.fault
+        # a run that fails by name does not claim that its frames are right, only that they are frames
+        if fault is not None and (ending is not Ending.NAMED or fault[0] in SEVERE):
+            ending, detail = fault[0], f"{detail} {fault[1]}".strip()
+    if watch is None:
+        return Result(task.group, task.at, ending, outcome, detail, cpu=process_time() - started, case=task.case)
+    told, books = watch.simulation.statistics, watch.books
+    return Result(
+        task.group, task.at, ending, outcome, detail, watch.simulation.t, told.steps, told.failed_steps,
+        process_time() - started, books.balance, books.stretch, books.turns, r=watch.centreline(),
+        case=task.case if ending in FAILURES else None,
+    )  # fmt: skip
+
+
+def _named(failure: RunFailed) -> tuple[Ending, str, str]:
+    """A failure that says what it is and what to do is a good ending."""
+    told = isfinite(failure.t) and failure.outcome is not Outcome.COMPLETED and REMEDY[failure.outcome] != ""
+    return Ending.NAMED if told else Ending.EXCEPTION, failure.outcome.value, failure.detail
+
+
+class Watch:
+    """A run, and what its frames and steps showed."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.simulation: Run = simulate(scene)
+        self.books = Books(scene)
+        contact = scene.contact
+        self._crossings = None if contact is None else Crossings(float(scene.rod.length), contact.skip)
+        self._last: Frame | None = None
+
+    def follow(self, steps: int, until: float) -> bool:
+        """Step to the end, unless `steps` are taken or the process has used `until` CPU seconds; whether it ended."""
+        while not self.simulation.finished:
+            tried = self.simulation.statistics.steps + self.simulation.statistics.failed_steps
+            if tried >= steps or process_time() > until:
+                return False
+            frame = self.simulation.advance()
+            self._look_for_crossings()
+            if frame is not None:
+                self._last = frame
+                self.books.enter(frame)
+            if self.books.fault is not None and self.books.fault[0] in SEVERE:
+                return True
+        return True
+
+    def centreline(self) -> list[list[float]]:
+        """The last frame's centreline at equally spaced places."""
+        if self._last is None or not np.isfinite(self._last.r).all():
+            return []
+        r = self._last.r
+        at = np.linspace(0.0, len(r) - 1.0, PLACES)
+        return [[float(np.interp(x, np.arange(len(r)), r[:, i])) for i in range(3)] for x in at]
+
+    def _look_for_crossings(self) -> None:
+        if self._crossings is None or not isinstance(self.simulation, Simulation):
+            return
+        if self._crossings.passed(self.simulation._method.fields().r):
+            self.books.fault = Ending.CROSSED, f"between two steps before t = {self.simulation.t:g} s"

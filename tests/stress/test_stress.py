@@ -1,0 +1,132 @@
+"""The stress test itself: what it must notice, and a short version of it."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from service.cases import apply_settings, build_scene, parse_case
+from solver import Frame, Scene, simulate
+from stress import drawn, scenes
+from stress.books import Books
+from stress.crossing import Crossings
+from stress.ending import FAILURES, Ending, Result, Task
+from stress.pool import results
+from stress.run import run
+from stress.sweeps import MAPS, SWEEPS
+
+SEED, SHORT = 20260101, 60
+
+
+@pytest.fixture(scope="module")
+def swung() -> tuple[Scene, list[Frame]]:
+    """A short run that is right."""
+    scene = build_scene(parse_case(apply_settings(scenes.swing(), {"numerics.intervals": 10, "t_end": 0.5})))
+    return scene, list(simulate(scene))
+
+
+def fault(scene: Scene, frames: list[Frame]) -> Ending | None:
+    books = Books(scene)
+    for frame in frames:
+        books.enter(frame)
+    books.close()
+    return books.fault and books.fault[0]
+
+
+def test_the_books_of_a_good_run_are_found_in_order(swung):
+    scene, frames = swung
+    assert fault(scene, frames) is None
+
+
+@pytest.mark.parametrize(
+    ("expected", "falsify"),
+    [
+        (Ending.NOT_FINITE, lambda f: replace(f, v=np.full_like(f.v, np.nan))),
+        (Ending.NOT_FINITE, lambda f: replace(f, energy_kinetic=np.inf)),
+        (Ending.MADE_ENERGY, lambda f: replace(f, energy_balance=0.5 * abs(f.energy_potential))),
+        (Ending.LOST_ENERGY, lambda f: replace(f, energy_balance=-0.5 * abs(f.energy_potential))),
+        (Ending.STRETCHED, lambda f: replace(f, r=1.2 * f.r)),
+        (Ending.STRETCHED, lambda f: replace(f, r=0.8 * f.r)),
+    ],
+)
+def test_a_false_frame_is_noticed(swung, expected, falsify):
+    scene, frames = swung
+    assert fault(scene, [*frames[:-1], falsify(frames[-1])]) is expected
+
+
+@pytest.mark.parametrize(("lost", "expected"), [(0.2, Ending.TURNS_LOST), (2.0, Ending.CROSSED)])
+def test_lost_turns_are_noticed(lost, expected):
+    scene = build_scene(parse_case(apply_settings(scenes.loop(), {"numerics.intervals": 30, "t_end": 0.2})))
+    frames = list(simulate(scene))
+    assert fault(scene, frames) is None
+    assert fault(scene, [*frames[:-1], replace(frames[-1], Tw=frames[-1].Tw + lost)]) is expected
+
+
+@pytest.mark.parametrize(("height", "crossed"), [(0.5, False), (-0.5, True)])
+def test_a_rod_that_passes_through_itself_is_noticed(height, crossed):
+    """A rod that goes there and back above itself, and the way back is moved down."""
+    there = np.array([[x, 0.0, 0.0] for x in np.linspace(-1.0, 1.0, 5)])
+    back = np.array([[0.1, y, 1.0] for y in np.linspace(1.0, -1.1, 5)])
+    moved = back + np.array([0.0, 0.0, height - 1.0])
+    watch = Crossings(4.0, 0.5)
+    assert not watch.passed(np.vstack([there, back]))
+    assert watch.passed(np.vstack([there, moved])) is crossed
+
+
+@pytest.mark.parametrize("height", [0.5, -0.5])
+def test_strands_that_pass_beside_each_other_do_not_cross(height):
+    there = np.array([[x, 0.0, 0.0] for x in np.linspace(-1.0, 1.0, 5)])
+    back = np.array([[1.2, y, 1.0] for y in np.linspace(1.0, -1.1, 5)])
+    watch = Crossings(4.0, 0.5)
+    watch.passed(np.vstack([there, back]))
+    assert not watch.passed(np.vstack([there, back + np.array([0.0, 0.0, height - 1.0])]))
+
+
+def misbehave(task: Task) -> Result:
+    """What a run must not do."""
+    if task.at == ("spins",):
+        while True:
+            pass
+    if task.at == ("dies",):
+        os.abort()
+    return Result(task.group, task.at, Ending.CORRECT)
+
+
+def test_a_run_that_hangs_or_dies_is_told_and_the_others_go_on():
+    names = ["well", "spins", "dies", "well", "well"]
+    found = list(results(misbehave, [Task("", (name,), {}, cpu=0.5) for name in names], grace=0.5))
+    assert sorted((result.at[0], result.ending) for _, result in found) == [
+        ("dies", Ending.CRASH), ("spins", Ending.HANG), *[("well", Ending.CORRECT)] * 3,
+    ]  # fmt: skip
+
+
+def test_a_run_is_stopped_when_its_steps_are_spent():
+    case = scenes.swing()
+    result = run(Task("", (), case, steps=5))
+    assert result.ending is Ending.OUT_OF_BUDGET
+    assert 0.0 < result.t < case["t_end"] and result.steps + result.failed >= 5
+
+
+def test_a_run_that_says_why_it_failed_is_no_failure_of_the_test():
+    held = apply_settings(scenes.swing(), {"ends.start": "clamp", "ends.end": "clamp", "numerics.intervals": 10})
+    result = run(Task("", (), held))
+    assert (result.ending, result.outcome) == (Ending.NAMED, "singular_system")
+
+
+def test_every_case_of_the_sweeps_is_valid():
+    counted = sum(parse_case(task.case).t_end > 0.0 for sweep in (*SWEEPS, *MAPS) for task in sweep.tasks())
+    assert counted > 1000
+
+
+def test_the_same_seed_draws_the_same_cases():
+    assert [drawn.drawn((SEED, i)) for i in range(5)] == [drawn.drawn((SEED, i)) for i in range(5)]
+    assert drawn.drawn((SEED, 0)) != drawn.drawn((SEED, 1))
+
+
+@pytest.mark.parametrize("task", [pytest.param(task, id=str(task.at[1])) for task in drawn.tasks(SHORT, SEED)])
+def test_a_random_case_ends_right_or_by_name(task):
+    result = drawn.draw_and_run(task)
+    assert result.ending not in FAILURES, (result.detail, result.case)

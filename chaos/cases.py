@@ -46,8 +46,8 @@ def undisturbed(case: dict[str, Any]) -> str:
     simulation = simulate(build_scene(spec))
     with tempfile.TemporaryDirectory() as directory:
         path = Path(directory) / "undisturbed.nc"
-        with DatasetWriter(path, spec, simulation.s) as writer:
+        with DatasetWriter(path, spec) as writer:
             for frame in simulation:
                 writer.append(frame)
-            writer.publish("completed", "", simulation.statistics)
+            writer.publish("completed", "", simulation.s, simulation.statistics)
         return digest(path)

@@ -49,9 +49,13 @@ def cases(_: argparse.Namespace) -> int:
 def validate(told: argparse.Namespace) -> int:
     """Print what a case would cost, or everything that is wrong with it."""
     spec = _spec(told)
-    nodes, steps = spec.numerics.intervals + 1, spec.t_end / spec.numerics.dt_max
-    least = spec.frames - 1 if spec.analysis == "static" else steps
-    print(f"{spec.name} is valid: {nodes} nodes, {spec.frames} frames, {least:.0f} steps or more")
+    intervals, dt_max = spec.numerics.intervals, spec.numerics.dt_max
+    if intervals is None or dt_max is None:
+        size = f"{spec.frames} frames, nodes and steps as a tolerance of {spec.numerics.tolerance} needs"
+    else:
+        steps = spec.frames - 1 if spec.analysis == "static" else spec.t_end / dt_max
+        size = f"{intervals + 1} nodes, {spec.frames} frames, {steps:.0f} steps or more"
+    print(f"{spec.name} is valid: {size}")
     return 0
 
 
@@ -88,8 +92,8 @@ def summary(path: Path) -> str:
         ]
         if dataset.sizes["time"]:
             last = dataset.isel(time=-1)
-            energies = [name for name in dataset.data_vars if str(name).startswith("energy_")]
-            stored = sum(float(last[name]) for name in energies if name != "energy_balance")
+            energies = [name for name in map(str, dataset.data_vars) if name.startswith("energy_")]
+            stored = sum(float(last[name]) for name in energies if not name.endswith(("_balance", "_error")))
             lines += [
                 f"  at t = {float(last.time):g} s: Tw {float(last.Tw):.4f}, Wr {float(last.Wr):.4f}, "
                 f"Lk {float(last.Lk):.4f}",
@@ -128,13 +132,13 @@ def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
 
     simulation = simulate(build_scene(spec))
     failure: RunFailed | None = None
-    with DatasetWriter(path, spec, simulation.s) as writer:
+    with DatasetWriter(path, spec) as writer:
         try:
             show(_progress(spec, simulation, writer))
         except RunFailed as failed:
             failure = failed
         outcome = failure.outcome if failure else Outcome.COMPLETED
-        writer.publish(outcome.value, str(failure or ""), simulation.statistics)
+        writer.publish(outcome.value, str(failure or ""), simulation.s, simulation.statistics)
     return failure
 
 

@@ -20,10 +20,12 @@ from solver.scene import (
     PointLoad,
     Scene,
 )
-from solver.simulate import Simulation, simulate, warm
+from solver.simulate import simulate
+from solver.simulation import Simulation, warm
+from solver.verify import Verified, VerifiedFrame
 
 __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
     "Initial", "Numerics", "Outcome", "PointLoad", "Rod", "Run", "RunFailed", "Scene", "Simulation", "Statistics",
-    "Vector", "check_end", "code_digest", "constant_vector", "simulate", "warm",
+    "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest", "constant_vector", "simulate", "warm",
 ]

@@ -18,6 +18,7 @@ class Outcome(StrEnum):
     SINGULAR_SYSTEM = "singular_system"
     EQUILIBRIUM_LOST = "equilibrium_lost"
     PATH_TURNED_BACK = "path_turned_back"
+    TOLERANCE_NOT_REACHED = "tolerance_not_reached"
 
 
 REMEDY: dict[Outcome, str] = {
@@ -53,6 +54,10 @@ REMEDY: dict[Outcome, str] = {
     Outcome.PATH_TURNED_BACK: (
         "the branch of equilibria led back past the start of the schedules: take a smaller t_end, or begin the "
         "schedules earlier"
+    ),
+    Outcome.TOLERANCE_NOT_REACHED: (
+        "pilot runs found no mesh and steps that keep the tolerance: take a larger tolerance, damp waves that the "
+        "loads or the start excite, or give intervals and dt_max instead of the tolerance"
     ),
 }
 

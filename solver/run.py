@@ -14,11 +14,14 @@ from solver.scene import Scene
 
 
 class Run(ABC):
-    """A run: an iterable of `Frame`, once. Raises `RunFailed` where it cannot go on. `t` (s): how far it has come."""
+    """A run: an iterable of `Frame`, once. Raises `RunFailed` where it cannot go on.
 
-    def __init__(self, scene: Scene) -> None:
+    `t` (s): how far it has come; `statistics`: what it has cost, which runs that are parts of one have in common.
+    """
+
+    def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
         self._scene, self._outputs = scene, scene.outputs
-        self.statistics = Statistics()
+        self.statistics = statistics or Statistics()
         self.t = 0.0
         self._frames = 0
 
@@ -28,7 +31,7 @@ class Run(ABC):
         """Arclengths of the nodes (n,), m."""
 
     @abstractmethod
-    def _warm(self) -> None:
+    def warm(self) -> None:
         """Have every kernel compiled."""
 
     @abstractmethod
@@ -53,12 +56,12 @@ class Run(ABC):
     def advance(self) -> Frame | None:
         """Take one step; give the frame where it ends, if one is due there. The first one starts, at t = 0."""
         if self._frames == 0:
-            self._warm()
-        started = process_time()
+            self.warm()
+        started = process_time() - self.statistics.cpu_time
         frame = self._next_frame(self._outputs[self._frames - 1]) if self._frames else self._first_frame()
         if frame is not None:
             self._frames += 1
-        self.statistics.cpu_time += process_time() - started
+        self.statistics.cpu_time = process_time() - started
         return frame
 
     def checkpoint(self) -> Saved:

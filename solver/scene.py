@@ -227,7 +227,11 @@ class Numerics:
 
     `intervals` of equal length along s; `dt_max` the largest step (s); `rho_inf` the spectral radius
     of generalized-alpha at infinite frequency in time, `rho_inf_space` the same along s (1 is the box
-    scheme); `increment_tolerance` bounds each step's error relative to the step's motion.
+    scheme); `increment_tolerance` bounds each step's error relative to the step's motion (None: the method's own).
+
+    With a `tolerance` (staggered method) pilot runs choose the intervals, at most `most_intervals`, and the steps, so
+    that the relative error of r, kappa and the energies is below it. `verify`: the scene also runs with intervals and
+    steps half as long, and the frames have the extrapolated solution and an estimate of its error.
     """
 
     method: Literal["box", "staggered"] = "box"
@@ -236,7 +240,10 @@ class Numerics:
     dt_max: float = 0.1
     rho_inf: float = 0.5
     rho_inf_space: float = 1.0
-    increment_tolerance: float = 0.1
+    increment_tolerance: float | None = None
+    tolerance: float | None = None
+    most_intervals: int = 2000
+    verify: bool = False
 
     def __post_init__(self) -> None:
         intervals: object = self.intervals  # whatever it was promised to be
@@ -249,8 +256,12 @@ class Numerics:
                 raise ValueError(f"{name} must be in [0, 1], got {getattr(self, name)}")
         if self.linear_solver == "shooting" and self.rho_inf_space != 1.0:
             raise ValueError(f"rho_inf_space must be 1 with linear_solver shooting, got {self.rho_inf_space}")
-        if not self.increment_tolerance > 0:
-            raise ValueError(f"increment_tolerance must be > 0, got {self.increment_tolerance}")
+        for name in ("increment_tolerance", "tolerance"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise ValueError(f"{name} must be > 0, got {value}")
+        if self.tolerance is not None and self.method != "staggered":
+            raise ValueError(f"method must be staggered with a tolerance, got {self.method}")
 
 
 @dataclass(frozen=True)
@@ -297,6 +308,8 @@ class Scene:
             raise ValueError("contact must not be given with a static analysis")
         if any((*self.initial.velocity, *self.initial.angular_velocity)):
             raise ValueError("velocity and angular_velocity must be 0 in a static analysis")
+        if self.numerics.tolerance is not None:
+            raise ValueError("tolerance must not be given with a static analysis: give intervals")
 
     @property
     def outputs(self) -> list[float]:

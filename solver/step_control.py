@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from math import ceil
 
-from solver.scene import Numerics
-
 SMALLEST_STEP = 2.0**-22
 """In dt_max: a step below it is given up."""
 GROWTH = 1.5
@@ -21,14 +19,14 @@ boundary layer has to form within the first interval."""
 class StepControl:
     """Chooses steps that end exactly on every corner and output time."""
 
-    def __init__(self, numerics: Numerics, order: float, easy: int, shortest: float, corners: Iterable[float],
-                 outputs: Iterable[float]) -> None:  # fmt: skip
-        """`order`: power of the step with which the relative increment falls; `easy`: iterations of an easy step."""
+    def __init__(self, dt_max: float, tolerance: float, order: float, easy: int, shortest: float,
+                 corners: Iterable[float], outputs: Iterable[float]) -> None:  # fmt: skip
+        """`tolerance`: relative increment aimed at; `order`: power of the step with which it falls; `easy`: iterations
+        of an easy step."""
         self._exponent, self._easy = 1.0 / order, easy
-        self._dt_max = numerics.dt_max
-        self._tolerance = numerics.increment_tolerance
-        self._first = max(numerics.dt_max * FIRST_STEP, shortest)
-        self.smallest = max(numerics.dt_max * SMALLEST_STEP, shortest)
+        self._dt_max, self._tolerance = dt_max, tolerance
+        self._first = max(dt_max * FIRST_STEP, shortest)
+        self.smallest = max(dt_max * SMALLEST_STEP, shortest)
         """The step (s) below which the run is given up."""
         self._wanted = self._first
         self._events = sorted(set(corners) | set(outputs))

@@ -82,10 +82,10 @@ def test_the_papers_cable_meets_the_milestones(tmp_path: Path):
     scene, frames = run("goyal-2003")
     path = tmp_path / "cable.nc"
     simulation = simulate(scene)
-    with DatasetWriter(path, spec, simulation.s) as writer:
+    with DatasetWriter(path, spec) as writer:
         for frame in frames:
             writer.append(frame)
-        writer.publish("completed", "", simulation.statistics)
+        writer.publish("completed", "", simulation.s, simulation.statistics)
     with open_dataset(path) as dataset:
         told = {name: value for name, value, _ in milestones(dataset)}
     # References of two converged implementations; the tolerances are those of the default settings.

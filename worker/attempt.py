@@ -68,7 +68,7 @@ class Attempt:
             simulation.restore(found.state)
         self._tell_lost(found)
         segments = found.segments if found else ()
-        with DatasetWriter(self._path, spec, simulation.s, self._directory, segments) as writer:
+        with DatasetWriter(self._path, spec, self._directory, segments) as writer:
             status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED.value, ""
             try:
                 self._compute(simulation, scene, writer)
@@ -76,7 +76,7 @@ class Attempt:
                 status, outcome, message = Status.FAILED, failure.outcome.value, str(failure)
             self._with_room(writer.flush)
             self._check_size()
-            published = self._with_room(lambda: writer.publish(outcome, message, simulation.statistics))
+            published = self._with_room(lambda: writer.publish(outcome, message, simulation.s, simulation.statistics))
         dataset = Dataset(self._path.name, published.sha256, published.bytes)
         return Ending(status, outcome, message, dataset, self._drift(spec))
 

@@ -33,7 +33,7 @@ def build_scene(spec: CaseSpec) -> Scene:
         _part("/ends/end", lambda: check_end(build_end(spec.ends.end)))
     initial = _part("/initial", lambda: _initial(spec.initial, spec.rod.length))
     if spec.rod.kappa0 == "initial":
-        rod = replace(rod, kappa0=_curvature(spec.initial, spec.rod.length, spec.numerics.intervals))
+        rod = replace(rod, kappa0=_curvature(spec.initial, spec.rod.length, spec.numerics.expected_intervals))
     return _part("", lambda: _scene(spec, rod, initial))
 
 
@@ -75,7 +75,7 @@ def _scene(spec: CaseSpec, rod: Rod, initial: Initial) -> Scene:
         damping=spec.loads.damping,
         fluid=spec.fluid.build() if spec.fluid else None,
         contact=spec.contact.build() if spec.contact else None,
-        numerics=spec.numerics.build(),
+        numerics=spec.numerics.build(spec.frames),
         topology=spec.output.topology,
         analysis=spec.analysis,
     )

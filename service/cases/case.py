@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import ceil
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from service.cases.ends import EndsSpec
 from service.cases.errors import refusal
@@ -21,26 +21,63 @@ ALL_FIELDS: tuple[FieldName, ...] = ("v", "omega", "f", "kappa", "q", "r", "orie
 MOST_NODE_FRAMES = 10_000_000
 """Nodes times stored frames: about 1.8 GB before compression."""
 
+LEAST_INTERVALS = 32
+"""As many a tolerance must be allowed to choose."""
+
 MOST_STEPS = 10_000_000
 """Steps at dt_max; the run may need more, where it has to refine."""
+
+TOLERANCE, INTERVALS, DT_MAX = 1e-3, 200, 0.05
+"""Where nothing is said about the resolution, the first; where something is, the others."""
 
 Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 
 
 class NumericsSpec(Spec):
-    """How the equations are solved: see `solver.Numerics`."""
+    """How the equations are solved: see `solver.Numerics`. Either by `intervals` and `dt_max`, or to a `tolerance`."""
 
     method: Literal["box", "staggered"] = "box"
     linear_solver: Literal["block_elimination", "shooting"] = "block_elimination"
-    intervals: Annotated[int, Field(ge=2, le=20_000)] = 200
-    dt_max: Positive = 0.05
+    intervals: Annotated[int, Field(ge=2, le=20_000)] | None = None
+    dt_max: Positive | None = None
     rho_inf: Fraction = 0.5
     rho_inf_space: Fraction = 1.0
-    increment_tolerance: Positive = 0.1
+    increment_tolerance: Positive | None = None
+    tolerance: Annotated[float, Field(ge=1e-6, le=0.1, allow_inf_nan=False)] | None = None
+    verify: bool = False
 
-    def build(self) -> Numerics:
-        """The solver's settings."""
-        return Numerics(**self.model_dump())
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_in(cls, given: Any) -> Any:
+        """Where nothing is said about the resolution or the box method, a tolerance; else all of the resolution."""
+        if not isinstance(given, dict):
+            return given
+        told = {name: value for name, value in given.items() if value is not None}
+        if "tolerance" in told or (told.keys() <= {"method", "verify"} and told.get("method") != "box"):
+            return {"method": "staggered", "tolerance": TOLERANCE, **told}
+        return {"intervals": INTERVALS, "dt_max": DT_MAX, **told}
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.tolerance is not None:
+            for name in ("intervals", "dt_max", "increment_tolerance"):
+                if getattr(self, name) is not None:
+                    rule = "must not be given beside a tolerance, which chooses it: leave out one of the two"
+                    raise refusal(name, getattr(self, name), rule)
+            if self.method != "staggered":
+                raise refusal("method", self.method, "must be staggered with a tolerance")
+        return self
+
+    @property
+    def expected_intervals(self) -> int:
+        """The intervals, or those that a tolerance often leads to."""
+        return self.intervals or INTERVALS
+
+    def build(self, frames: int) -> Numerics:
+        """The solver's settings for a run of so many frames."""
+        told = self.model_dump(exclude_none=True)
+        most = min(Numerics.most_intervals, MOST_NODE_FRAMES // frames)
+        return Numerics(**told, most_intervals=most)
 
 
 class OutputSpec(Spec):
@@ -75,7 +112,7 @@ class CaseSpec(Spec):
     fluid: FluidSpec | None = None
     loads: LoadsSpec = LoadsSpec()
     contact: ContactSpec | None = None
-    numerics: NumericsSpec = NumericsSpec()
+    numerics: NumericsSpec = Field(default={}, validate_default=True)
     t_end: Positive
     output: OutputSpec
 
@@ -87,6 +124,14 @@ class CaseSpec(Spec):
     def document(self) -> dict[str, Any]:
         """The case as plain JSON data, with every default filled in; `parse_case` gives it back."""
         return self.model_dump(mode="json", exclude_none=True)
+
+    @field_validator("numerics", mode="before")
+    @classmethod
+    def _resolve_statics(cls, given: Any, case: ValidationInfo) -> Any:
+        """A static analysis has no tolerance where nothing is said about the resolution."""
+        if case.data.get("analysis") != "static" or not isinstance(given, dict) or given.get("tolerance") is not None:
+            return given
+        return {"intervals": INTERVALS, **given}
 
     @model_validator(mode="after")
     def _check_positions(self) -> Self:
@@ -100,17 +145,20 @@ class CaseSpec(Spec):
     def _check_statics(self) -> Self:
         if self.analysis == "static" and self.contact is not None:
             raise refusal("contact", None, "must not be given with analysis static")
+        if self.analysis == "static" and self.numerics.tolerance is not None:
+            rule = "must not be given with analysis static: give intervals"
+            raise refusal("numerics/tolerance", self.numerics.tolerance, rule)
         return self
 
     @model_validator(mode="after")
     def _check_size(self) -> Self:
         if self.output.interval > self.t_end:
             raise refusal("output/interval", self.output.interval, f"must be <= t_end ({self.t_end} s)")
-        stored = self.frames * (self.numerics.intervals + 1)
+        stored = self.frames * ((self.numerics.intervals or LEAST_INTERVALS) + 1)
         if stored > MOST_NODE_FRAMES:
             rule = f"must leave at most {MOST_NODE_FRAMES:,} nodes times frames, not {stored:,}"
             raise refusal("output/interval", self.output.interval, rule)
-        steps = self.t_end / self.numerics.dt_max
+        steps = self.t_end / (self.numerics.dt_max or self.output.interval)
         if self.analysis == "dynamic" and steps > MOST_STEPS:
             rule = f"must leave at most {MOST_STEPS:,} steps, not {steps:,.0f}"
             raise refusal("numerics/dt_max", self.numerics.dt_max, rule)

@@ -5,6 +5,9 @@
     of statics: steps = 2 frames + 10, seconds = steps STATIC_NODE n + ...
     bytes   = 8 frames n (components of the stored fields), before compression
 
+With `verify` five times the seconds (the second run has twice the intervals and steps) and twice the bytes. With a
+`tolerance`, whose mesh is not known before the pilot runs: n of the usual mesh, a step a frame, and twice the seconds.
+
 The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
 a step from goyal-2003 to 32 s (about two Newton iterations a step, contact included), WRITHE from the table of writhe.
 Real runs take more steps where the motion is fast, and fewer seconds on a faster core: it is an estimate,
@@ -23,6 +26,7 @@ STEP, STEP_NODE = 130e-6, 6.1e-6
 STATIC_NODE = 26e-6  # four linearisations
 FRAME, FRAME_NODE = 100e-6, 4e-6
 WRITHE = 5.9e-9
+PILOTS, VERIFIED = 2, 5
 COMPONENTS = {"orientation": 4}  # the others are vectors of three
 
 
@@ -39,14 +43,16 @@ class Cost:
 
 def estimate(spec: CaseSpec) -> Cost:
     """The cost of a case, by the model above."""
-    nodes, frames = spec.numerics.intervals + 1, spec.frames
-    steps = max(ceil(spec.t_end / spec.numerics.dt_max), frames - 1)
+    numerics = spec.numerics
+    nodes, frames = numerics.expected_intervals + 1, spec.frames
+    steps = max(ceil(spec.t_end / (numerics.dt_max or spec.output.interval)), frames - 1)
     step = STEP + STEP_NODE * nodes
     if spec.analysis == "static":
         steps, step = 2 * frames + 10, STATIC_NODE * nodes
     frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
     seconds = steps * step + frames * frame
-    components = sum(COMPONENTS.get(name, 3) for name in spec.output.fields)
+    seconds *= (PILOTS if numerics.tolerance else 1) * (VERIFIED if numerics.verify else 1)
+    components = sum(COMPONENTS.get(name, 3) for name in spec.output.fields) * (2 if numerics.verify else 1)
     return Cost(nodes, frames, steps, seconds, 8 * frames * nodes * components)
 
 

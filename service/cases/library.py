@@ -15,6 +15,7 @@ from service.cases.build import build_scene
 from service.cases.case import CaseSpec
 from service.cases.errors import CaseError, FieldError
 
+RESOLUTION = ("intervals", "dt_max", "increment_tolerance")
 _SHIPPED = files("service.cases") / "shipped"
 
 
@@ -43,9 +44,11 @@ def load_case(name_or_path: str | Path) -> dict[str, Any]:
 def apply_settings(raw: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
     """A copy of the raw case with some values set by dotted keys: `numerics.intervals`, `loads.point.0.s`.
 
+    A tolerance that is set takes the place of the case's own resolution, and a resolution that of its tolerance.
     Raises CaseError where a key leads into something that has no such place.
     """
     changed = deepcopy(dict(raw))
+    _displace(changed.get("numerics"), settings)
     for key, value in settings.items():
         _set(changed, key.split("."), value)
     return changed
@@ -86,6 +89,17 @@ def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
             raise CaseError([FieldError("", name, "must not hold a name twice in one object")])
         found[name] = value
     return found
+
+
+def _displace(numerics: Any, settings: Mapping[str, Any]) -> None:
+    """Remove from a case's own numerics what the settings replace."""
+    if not isinstance(numerics, dict):
+        return
+    if settings.get("numerics.tolerance") is not None:
+        for name in ("method", *RESOLUTION):
+            numerics.pop(name, None)
+    elif any(settings.get(f"numerics.{name}") is not None for name in RESOLUTION):
+        numerics.pop("tolerance", None)
 
 
 def _set(node: Any, path: list[str], value: Any) -> None:

@@ -116,3 +116,5 @@ def _define(dataset: netCDF4.Dataset, variable: Variable, frames: int) -> None:
     )
     if variable.frame:
         created.setncattr("frame", variable.frame)
+    if variable.ancillary:
+        created.setncattr("ancillary_variables", variable.ancillary)

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from service.results.schema import COORDINATES, LABELS, VARIABLES, Variable
+from service.results.schema import COORDINATES, ERRORS, LABELS, VARIABLES, Variable
 
 _ONE_AT_A_TIME = Lock()
 """The HDF5 library is not thread-safe."""
@@ -68,7 +68,7 @@ def subset(
 
 
 def _variable(dataset: netCDF4.Dataset, name: str) -> Variable:
-    held = {variable.name: variable for variable in VARIABLES if variable.name in dataset.variables}
+    held = {v.name: v for v in (*VARIABLES, *ERRORS.values()) if v.name in dataset.variables}
     if name not in held:
         raise UnknownVariable(f"variable must be one of {', '.join(held)}, got {name!r}")
     return held[name]

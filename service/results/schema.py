@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from service.cases import CaseSpec
-from solver import Frame
+from solver import Frame, VerifiedFrame
+from solver.verify import UNVERIFIED
+
+ERROR = "_error"
 
 LABELS: dict[str, tuple[str, ...]] = {
     "body": ("a1", "a2", "a3"),
@@ -41,7 +44,10 @@ COORDINATES: dict[str, dict[str, str]] = {
 
 @dataclass(frozen=True)
 class Variable:
-    """One variable of the dataset; its name is also the attribute of `solver.Frame` that it stores."""
+    """One variable of the dataset; its name is also the attribute of `solver.Frame` that it stores.
+
+    `ancillary`: the name of the variable that tells its error, if one is stored.
+    """
 
     name: str
     dimensions: tuple[str, ...]
@@ -51,6 +57,7 @@ class Variable:
     type: Literal["f8", "i4"] = "f8"
     statics: bool = False
     """Whether only a static analysis has it."""
+    ancillary: str = ""
 
     @property
     def along_rod(self) -> bool:
@@ -60,6 +67,18 @@ class Variable:
     def of(self, frame: Frame) -> NDArray[np.float64] | float | int:
         """Its value in one frame."""
         value: NDArray[np.float64] | float | int = getattr(frame, self.name)
+        return value
+
+
+@dataclass(frozen=True)
+class ErrorVariable(Variable):
+    """The estimate of another variable's error, which the frames of a verified run have."""
+
+    def of(self, frame: Frame) -> NDArray[np.float64] | float | int:
+        """Its value in one frame."""
+        if not isinstance(frame, VerifiedFrame):
+            raise TypeError(f"{self.name} is of a verified run, got the frame of another")
+        value: NDArray[np.float64] | float | int = getattr(frame.error, self.name.removesuffix(ERROR))
         return value
 
 
@@ -103,7 +122,21 @@ VARIABLES: tuple[Variable, ...] = (
 )
 
 
+def _error_of(variable: Variable) -> Variable:
+    long_name = f"estimated error of {variable.name}"
+    told = replace(variable, name=variable.name + ERROR, long_name=long_name)
+    return ErrorVariable(**vars(told))
+
+
+ERRORS = {v.name: _error_of(v) for v in VARIABLES if v.name not in UNVERIFIED}
+"""By the name of the variable whose error it is."""
+
+
 def stored_variables(spec: CaseSpec) -> tuple[Variable, ...]:
-    """The variables of a case's dataset: the fields that it asks for, and every number in time."""
+    """The variables of a case's dataset: the fields that it asks for, and every number in time; errors if verified."""
     asked = (v for v in VARIABLES if not v.along_rod or v.name in spec.output.fields)
-    return tuple(v for v in asked if spec.analysis == "static" or not v.statics)
+    stored = tuple(v for v in asked if spec.analysis == "static" or not v.statics)
+    if not spec.numerics.verify:
+        return stored
+    errors = {v.name: ERRORS[v.name] for v in stored if v.name in ERRORS}
+    return (*(replace(v, ancillary=errors[v.name].name) if v.name in errors else v for v in stored), *errors.values())

@@ -33,14 +33,15 @@ class Published:
 class DatasetWriter:
     """Writes one dataset; under `path` there is nothing, or what was there, until it is complete.
 
-    `with DatasetWriter(path, spec, s) as writer:` append the frames, then publish. Whatever way the
+    `with DatasetWriter(path, spec) as writer:` append the frames, then publish. Whatever way the
     block is left, what is not published is discarded; but not in a `directory` that is given, where a
     later writer may go on from the segments that were `written`.
     """
 
-    def __init__(self, path: Path, spec: CaseSpec, s: NDArray[np.float64], directory: Path | None = None,
-                 written: Sequence[Segment] = ()) -> None:
-        self._path, self._spec, self._s = path.absolute(), spec, s
+    def __init__(
+        self, path: Path, spec: CaseSpec, directory: Path | None = None, written: Sequence[Segment] = ()
+    ) -> None:
+        self._path, self._spec = path.absolute(), spec
         self._variables = stored_variables(spec)
         self._cleanup = ExitStack()
         self._directory = directory or self._cleanup.enter_context(scratch(self._path))
@@ -66,17 +67,17 @@ class DatasetWriter:
         self._segments.flush()
         return list(self._segments.written)
 
-    def publish(self, outcome: str, message: str, statistics: Statistics) -> Published:
+    def publish(self, outcome: str, message: str, s: NDArray[np.float64], statistics: Statistics) -> Published:
         """Write the dataset beside its place, read it back, and give it its name.
 
-        `outcome` and `message` say how the run ended. Raises OSError where that cannot be done; then
-        nothing is left under the name that was not there before.
+        `outcome` and `message` say how the run ended, `s` (m) where its nodes were. Raises OSError where that
+        cannot be done; then nothing is left under the name that was not there before.
         """
         self._segments.flush()
         beside = self._directory / f"{self._path.name}.part"
-        attributes = self._attributes(outcome, message, statistics)
+        attributes = self._attributes(outcome, message, self._history(len(s) - 1), statistics)
         blocks = self._segments.blocks
-        netcdf.write(beside, self._variables, self._s, self._segments.frames, blocks, attributes)
+        netcdf.write(beside, self._variables, s, self._segments.frames, blocks, attributes)
         netcdf.verify(beside, blocks)
         sync(beside)
         published = Published(sha256_of(beside), beside.stat().st_size)
@@ -84,7 +85,15 @@ class DatasetWriter:
         sync(self._path.parent)
         return published
 
-    def _attributes(self, outcome: str, message: str, statistics: Statistics) -> dict[str, Any]:
+    def _history(self, intervals: int) -> str:
+        """How the values came about."""
+        told = f"simulated by hockle with {intervals} intervals"
+        if not self._spec.numerics.verify:
+            return told
+        return (f"{told} and with {2 * intervals} and steps half as long; the values are extrapolated from both "
+                "(Richardson, order 2), the errors are those of the finer run")  # fmt: skip
+
+    def _attributes(self, outcome: str, message: str, history: str, statistics: Statistics) -> dict[str, Any]:
         """The global attributes: CF, ACDD, and what a reader needs to run the case again."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
         spec = self._spec
@@ -96,7 +105,7 @@ class DatasetWriter:
             "source": "hockle, a simulator of Kirchhoff rod dynamics",
             "institution": "hockle",
             "references": "Goyal, Perkins & Lee (2003), Writhing dynamics of cables with self-contact",
-            "history": f"{now} simulated by hockle",
+            "history": f"{now} {history}",
             "date_created": now,
             "cdm_data_type": "Other",
             "case_name": spec.name,

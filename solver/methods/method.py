@@ -15,8 +15,9 @@ class Method(Protocol):
     """A discretization in space and time of one scene.
 
     `s` (n,): arclengths of the nodes (m); `start`, `end`: the driven ends; `applied`: the given loads; `shortest_step`
-    (s): no shorter step is possible; `increment_order`: power of dt with which `relative_increment` falls;
-    `easy_iterations`: Newton iterations up to which a step may be followed by a longer one.
+    (s): no shorter step is possible; `increment_order`: power of dt with which `relative_increment` falls, and
+    `increment_tolerance` how large it may be unless told; `easy_iterations`: Newton iterations up to which a step may
+    be followed by a longer one.
     """
 
     s: Array
@@ -25,6 +26,7 @@ class Method(Protocol):
     applied: AppliedLoads
     shortest_step: float
     increment_order: float
+    increment_tolerance: float
     easy_iterations: int
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:

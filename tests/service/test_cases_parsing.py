@@ -239,9 +239,59 @@ def test_the_schema_tells_every_field_of_a_case():
         ({"contact": load_case("short-loop")["contact"]}, "/contact", "analysis static"),
         ({"ends.end": {"preset": "clamp", "switches": [{"at": 1.0, "f3": 0.0}]}}, "/ends/end", "switches"),
         ({"initial.velocity": [1.0, 0.0, 0.0]}, "", "velocity"),
+        ({"numerics.tolerance": 1e-3}, "/numerics/tolerance", "analysis static: give intervals"),
     ],
 )
 def test_what_a_static_analysis_cannot_do_is_refused(settings: dict[str, Any], pointer: str, rule: str):
     with pytest.raises(CaseError, match=rule) as refused:
         parse_case(apply_settings(load_case("static-elastica"), settings))
     assert [fault.pointer for fault in refused.value.errors] == [pointer]
+
+
+def test_a_static_analysis_that_says_nothing_of_its_resolution_has_the_usual_intervals():
+    for given in ({}, {"verify": True}):
+        told = parse_case({**load_case("static-elastica"), "numerics": given}).numerics
+        assert (told.intervals, told.tolerance) == (200, None)
+
+
+def numerics(**given):
+    return parse_case({**load_case("elastica"), "numerics": given}).numerics
+
+
+@pytest.mark.parametrize("given", [{}, {"verify": True}, {"method": "staggered"}, {"tolerance": 1e-3}])
+def test_where_nothing_is_said_about_the_resolution_there_is_a_tolerance(given):
+    told = numerics(**given)
+    assert (told.method, told.tolerance, told.intervals, told.dt_max) == ("staggered", 1e-3, None, None)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"intervals": 50}, {"dt_max": 0.01}, {"method": "box"}, {"increment_tolerance": 0.2}, {"rho_inf": 0.9},
+     {"linear_solver": "shooting"}],
+)  # fmt: skip
+def test_where_something_is_said_about_the_resolution_or_the_box_method_there_is_none(given):
+    told = numerics(**given)
+    filled_in = {"intervals": 200, "dt_max": 0.05, "method": "box", "tolerance": None, **given}
+    assert {name: getattr(told, name) for name in filled_in} == filled_in
+
+
+@pytest.mark.parametrize("name", ["intervals", "dt_max", "increment_tolerance"])
+def test_a_tolerance_beside_what_it_chooses_is_refused(name):
+    with pytest.raises(CaseError, match=f"/numerics/{name} must not be given beside a tolerance"):
+        numerics(tolerance=1e-3, **{name: 10})
+
+
+def test_a_tolerance_needs_the_staggered_method():
+    with pytest.raises(CaseError, match="/numerics/method must be staggered with a tolerance, got 'box'"):
+        numerics(tolerance=1e-3, method="box")
+
+
+def test_a_tolerance_that_is_set_displaces_the_cases_own_resolution_and_back():
+    changed = apply_settings(load_case("elastica"), {"numerics.tolerance": 1e-4})
+    assert changed["numerics"] == {"tolerance": 1e-4}
+    assert apply_settings(changed, {"numerics.intervals": 30})["numerics"] == {"intervals": 30}
+
+
+def test_a_case_with_a_tolerance_reads_its_own_document_again():
+    spec = parse_case({**load_case("elastica"), "numerics": {"tolerance": 1e-4, "verify": True}})
+    assert parse_case(spec.document()) == spec

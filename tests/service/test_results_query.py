@@ -17,10 +17,10 @@ from tests.service.frames import frames, nodes, small_spec
 def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("results") / "out.nc"
     spec = small_spec(**{"output.fields": ["r", "f"]})
-    with DatasetWriter(path, spec, nodes(spec)) as writer:
+    with DatasetWriter(path, spec) as writer:
         for frame in frames(spec, 9):
             writer.append(frame)
-        writer.publish("completed", "", Statistics())
+        writer.publish("completed", "", nodes(spec), Statistics())
     return path
 
 

@@ -18,9 +18,9 @@ import xarray as xr
 
 from service.cases import CaseSpec, parse_case
 from service.cases.case import FieldName
-from service.results import VARIABLES, DatasetWriter, Published, durable, netcdf, open_dataset, segments
+from service.results import VARIABLES, DatasetWriter, Published, durable, netcdf, open_dataset, segments, subset
 from service.results.schema import stored_variables
-from solver import Statistics
+from solver import Statistics, VerifiedFrame
 from tests.service.frames import frames, nodes, small_spec
 
 ROOT = Path(__file__).parents[2]
@@ -28,10 +28,10 @@ STATISTICS = Statistics(steps=12, newton_iterations=34, failed_steps=1, cpu_time
 
 
 def write(path: Path, spec: CaseSpec, count: int) -> Published:
-    with DatasetWriter(path, spec, nodes(spec)) as writer:
+    with DatasetWriter(path, spec) as writer:
         for frame in frames(spec, count):
             writer.append(frame)
-        return writer.publish("completed", "", STATISTICS)
+        return writer.publish("completed", "", nodes(spec), STATISTICS)
 
 
 @pytest.fixture
@@ -134,11 +134,11 @@ def test_many_segments_make_the_same_dataset_as_one(path: Path, monkeypatch: pyt
     write(path, spec, 9)
     monkeypatch.setattr(segments, "SEGMENT_BYTES", 10_000)  # four frames of 11 nodes with 22 numbers each
     other = path.with_name("other.nc")
-    with DatasetWriter(other, spec, nodes(spec)) as writer:
+    with DatasetWriter(other, spec) as writer:
         for i, frame in enumerate(frames(spec, 9)):
             writer.append(frame)
             assert len(list(path.parent.glob(".other.nc.work-*/segment-*.npz"))) == (i + 1) // 5
-        writer.publish("completed", "", STATISTICS)
+        writer.publish("completed", "", nodes(spec), STATISTICS)
     with open_dataset(path) as one, open_dataset(other) as many:
         xr.testing.assert_equal(one, many)
 
@@ -163,7 +163,7 @@ def test_a_new_dataset_takes_the_place_of_the_old_one(path: Path):
 
 def test_an_interrupted_run_leaves_nothing(path: Path):
     spec = small_spec()
-    with pytest.raises(KeyboardInterrupt), DatasetWriter(path, spec, nodes(spec)) as writer:
+    with pytest.raises(KeyboardInterrupt), DatasetWriter(path, spec) as writer:
         for frame in frames(spec, 3):
             writer.append(frame)
         raise KeyboardInterrupt
@@ -204,17 +204,17 @@ LIMITED = """
 import resource, signal, sys
 from pathlib import Path
 from service.results import DatasetWriter, segments
-from solver import Statistics
+from solver import Statistics, VerifiedFrame
 from tests.service.frames import frames, nodes, small_spec
 spec = small_spec(**{"numerics.intervals": 200})
 segments.SEGMENT_BYTES = int(sys.argv[2])
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (150_000, 150_000))
-with DatasetWriter(Path(sys.argv[1]), spec, nodes(spec)) as writer:
+with DatasetWriter(Path(sys.argv[1]), spec) as writer:
     try:
         for frame in frames(spec, 300):
             writer.append(frame)
-        writer.publish("completed", "", Statistics())
+        writer.publish("completed", "", nodes(spec), Statistics())
     except OSError as error:
         sys.exit(f"OSError: {error}")
 """
@@ -251,7 +251,7 @@ from pathlib import Path
 from tests.service.frames import frames, nodes, small_spec
 from service.results import DatasetWriter
 spec = small_spec()
-writer = DatasetWriter(Path(sys.argv[1]), spec, nodes(spec))
+writer = DatasetWriter(Path(sys.argv[1]), spec)
 for frame in frames(spec, 3):
     writer.append(frame)
 os.kill(os.getpid(), signal.SIGKILL)
@@ -268,11 +268,11 @@ def test_what_a_killed_run_leaves_is_removed_by_the_next_one(path: Path):
 
 def test_a_run_that_lives_is_left_alone_by_the_next_one(path: Path):
     spec = small_spec()
-    with DatasetWriter(path, spec, nodes(spec)) as first:
+    with DatasetWriter(path, spec) as first:
         for frame in frames(spec, 2):
             first.append(frame)
         write(path, spec, 5)
-        first.publish("completed", "", STATISTICS)
+        first.publish("completed", "", nodes(spec), STATISTICS)
     with open_dataset(path) as dataset:
         assert dataset.sizes["time"] == 2
 
@@ -282,23 +282,23 @@ def test_a_run_goes_on_from_the_segments_of_one_that_was_killed(path: Path):
     work = path.parent / "work"
     work.mkdir()
     all_frames = list(frames(spec, 9))
-    with DatasetWriter(path.with_name("x.1.nc"), spec, nodes(spec), work) as first:
+    with DatasetWriter(path.with_name("x.1.nc"), spec, work) as first:
         for frame in all_frames[:4]:
             first.append(frame)
         written = first.flush()
         first.append(all_frames[4])  # lost with its writer
     assert all(segment.is_whole(work) for segment in written)
-    with DatasetWriter(path.with_name("x.2.nc"), spec, nodes(spec), work, written) as second:
+    with DatasetWriter(path.with_name("x.2.nc"), spec, work, written) as second:
         for frame in all_frames[4:]:
             second.append(frame)
-        second.publish("completed", "", STATISTICS)
+        second.publish("completed", "", nodes(spec), STATISTICS)
     write(path, spec, 9)
     with open_dataset(path) as one, open_dataset(path.with_name("x.2.nc")) as other:
         xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
 
 
 def test_a_torn_segment_is_known_for_one(path: Path):
-    with DatasetWriter(path, small_spec(), nodes(small_spec()), path.parent) as writer:
+    with DatasetWriter(path, small_spec(), path.parent) as writer:
         writer.append(next(frames(small_spec(), 1)))
         [segment] = writer.flush()
     file = path.parent / segment.name
@@ -306,3 +306,32 @@ def test_a_torn_segment_is_known_for_one(path: Path):
     assert not segment.is_whole(path.parent)
     file.unlink()
     assert not segment.is_whole(path.parent)
+
+
+def verified_frames(spec: CaseSpec, count: int) -> list[VerifiedFrame]:
+    """Frames whose errors are the frames of another time."""
+    return [
+        VerifiedFrame(**vars(frame), error=error)
+        for frame, error in zip(frames(spec, count), list(frames(spec, count))[::-1], strict=True)
+    ]
+
+
+def test_a_verified_dataset_has_error_bars(path: Path):
+    spec = small_spec(**{"numerics.verify": True, "output.fields": ["r"]})
+    verified = verified_frames(spec, 3)
+    with DatasetWriter(path, spec) as writer:
+        for frame in verified:
+            writer.append(frame)
+        writer.publish("completed", "", nodes(spec), STATISTICS)
+    with open_dataset(path) as dataset:
+        assert dataset.r.attrs["ancillary_variables"] == "r_error"
+        assert "ancillary_variables" not in dataset["dt"].attrs
+        assert {"kappa", "kappa_error", "dt_error", "contacts_error"}.isdisjoint(dataset.variables)
+        assert dataset.r_error.dims == dataset.r.dims
+        assert dataset.r_error.attrs["units"] == "m"
+        assert np.array_equal(dataset.r, [frame.r for frame in verified])
+        assert np.array_equal(dataset.r_error, [frame.error.r for frame in verified])
+        assert dataset.energy_bending_error.values.tolist() == [f.error.energy_bending for f in verified]
+        assert "10 intervals and with 20" in dataset.attrs["history"]
+    told = subset(path, ["Tw_error"])["variables"]["Tw_error"]
+    assert told["long_name"] == "estimated error of Tw"

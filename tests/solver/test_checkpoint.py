@@ -8,8 +8,9 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from solver import Condition, Curve, End, Fluid, Frame, Numerics, Scene, simulate
+from solver import Condition, Curve, End, Fluid, Frame, Numerics, Scene, VerifiedFrame, simulate
 from solver.scene import FIXED
+from tests.solver.bent import bent_cantilever
 from tests.solver.contact.test_self_contact import CONTACT, looped
 from tests.solver.methods.test_statics import arch, ramp
 from tests.solver.scenes import ARC, ARC_ROD, EJ, FIXED_STEPS, LENGTH
@@ -54,6 +55,16 @@ def balanced() -> Scene:
     return arch(Condition("load", ramp(-10.0 * EJ / LENGTH**2, 10.0)), 6.0, 0.5)
 
 
+def verified() -> Scene:
+    """Two resolutions side by side."""
+    return bent_cantilever(Numerics(method="staggered", intervals=10, dt_max=0.05, verify=True))
+
+
+def piloted() -> Scene:
+    """Pilots of two resolutions, then two runs side by side."""
+    return bent_cantilever(Numerics(method="staggered", tolerance=3e-4, verify=True))
+
+
 def interrupted(scene: Scene, after: int) -> list[Frame]:
     """The frames of a run that is begun anew, and restored, after each `after` steps."""
     found: list[Frame | None] = []
@@ -71,12 +82,20 @@ def assert_same(one: list[Frame], other: list[Frame]) -> None:
     for a, b in zip(one, other, strict=True):
         for field in fields(Frame):
             assert np.array_equal(getattr(a, field.name), getattr(b, field.name), equal_nan=True), (a.t, field.name)
+    errors = [[frame.error for frame in frames if isinstance(frame, VerifiedFrame)] for frames in (one, other)]
+    if any(errors):
+        assert_same(*errors)
 
 
-@pytest.mark.parametrize("make", [switched, shot, pressed, staggered, staggered_pressed, balanced])
+@pytest.mark.parametrize("make", [switched, shot, pressed, staggered, staggered_pressed, balanced, verified])
 @pytest.mark.parametrize("after", [1, 3, 10])
 def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], Scene], after: int) -> None:
     assert_same(list(simulate(make())), interrupted(make(), after))
+
+
+@pytest.mark.parametrize("after", [7, 40, 300])
+def test_a_run_that_is_interrupted_in_its_pilots_gives_the_same_frames_to_the_bit(after: int) -> None:
+    assert_same(list(simulate(piloted())), interrupted(piloted(), after))
 
 
 @pytest.mark.parametrize("make", [pressed, staggered_pressed])

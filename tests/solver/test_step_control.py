@@ -6,7 +6,6 @@ from math import inf
 
 import pytest
 
-from solver import Numerics
 from solver.step_control import GROWTH, StepControl
 
 EASY, MODERATE, HARD = 3, 6, 9
@@ -14,8 +13,8 @@ EASY, MODERATE, HARD = 3, 6, 9
 
 
 def control(dt_max: float, outputs: list[float]) -> StepControl:
-    """Steps up to `dt_max` that end on `outputs`; the error tolerated is the default, 0.1 of the motion."""
-    return StepControl(Numerics(dt_max=dt_max), 2.0, 4, 0.0, [], outputs)
+    """Steps up to `dt_max` that end on `outputs`; the error tolerated is 0.1 of the motion."""
+    return StepControl(dt_max, 0.1, 2.0, 4, 0.0, [], outputs)
 
 
 def steps(of: StepControl, t_end: float, increment: float = 0.0, iterations: int = EASY) -> list[float]:

@@ -117,6 +117,18 @@ def test_a_job_killed_again_and_again_has_the_dataset_of_an_undisturbed_run(job,
     assert list(settings.work.iterdir()) == []
 
 
+def test_a_job_killed_in_its_pilots_goes_on_and_has_its_error_bars(registry, settings):
+    asked = {"t_end": 0.5, "numerics.tolerance": 1e-2, "numerics.verify": True}
+    case = apply_settings(load_case("elastica"), asked)
+    whole = content(settings, run_on(settings, registry, registry.submit(NewJob(case))))
+    job = registry.submit(NewJob(case))
+    killed(settings, registry, 20)
+    done = run_on(settings, registry, job)
+    assert (done.status, done.attempts) == (Status.SUCCESSFUL, 2)
+    assert_same(content(settings, done), whole)
+    assert whole.r_error.shape == whole.r.shape
+
+
 def test_without_a_checkpoint_all_is_redone_and_told(job, registry, settings, undisturbed):
     killed(settings, registry, 7, checkpoint=1e9)
     done = run_on(settings, registry, job)

@@ -38,6 +38,7 @@ class BoxMethod:
     """Generalized-alpha in time and in space on the unknowns V, omega, kappa, F at the nodes."""
 
     increment_order = 2.0
+    increment_tolerance = 0.1
     easy_iterations = 4
 
     def __init__(self, scene: Scene) -> None:

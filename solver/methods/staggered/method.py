@@ -36,6 +36,7 @@ class StaggeredMethod:
     """Rigid segments joined at the nodes; Radau IIA of order 5 in time."""
 
     increment_order = 4.0
+    increment_tolerance = 0.01
     easy_iterations = 7
     shortest_step = 0.0
 

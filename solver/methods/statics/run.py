@@ -6,7 +6,7 @@ from math import nan, pi
 
 import numpy as np
 
-from solver.frame import Fields, Frame
+from solver.frame import Fields, Frame, Statistics
 from solver.measures.topology import writhe
 from solver.methods.staggered.energies import energies, twist
 from solver.methods.staggered.method import orientations_at_nodes
@@ -26,8 +26,8 @@ class Equilibria(Run):
     time has travelled along the branch, to and fro; its `parameter` is their time itself.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        super().__init__(scene)
+    def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
+        super().__init__(scene, statistics)
         self._equations = Equations(scene)
         self._path = Path(self._equations)
         self._Lk = self._turns_at_start()
@@ -37,7 +37,8 @@ class Equilibria(Run):
         """Arclengths of the nodes (n,), m."""
         return self._equations.s
 
-    def _warm(self) -> None:
+    def warm(self) -> None:
+        """Have every kernel compiled."""
         self._equations.linearise(self._equations.start)
         negative_modes(self._equations)
 
@@ -56,8 +57,11 @@ class Equilibria(Run):
 
     def _advance(self, stop: float) -> bool:
         path, told = self._path, self.statistics
+        steps, failed, iterations = path.steps, path.failed, path.iterations
         there = path.advance(stop)
-        told.steps, told.failed_steps, told.newton_iterations = path.steps, path.failed, path.iterations
+        told.steps += path.steps - steps
+        told.failed_steps += path.failed - failed
+        told.newton_iterations += path.iterations - iterations
         return there
 
     def _corners(self) -> list[float]:

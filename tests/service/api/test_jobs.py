@@ -26,7 +26,7 @@ def test_a_shipped_case_is_submitted_by_name_with_settings(client, registry):
 def test_the_stored_case_has_every_default_filled_in(client, registry, case):
     del case["numerics"]
     job_id = client.post("/v1/jobs", json=case).json()["id"]
-    assert claim(registry.database, job_id, 9.0, "here").case["numerics"]["intervals"] >= 2
+    assert claim(registry.database, job_id, 9.0, "here").case["numerics"]["tolerance"] == 1e-3
 
 
 def test_a_job_is_accepted_while_the_broker_is_dead(client, case, monkeypatch):

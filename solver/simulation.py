@@ -1,0 +1,155 @@
+"""The loop that turns a scene into frames."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from math import pi
+
+import numpy as np
+
+from solver.frame import Frame, Statistics
+from solver.measures.accounts import Accounts
+from solver.methods.box.method import BoxMethod
+from solver.methods.method import Method
+from solver.methods.staggered.method import StaggeredMethod
+from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
+from solver.outcome import Outcome, RunFailed
+from solver.rod import Array, Rod
+from solver.run import Run
+from solver.scene import Contact, End, Fluid, Initial, Numerics, Scene
+from solver.step_control import CONSISTENT_STEPS, StepControl
+
+FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
+"""Outcomes that a shorter step does not avert."""
+
+
+METHODS: dict[str, type[BoxMethod] | type[StaggeredMethod]] = {"box": BoxMethod, "staggered": StaggeredMethod}
+
+
+def tolerated_increment(numerics: Numerics) -> float:
+    """The largest error of a step relative to its motion: as given, or the method's own."""
+    return numerics.increment_tolerance or METHODS[numerics.method].increment_tolerance
+
+
+class Simulation(Run):
+    """Motion, by steps in time."""
+
+    def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
+        super().__init__(scene, statistics)
+        self._method: Method = METHODS[scene.numerics.method](scene)
+        self._accounts = Accounts(scene, self._method)
+        ends = self._method.start.corners() + self._method.end.corners()
+        self._control = StepControl(
+            scene.numerics.dt_max, tolerated_increment(scene.numerics), self._method.increment_order,
+            self._method.easy_iterations, self._method.shortest_step, ends + self._method.applied.corners(),
+            self._outputs,
+        )  # fmt: skip
+        self._switches = sorted({c.since for e in (scene.start, scene.end)
+                                 for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
+        self._turns = 0.0
+
+    @property
+    def s(self) -> Array:
+        """Arclengths of the nodes (n,), m."""
+        return self._method.s
+
+    def warm(self) -> None:
+        """Have every kernel compiled."""
+        warm(self._scene.numerics.method)
+
+    def _first_frame(self) -> Frame:
+        frame = self._accounts.frame(0.0)
+        self.t = self._begin()
+        self._turns = frame.Tw + frame.Wr - frame.Lk
+        # forces are no part of what is given at t = 0, they follow from it
+        return replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
+
+    def _next_frame(self, output: float) -> Frame | None:
+        if self.t < output:
+            self.t = self._advance(self.t, *self._control.step_from(self.t, self._method.step_limit()))
+        if self.t < output:
+            return None
+        frame = self._accounts.frame(output)
+        turn = float(np.linalg.norm(frame.kappa, axis=1).max() * (self.s[1] - self.s[0]))
+        if not turn < pi:
+            told = f"by {turn:.3g} rad within an interval"
+            raise RunFailed(Outcome.MESH_TOO_COARSE, self.t, self.statistics.steps, told)
+        before, self._turns = self._turns, frame.Tw + frame.Wr - frame.Lk
+        if self._scene.contact is not None and abs(self._turns - before) > 1.0:
+            # a rod that passes through itself makes Tw + Wr - Lk jump by 2
+            raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, "Tw + Wr - Lk jumped")
+        return frame
+
+    def _begin(self) -> float:
+        """Two tiny steps that find consistent accelerations and forces; return the time they reach."""
+        for part in CONSISTENT_STEPS:
+            dt = max(min(part * self._scene.numerics.dt_max, 0.1 * self._outputs[0]), self._method.shortest_step)
+            status, iterations = self._method.try_step(0.0, dt, consistent=True)
+            self.statistics.newton_iterations += iterations
+            if status == CONVERGED:
+                self._take(0.0, dt, iterations)
+                return self._advance(dt, dt, 2 * dt, consistent=True)
+            self.statistics.failed_steps += 1
+        refusal, outcome = self._judge(status, 0.0)
+        raise RunFailed(outcome if outcome in FATAL else Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
+
+    def _advance(self, t: float, dt: float, target: float, consistent: bool = False) -> float:
+        """Take one step from t, as long as dt or shorter if need be; return the time it reached."""
+        while True:
+            status, iterations = self._method.try_step(t, dt, consistent)
+            self.statistics.newton_iterations += iterations
+            increment = 0.0 if consistent or status != CONVERGED else self._method.relative_increment(dt)
+            refusal, outcome = self._judge(status, increment)
+            if not refusal:
+                break
+            self.statistics.failed_steps += 1
+            if outcome in FATAL or 0.5 * dt < self._control.smallest:
+                raise RunFailed(outcome, t, self.statistics.steps, refusal)
+            self._control.rejected(dt)
+            dt *= 0.5
+            target = t + dt
+        self._take(t, dt, iterations)
+        if not consistent:
+            self._control.accepted(dt, increment, iterations)
+            if self._control.stuck:
+                detail = "the motion is faster than the steps, however short"
+                raise RunFailed(Outcome.STEP_TOO_SMALL, self.t, self.statistics.steps, detail)
+        if self._switches and self._switches[0] <= target + 1e-12:
+            self._switches.pop(0)
+            self._method.switch_ends(target)
+            self._control.restart()
+        return target
+
+    def _judge(self, status: int, increment: float) -> tuple[str, Outcome]:
+        """Why the trial must not be taken, or nothing; and what that is called if no shorter step helps."""
+        if status == LOST_DIGITS:
+            return "the homogeneous solutions grew too much", Outcome.SHOOTING_LOST_DIGITS
+        if status == SINGULAR:
+            return "a pivot vanished", Outcome.SINGULAR_SYSTEM
+        if status != CONVERGED:
+            return "Newton's iteration stalled", Outcome.STEP_TOO_SMALL
+        if self._control.too_coarse(increment):
+            return "the motion is faster than the step", Outcome.STEP_TOO_SMALL
+        return self._method.refusal(), Outcome.ROD_CROSSED_ITSELF
+
+    def _take(self, t: float, dt: float, iterations: int) -> None:
+        """Make the step that was tried the state, and enter it in the books."""
+        self._method.take_step(t, dt)
+        self.statistics.steps += 1
+        self._accounts.after_step(dt, iterations)
+
+
+@cache
+def warm(method: str = Numerics.method) -> None:
+    """Compile every kernel of a method, or load it from the cache, by a step of a tiny scene; once per process."""
+    scene = Scene(
+        rod=Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), initial=Initial.straight(), start=End.clamp(), end=End.free(),
+        t_end=1e-3, output_interval=1e-3, fluid=Fluid(1000.0),
+        numerics=Numerics(method=method, intervals=4, dt_max=1e-3),  # type: ignore[arg-type]
+        contact=Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05),
+    )  # fmt: skip
+    simulation = Simulation(scene)
+    simulation._begin()
+    simulation._accounts.frame(0.0)
+    simulation._method.compile()

@@ -1,0 +1,125 @@
+"""Error bars: how many of a verified run's values lie within 3 times their estimated error of the truth.
+
+The truth is a verified run with intervals and steps a quarter as long; of the elastica come to rest also the closed
+form. A value counts only where it has an error to speak of: above 1e-8 of the largest of its kind, a hundred times the
+tolerance of the iterations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+
+from service.cases.build import build_scene
+from service.cases.library import apply_settings, load_case, parse_case
+from solver import Frame, Scene, simulate
+from solver.pilot import Piloted
+from solver.resolution import refine
+from solver.rod import Array
+from solver.verify import UNVERIFIED, VerifiedFrame
+from validation.elastica import TABLE
+from validation.row import Row, at_most, relative
+
+ROUNDING = 1e-8
+WITHIN = 3.0
+MISSED = 0.05
+"""The part of the values that may lie farther off."""
+NAMES = tuple(field.name for field in fields(Frame) if field.name not in UNVERIFIED)
+ENERGIES = tuple(name for name in NAMES if name.startswith(("energy_", "work_", "dissipation")))
+TO_CONTACT = {"t_end": 25.0, "output.interval": 0.5}
+SCENES: dict[str, tuple[str, dict[str, Any]]] = {
+    "elastica, N=25": ("elastica", {"numerics.intervals": 25}),
+    "elastica at rest, N=25": ("static-elastica", {"numerics.intervals": 25, "t_end": 5.0}),
+    "greenhill, N=25": ("greenhill", {"numerics.intervals": 25}),
+    "cantilever-vibration, N=25": ("cantilever-vibration", {"numerics.intervals": 25, "t_end": 5.0}),
+    "hanging-cable, N=25": ("hanging-cable", {"numerics.intervals": 25}),
+    "goyal-2003, N=50": ("goyal-2003", {"numerics.intervals": 50, **TO_CONTACT}),
+    "goyal-2003, tolerance 1e-3": ("goyal-2003", {"numerics.tolerance": 1e-3, **TO_CONTACT}),
+}
+
+
+def scene(case: str, settings: dict[str, Any]) -> Scene:
+    """A shipped case, verified."""
+    told = {"numerics.method": "staggered", "numerics.verify": True, **settings}
+    return build_scene(parse_case(apply_settings(load_case(case), told)))
+
+
+def run(told: Scene) -> tuple[Scene, list[VerifiedFrame]]:
+    """The frames of a verified run, and its scene with the intervals and steps that it had."""
+    begun = simulate(told)
+    frames = [frame for frame in begun if isinstance(frame, VerifiedFrame)]
+    return begun.chosen if isinstance(begun, Piloted) else told, frames
+
+
+def true(told: Scene) -> list[VerifiedFrame]:
+    """The frames with a quarter of the spacing and steps."""
+    return run(refine(refine(told)))[1]
+
+
+def series(frames: list[Any], name: str, intervals: int) -> Array:
+    """A variable of all frames, fields at `intervals` + 1 nodes."""
+    values = np.array([getattr(frame, name) for frame in frames], dtype=float)
+    return values if values.ndim == 1 else values[:, :: (values.shape[1] - 1) // intervals]
+
+
+def misses(frames: list[VerifiedFrame], truth: list[VerifiedFrame]) -> dict[str, tuple[int, int]]:
+    """By variable: how many values lie farther from the truth than 3 times the estimate, and of how many."""
+    intervals = len(frames[0].r) - 1
+    energy = float(np.nanmax([np.abs(series(truth, name, intervals)).max() for name in ENERGIES]))  # works NaN at rest
+    found = {}
+    for name in NAMES:
+        values, exact = series(frames, name, intervals), series(truth, name, intervals)
+        estimate = series([frame.error for frame in frames], name, intervals)
+        if name == "orientation":
+            exact = exact * np.sign(np.sum(values * exact, axis=-1, keepdims=True))
+        least = 1.0 if name in ("Wr", "Lk", "Tw") else 0.0
+        scale = energy if name in ENERGIES else max(float(np.abs(exact).max()), least)
+        error = np.abs(values - exact)
+        counts = np.maximum(error, estimate) > ROUNDING * scale
+        found[name] = (int(np.sum(counts & ~(error <= WITHIN * estimate))), int(np.sum(counts)))
+    return found
+
+
+def missed(found: dict[str, tuple[int, int]]) -> float:
+    """The part of all values that lie farther off."""
+    far, all_ = np.sum(list(found.values()), axis=0)
+    return float(far / all_)
+
+
+def gain(told: Scene, frames: list[VerifiedFrame], truth: list[VerifiedFrame]) -> float:
+    """The error of r of the finer run alone, over that of the extrapolated solution."""
+    intervals = told.numerics.intervals
+    fine = refine(replace(told, numerics=replace(told.numerics, verify=False)))
+    exact = series(truth, "r", intervals)
+    alone, both = (np.abs(series(list(x), "r", intervals) - exact).max() for x in (simulate(fine), frames))
+    return float(alone / both)
+
+
+def elastica_rows(label: str, last: VerifiedFrame) -> list[Row]:
+    """The tip at rest against the closed form, alpha = 5: within 3 times its error bar."""
+    across, along, _ = TABLE[5.0]
+    found = []
+    for axis, exact, name in ((0, across, "across"), (2, 1.0 - along, "along")):
+        bar = WITHIN * float(last.error.r[-1, axis]) / exact + 1e-6 / exact  # the table has six digits
+        found.append(relative(f"error bars, {label}: tip {name} at rest", float(last.r[-1, axis]), exact, bar))
+    return found
+
+
+def rows() -> list[Row]:
+    """At least 95 % of the values within 3 times their error bars, in each scene."""
+    found = []
+    for label, (case, settings) in SCENES.items():
+        told, frames = run(scene(case, settings))
+        truth = true(told)
+        by_variable = misses(frames, truth)
+        far = {name: f"{part / all_:.3f}" for name, (part, all_) in by_variable.items() if part}
+        counts = sum(all_ for _, all_ in by_variable.values())
+        print(f"      {label}: {told.numerics.intervals} intervals, {counts} values; parts outside {far}")
+        found.append(at_most(f"error bars, {label}: part outside", missed(by_variable), MISSED))
+        if case.endswith("elastica"):
+            found += elastica_rows(label, frames[-1])
+        if case == "elastica":
+            print(f"      Richardson's gain in r over the finer run alone: {gain(told, frames, truth):.0f}")
+    return found

@@ -36,7 +36,7 @@ chaos: .venv/.dev  ## faults on purpose, on SQLite and PostgreSQL: what became o
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
 	FUZZ=long $(BIN)/python -m pytest -s tests/service/api/test_fuzz.py
 
-stress: .venv/.dev  ## the solver at its limits: sweeps, maps and 10,000 random cases (half an hour)
+stress: .venv/.dev  ## the solver at its limits: sweeps, maps and 10,000 random cases (an hour or more)
 	$(BIN)/python -m stress
 
 bench-work-precision: .venv/.bench  ## CPU time against error, beside PyElastica and MuJoCo's cable

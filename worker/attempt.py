@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import shutil
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -21,7 +22,7 @@ from solver import Frame, Outcome, Run, RunFailed, Scene, code_digest, simulate
 from worker import stopping
 from worker.checkpoints import Checkpoint, Checkpoints
 from worker.drift import drift_of
-from worker.endings import Ending, OutOfDisk, is_full
+from worker.endings import LEAST_FREE, Ending, OutOfDisk, is_full
 from worker.lease import Lease
 from worker.lock import JobLock
 
@@ -30,8 +31,8 @@ Made = TypeVar("Made")
 
 SHARE = 0.05
 """The part of the running time that checkpoints may take."""
-ROOM_WITHIN, TRY_AGAIN = 600.0, 1.0
-"""Seconds for which a run waits on a full disk before it is given up, and between two tries."""
+ROOM_WITHIN, LOOK_AGAIN = 600.0, 1.0
+"""Seconds for which a run waits on a full disk before it is given up, and between two looks at it."""
 
 
 def dataset_file(job: Job) -> str:
@@ -132,9 +133,17 @@ class Attempt:
                 if time.monotonic() >= deadline or not is_full(error, self._path.parent):
                     raise
             log.warning("job %s waits: the disk is full", self._held.job.id)
+            self._wait_for_room(deadline)
+
+    def _wait_for_room(self, deadline: float) -> None:
+        """Wait until all that the run has written so far would fit once more."""
+        needed = LEAST_FREE + size_of(self._directory)
+        while True:
             self._lease.tell(self._lease.reached)
             stopping.check()
-            time.sleep(TRY_AGAIN)
+            time.sleep(LOOK_AGAIN)
+            if shutil.disk_usage(self._path.parent).free >= needed or time.monotonic() >= deadline:
+                return
 
     def _check_size(self) -> None:
         if size_of(self._directory) > self._held.job.limits.disk:

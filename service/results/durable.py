@@ -8,7 +8,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -32,6 +32,13 @@ def write_whole(path: Path, content: bytes | memoryview) -> None:
     sync(path.parent)
 
 
+def discard(path: Path) -> None:
+    """Remove a file, and free its room even if somebody still has it open."""
+    with suppress(OSError):
+        os.truncate(path, 0)
+        path.unlink()
+
+
 def sha256_of(path: Path) -> str:
     """The checksum of a file, hexadecimal."""
     with path.open("rb") as file:
@@ -39,7 +46,9 @@ def sha256_of(path: Path) -> str:
 
 
 def size_of(directory: Path) -> int:
-    """Bytes of the files in a directory."""
+    """Bytes of the files in a directory, none if it is not there."""
+    if not directory.is_dir():
+        return 0
     return sum(entry.stat().st_size for entry in os.scandir(directory) if entry.is_file())
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from service.cases import CaseSpec
 from service.results import netcdf
-from service.results.durable import scratch, sha256_of, sync
+from service.results.durable import discard, scratch, sha256_of, sync
 from service.results.schema import stored_variables
 from service.results.segments import Segment, Segments
 from solver import Frame, Statistics
@@ -43,6 +43,7 @@ class DatasetWriter:
     ) -> None:
         self._path, self._spec = path.absolute(), spec
         self._variables = stored_variables(spec)
+        self._tries = 0
         self._cleanup = ExitStack()
         self._directory = directory or self._cleanup.enter_context(scratch(self._path))
         self._segments = Segments(self._directory, self._variables, path.stem, written)
@@ -71,11 +72,19 @@ class DatasetWriter:
         """Write the dataset beside its place, read it back, and give it its name.
 
         `outcome` and `message` say how the run ended, `s` (m) where its nodes were. Raises OSError where that
-        cannot be done; then nothing is left under the name that was not there before.
+        cannot be done; then nothing is left under the name that was not there before, and it may be tried again.
         """
         self._segments.flush()
-        beside = self._directory / f"{self._path.name}.part"
+        self._tries += 1  # HDF5 keeps a file open that it could not write, and never writes under its name again
+        beside = self._directory / f"{self._path.stem}.{self._tries}{self._path.suffix}.part"
         attributes = self._attributes(outcome, message, self._history(len(s) - 1), statistics)
+        try:
+            return self._publish(beside, s, attributes)
+        except OSError:
+            discard(beside)
+            raise
+
+    def _publish(self, beside: Path, s: NDArray[np.float64], attributes: Mapping[str, Any]) -> Published:
         blocks = self._segments.blocks
         netcdf.write(beside, self._variables, s, self._segments.frames, blocks, attributes)
         netcdf.verify(beside, blocks)

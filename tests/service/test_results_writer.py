@@ -6,6 +6,7 @@ import errno
 import hashlib
 import json
 import os
+import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -168,6 +169,25 @@ def test_an_interrupted_run_leaves_nothing(path: Path):
             writer.append(frame)
         raise KeyboardInterrupt
     assert list(path.parent.iterdir()) == []
+
+
+def test_what_had_no_room_can_be_published_once_there_is_some(path: Path):
+    spec = small_spec()
+    with DatasetWriter(path, spec) as writer:
+        for frame in frames(spec, 50):
+            writer.append(frame)
+        writer.flush()
+        soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, hard))
+        try:
+            with pytest.raises(OSError):
+                writer.publish("completed", "", nodes(spec), STATISTICS)
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        writer.publish("completed", "", nodes(spec), STATISTICS)
+    assert list(path.parent.iterdir()) == [path]
+    with open_dataset(path) as dataset:
+        assert dataset.sizes["time"] == 50
 
 
 def no_space(*args: Any, **kwargs: Any) -> None:

@@ -206,7 +206,7 @@ def test_a_job_begins_again_though_the_database_is_away_just_then(job, registry,
     assert (done.status, done.epoch) == (Status.SUCCESSFUL, 2)
 
 
-WRITES = [(Segments, "flush"), (DatasetWriter, "publish")]
+WRITES = [(Path, "mkdir"), (Segments, "flush"), (DatasetWriter, "publish")]
 
 
 @pytest.mark.parametrize(("written", "method"), WRITES)
@@ -226,13 +226,13 @@ def test_a_disk_that_stays_full_has_a_name_and_leaves_nothing(job, registry, set
 def test_a_disk_that_is_full_for_a_while_costs_nothing(job, registry, settings, monkeypatch, written, method):
     write, failures = getattr(written, method), iter([OSError(errno.ENOSPC, "No space left on device")] * 3)
 
-    def at_last(self, *told):
+    def at_last(self, *told, **named):
         for failure in failures:
             raise failure
-        return write(self, *told)
+        return write(self, *told, **named)
 
     monkeypatch.setattr(segments, "SEGMENT_BYTES", 1)
-    monkeypatch.setattr(attempt, "TRY_AGAIN", 0.0)
+    monkeypatch.setattr(attempt, "LOOK_AGAIN", 0.0)
     monkeypatch.setattr(written, method, at_last)
     done = ended(job, registry, settings)
     assert (done.status, done.attempts) == (Status.SUCCESSFUL, 1)

@@ -64,7 +64,13 @@ def campaign(kind: str, seeds: range, jobs: int, faults: int, known: dict[str, d
 
 
 def _logs(data: Path) -> str:
-    return "\n".join(f"--- {path}\n{path.read_text(errors='replace')[-4000:]}" for path in data.glob("logs/*.log"))
+    """What the processes have said, but for what is usual."""
+    return "\n".join(f"--- {path}\n{_unusual(path)}" for path in data.glob("logs/*.log"))
+
+
+def _unusual(log: Path) -> str:
+    lines = log.read_text(errors="replace").splitlines()
+    return "\n".join([line for line in lines if '"level": "info"' not in line][-100:])
 
 
 if __name__ == "__main__":

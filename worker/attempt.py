@@ -123,16 +123,19 @@ class Attempt:
     def _with_room(self, write: Callable[[], Made]) -> Made:
         """What `write` makes, once the disk has room for it: hours of computing may be worth minutes of waiting.
 
+        What fails is tried once more in any case: the disk may have been full, and have room again by now.
         Raises what `write` does, and whatever else ends a run.
         """
         deadline = time.monotonic() + ROOM_WITHIN
+        failed = False
         while True:
             try:
                 return write()
             except OSError as error:
-                if time.monotonic() >= deadline or not is_full(error, self._path.parent):
+                if time.monotonic() >= deadline or (failed and not is_full(error, self._path.parent)):
                     raise
-            log.warning("job %s waits: the disk is full", self._held.job.id)
+                log.warning("job %s waits for room on the disk: %s", self._held.job.id, error)
+            failed = True
             self._wait_for_room(deadline)
 
     def _wait_for_room(self, deadline: float) -> None:

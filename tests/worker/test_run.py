@@ -240,7 +240,21 @@ def test_a_disk_that_is_full_for_a_while_costs_nothing(job, registry, settings, 
         assert dataset.sizes["time"] == 6
 
 
+def test_a_disk_that_has_room_again_when_it_is_looked_at_costs_nothing(job, registry, settings, monkeypatch):
+    publish, failures = DatasetWriter.publish, iter([OSError(errno.EIO, "NetCDF: HDF error")])
+
+    def at_last(self, *told):
+        for failure in failures:
+            raise failure
+        return publish(self, *told)
+
+    monkeypatch.setattr(attempt, "LOOK_AGAIN", 0.0)
+    monkeypatch.setattr(DatasetWriter, "publish", at_last)
+    assert ended(job, registry, settings).status is Status.SUCCESSFUL
+
+
 def test_another_fault_of_the_disk_is_not_called_full(job, registry, settings, monkeypatch):
+    monkeypatch.setattr(attempt, "LOOK_AGAIN", 0.0)
     monkeypatch.setattr(DatasetWriter, "publish", raising(OSError(errno.EIO, "Input/output error")))
     done = ended(job, registry, settings)
     assert (done.status, done.outcome) == (Status.FAILED, "dataset_not_written")

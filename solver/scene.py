@@ -302,6 +302,16 @@ class Scene:
         for load in self.points:
             if not 0 <= load.s <= self.rod.length:
                 raise ValueError(f"s of a point load must be in [0, {self.rod.length}] m, got {load.s}")
+            self._check_frame(load)
+
+    def _check_frame(self, load: PointLoad) -> None:
+        """A force that follows the rod cannot be added to a condition on the components of f along lab axes."""
+        end = {0.0: self.start, self.rod.length: self.end}.get(load.s)
+        if end is None or self.analysis == "static" or (load.frame, end.frame) != ("material", "lab"):
+            return
+        loaded = any(condition.kind == "load" for component in end.translation for condition in component)
+        if loaded and not all(curve.is_zero for curve in load.force):
+            raise ValueError('frame of a force at an end that is free along lab axes must be "lab", got "material"')
 
     def _check_statics(self) -> None:
         if self.contact is not None:

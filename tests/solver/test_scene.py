@@ -46,6 +46,18 @@ def test_a_point_load_off_the_rod_is_refused(s: float) -> None:
         replace(SCENE, points=(PointLoad(s),))
 
 
+@pytest.mark.parametrize("s", [0.0, 2.0])
+def test_a_force_that_follows_an_end_free_along_lab_axes_is_refused(s: float) -> None:
+    free = replace(End.free(), frame="lab")
+    push = PointLoad(s, force=(Curve.constant(1.0), Curve.constant(0.0), Curve.constant(0.0)), frame="material")
+    with pytest.raises(ValueError, match="free along lab axes must be"):
+        replace(SCENE, start=free, end=free, points=(push,))
+    turning = PointLoad(s, moment=push.force, frame="material")
+    for allowed in (replace(push, s=1.0), replace(push, frame="lab"), turning):
+        replace(SCENE, start=free, end=free, points=(allowed,))
+    replace(SCENE, start=free, end=free, points=(push,), analysis="static")
+
+
 @pytest.mark.parametrize(
     ("field", "value", "rule"),
     [

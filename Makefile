@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install --no-com
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: demo test serve lint bench bench-work-precision load chaos fuzz stress validate lock clean
+.PHONY: demo test serve lint bench bench-work-precision load chaos soak fuzz stress validate lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -32,6 +32,9 @@ load: .venv/.runtime  ## what the service bears: pollers, submissions, events, a
 
 chaos: .venv/.dev  ## faults on purpose, on SQLite and PostgreSQL: what became of every job (an hour or two)
 	$(BIN)/python -m chaos
+
+soak: .venv/.dev  ## an hour of mixed load with faults on one service: does anything grow, leak or get stuck
+	$(BIN)/python -m chaos.soak
 
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
 	FUZZ=long $(BIN)/python -m pytest -s tests/service/api/test_fuzz.py

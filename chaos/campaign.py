@@ -50,7 +50,7 @@ def run_seed(seed: int, settings: Settings, server: Any, small: bool, cases: Map
              count: int, faults: int, only: Sequence[Fault] = ()) -> tuple[Record, Watch]:
     """Run one seed; the database and the datasets are left for the judge."""
     record = Record(seed)
-    served = Served(settings, _free_port())
+    served = Served(settings, free_port())
     served.clock.write_text("0")
     database = Database(settings.database_url)
     submitter = Submitter(served, record, cases)
@@ -61,7 +61,7 @@ def run_seed(seed: int, settings: Settings, server: Any, small: bool, cases: Map
             _make_trouble(target, record, count, faults, only or tuple(WEIGHTS))
             for thread in target.later:
                 thread.join()
-            record.all_ended = _come_to_an_end(target)
+            record.all_ended = come_to_an_end(target)
         served.stop()
     finally:
         with suppress(Exception):
@@ -72,7 +72,7 @@ def run_seed(seed: int, settings: Settings, server: Any, small: bool, cases: Map
 
 def _make_trouble(target: Target, record: Record, count: int, faults: int, only: Sequence[Fault]) -> None:
     stopped = threading.Event()
-    others = [threading.Thread(target=_submit, args=(target, min(QUEUED, count), stopped)),
+    others = [threading.Thread(target=keep_open, args=(target, min(QUEUED, count), stopped)),
               threading.Thread(target=_poison, args=(target, record, stopped))]
     for thread in others:
         thread.start()
@@ -108,7 +108,7 @@ def _steps_taken(database: Database) -> int:
         return int(connection.scalar(select(func.sum(jobs.c.steps + jobs.c.steps_redone))) or 0)
 
 
-def _submit(target: Target, most: int, stopped: threading.Event) -> None:
+def keep_open(target: Target, most: int, stopped: threading.Event) -> None:
     """Keep some jobs open."""
     while not stopped.wait(0.05):
         with suppress(Exception):  # the database may be away
@@ -133,7 +133,7 @@ def _open_jobs(database: Database) -> int:
         return connection.scalar(select(func.count()).select_from(jobs).where(some)) or 0
 
 
-def _come_to_an_end(target: Target) -> bool:
+def come_to_an_end(target: Target) -> bool:
     """Whether all jobs end once nothing happens any more."""
     target.served.clock.write_text("0")
 
@@ -146,7 +146,8 @@ def _come_to_an_end(target: Target) -> bool:
     return wait_for(done)
 
 
-def _free_port() -> int:
+def free_port() -> int:
+    """A port on loopback that nobody listens on."""
     with socket.socket() as listening:
         listening.bind(("127.0.0.1", 0))
         return int(listening.getsockname()[1])

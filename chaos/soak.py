@@ -1,0 +1,153 @@
+"""`python -m chaos.soak`: an hour of mixed load with faults on one service; whether anything grows, leaks or is stuck.
+
+Only processes that run jobs are killed here: the others must live through it all, for their memory to show something.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import sys
+import tempfile
+import threading
+import time
+from contextlib import suppress
+from pathlib import Path
+
+import httpx
+
+from chaos.campaign import come_to_an_end, environment, free_port, keep_open
+from chaos.cases import cases, undisturbed
+from chaos.faults import Fault, Target
+from chaos.faults.broker import delay_message, double_messages, lose_message, wipe_broker
+from chaos.faults.database import cancel_at_end, cancel_job, lock_database
+from chaos.faults.files import tear_checkpoint
+from chaos.faults.processes import (
+    kill_at_rename,
+    kill_child,
+    stop_child_for_a_moment,
+    stop_child_past_its_lease,
+)
+from chaos.growth import Growth
+from chaos.judge import Verdict, judge
+from chaos.record import Record
+from chaos.report import RESULTS
+from chaos.served import Served
+from chaos.submitter import Submitter
+from chaos.watch import Watch
+from service.jobs import Database
+from validation.provenance import provenance
+
+FAULTS: tuple[Fault, ...] = (
+    kill_child, stop_child_for_a_moment, stop_child_past_its_lease, wipe_broker, lose_message, double_messages,
+    delay_message, tear_checkpoint, kill_at_rename, cancel_job, cancel_at_end, lock_database,
+)  # fmt: skip
+BETWEEN = 8.0
+"""Seconds between two faults, on average."""
+OPEN = 3
+"""So many jobs are kept open."""
+LISTEN = 5.0
+"""Seconds for which the events of a job are followed."""
+
+
+def main() -> int:
+    """Soak, print and keep what was seen; 1 if anything grew, leaked, was stuck or went wrong."""
+    parser = argparse.ArgumentParser(prog="python -m chaos.soak", description=__doc__)
+    parser.add_argument("--minutes", type=float, default=60.0)
+    parser.add_argument("--seed", type=int, default=1)
+    told = parser.parse_args()
+    os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    with (
+        tempfile.TemporaryDirectory(prefix="hockle-soak-", ignore_cleanup_errors=True) as directory,
+        environment("sqlite", Path(directory) / "data") as (settings, server, small),
+    ):
+        record, served = Record(told.seed), Served(settings, free_port())
+        database, known = Database(settings.database_url), cases()
+        submitter = Submitter(served, record, known)
+        target = Target(served, database, random.Random(told.seed), server, small, submitter.submit)  # no secret
+        served.start()
+        try:
+            with Watch(settings, served) as watch:
+                growth = _soak(target, record, 60.0 * told.minutes)
+                record.all_ended = come_to_an_end(target)
+                left = len(list(settings.work.iterdir()))
+        finally:
+            served.stop()
+            database.close()
+        verdict = judge(record, watch, settings, {name: undisturbed(case) for name, case in known.items()})
+    good = verdict.good and growth.flat and record.all_ended and not left
+    made_with = [*provenance(), f"seed {told.seed}, {told.minutes:g} min"]
+    text = "\n".join(["# Soak", "", *(f"- {line}" for line in made_with), "", _told(record, verdict, growth, left), "",
+                      *growth.lines(), "", "good" if good else "BAD", ""])  # fmt: skip
+    print(text)
+    RESULTS.mkdir(exist_ok=True)
+    (RESULTS / "soak.md").write_text(text, encoding="utf-8")
+    return 0 if good else 1
+
+
+def _told(record: Record, verdict: Verdict, growth: Growth, left: int) -> str:
+    done = ", ".join(f"{name} {count}" for name, count in record.faults.most_common())
+    return (f"{verdict.jobs} jobs, {verdict.published} datasets, {growth.requests} looks at a job, {verdict.faults} "
+            f"faults ({done}). Lost {verdict.lost}, ended twice {verdict.duplicated}, overlaps {verdict.overlaps}, "
+            f"differing {verdict.not_identical}, wrongly ended {verdict.wrong_outcome}, stuck "
+            f"{'none' if record.all_ended else 'some'}, left in the work directory {left}, in the datasets "
+            f"{verdict.left_over}; {verdict.redone:.1%} of the steps redone.")  # fmt: skip
+
+
+def _soak(target: Target, record: Record, seconds: float) -> Growth:
+    """Load and faults for so long, with a sample a minute."""
+    growth, stopped = Growth(target.served), threading.Event()
+    others = [threading.Thread(target=keep_open, args=(target, OPEN, stopped)),
+              threading.Thread(target=_look, args=(target, record, growth, stopped)),
+              threading.Thread(target=_listen, args=(target, stopped))]  # fmt: skip
+    for thread in others:
+        thread.start()
+    end, due = time.monotonic() + seconds, time.monotonic()
+    try:
+        while time.monotonic() < end:
+            if time.monotonic() >= due:
+                growth.sample()
+                due += min(60.0, seconds / 20)
+            with suppress(Exception):  # a process may have just ended
+                fault = target.random.choice(FAULTS)
+                record.faults[fault.__name__] += fault(target)
+            time.sleep(target.random.expovariate(1 / BETWEEN))
+        growth.sample()
+    finally:
+        stopped.set()
+        for thread in (*others, *target.later):
+            thread.join()
+    return growth
+
+
+def _look(target: Target, record: Record, growth: Growth, stopped: threading.Event) -> None:
+    """Ask for what dashboards and programs ask for, on connections that stay open and on new ones."""
+    with httpx.Client(base_url=target.served.address, timeout=20.0, trust_env=False) as client:
+        while not stopped.wait(0.1):
+            with suppress(httpx.TransportError):
+                client.get("/v1/jobs", params={"limit": 20})
+                for job_id in list(record.accepted)[-5:]:
+                    job = client.get(f"/v1/jobs/{job_id}").json()
+                    if job.get("dataset"):
+                        client.get(f"/v1/jobs/{job_id}/data", params={"variables": "Tw", "time_stride": 10})
+                        httpx.get(f"{target.served.address}/v1/jobs/{job_id}/dataset", timeout=20.0, trust_env=False)
+                    growth.requests += 1
+                client.get("/metrics")
+
+
+def _listen(target: Target, stopped: threading.Event) -> None:
+    """Follow the events of one job after the other for a while, and go away in the middle."""
+    while not stopped.wait(0.5):
+        with suppress(httpx.HTTPError):
+            for job_id, _ in target.running()[:1]:
+                address = f"{target.served.address}/v1/jobs/{job_id}/events"
+                with httpx.stream("GET", address, timeout=LISTEN, trust_env=False) as answer:
+                    until = time.monotonic() + LISTEN
+                    for _ in answer.iter_lines():
+                        if time.monotonic() > until:
+                            break
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -16,12 +16,14 @@ from solver.scene import Contact
 
 SKIN = 0.5
 """In cutoffs: how much farther than the cutoff a search looks."""
-LARGEST_APPROACH = 0.7
-"""Part of its distance that a pair may move in a step: less than all of it, so nothing passes through."""
+LARGEST_APPROACH = 0.35
+"""Part of its distance that a pair may move in a step: too little to leap from where the force is weak to where the
+aperture hides it (points nearer to each other than they are spaced see each other along the rod)."""
 LARGEST_SHIFT = 0.2
 """Part of the search's slack that a point may move in a step at its present speed; 0.25 is left before each step."""
-TIME_TO_TOUCH = 0.5
-"""Part of the time to closure, gap / closing speed, that the next step may take."""
+TIME_TO_TOUCH = 0.2
+"""Part of the time to closure, gap / closing speed, that the next step may take; a gap below half the distance counts
+as that much, for what is held by a stiff force does not close at its speed."""
 
 
 class SelfContact:
@@ -161,6 +163,6 @@ def approaches(points: Points, pairs: Pairs) -> tuple[float, float]:
         largest = max(largest, change / before)
         if closing > 0.0:
             d = np.sqrt(square)
-            gap = max(d - 0.25 * (points.diameter[a] + points.diameter[b]), 0.1 * d)
+            gap = max(d - 0.25 * (points.diameter[a] + points.diameter[b]), 0.5 * d)
             shortest = min(shortest, gap * d / closing)
     return np.sqrt(largest), shortest

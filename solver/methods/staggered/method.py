@@ -26,6 +26,8 @@ from solver.scene import Scene
 SCHEME = Scheme(
     tableau.C, tableau.INVERSE, tableau.TRANSFORM, tableau.BACK, tableau.GAMMA, tableau.LAMBDA, tableau.ERROR
 )
+NEWTON_PART = 1e-3
+"""Of the tolerance of a step's error: what Newton's iteration may leave. (Nothing where steps are of fixed length.)"""
 FEEDBACK = 0.5
 """Part of an end's lag behind its prescribed place that a step takes back."""
 SMALL_MOTION = 1e-7
@@ -54,6 +56,8 @@ class StaggeredMethod:
         self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=3)
         self.stages, self.driven = Stages.empty(N), Driven.empty(N)
         self.work = Work.empty(N, scene.contact is not None)
+        tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
+        self._newton_part = NEWTON_PART * tolerance if tolerance < 1.0 else 0.0
         self._unit = float(self.chain.stiffness[:, :2].mean()) / length**2
         self._last_dt = 0.0
         self._last = (np.zeros_like(self.stages.theta), np.zeros((3, 3)), np.zeros_like(self.stages.F))
@@ -77,14 +81,12 @@ class StaggeredMethod:
         else:
             self._guess(dt)
         self.contact.prepare(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1])
-        status, iterations = step(self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self.state,
-                                  self.stages, self.contact.touch, self.work)  # fmt: skip
+        status, iterations = self._solve(dt)
         if consistent and iterations == LARGEST_ITERATIONS and status != CONVERGED:
             # an end that is let go turns at once, however short the step: go on from there, with new tangents
-            status, more = step(self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self.state,
-                                self.stages, self.contact.touch, self.work)  # fmt: skip
+            status, more = self._solve(dt)
             iterations += more
-        return int(status), int(iterations)
+        return status, iterations
 
     def relative_increment(self, dt: float) -> float:
         """The embedded estimate of the trial's error relative to its motion, the larger of rotation and place."""
@@ -178,6 +180,14 @@ class StaggeredMethod:
         self.contact.compile()
         self._guess(1.0)
         self.relative_increment(1.0)
+
+    def _solve(self, dt: float) -> tuple[int, int]:
+        """Iterate on the stages from where they are; how it ended and the iterations."""
+        status, iterations = step(
+            self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self._newton_part, self.state, self.stages,
+            self.contact.touch, self.work,
+        )  # fmt: skip
+        return int(status), int(iterations)
 
     def _place_nodes(self, R: Array, omega: Array, base: Array, centres: Array) -> None:
         place_nodes(self.chain, R, omega, base, centres[0], centres[1], self._nodes[0], self._nodes[1])

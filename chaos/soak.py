@@ -17,7 +17,7 @@ from pathlib import Path
 
 import httpx
 
-from chaos.campaign import come_to_an_end, environment, free_port, keep_open
+from chaos.campaign import CHECKPOINT, LEASE, come_to_an_end, free_port, keep_open
 from chaos.cases import cases, undisturbed
 from chaos.faults import Fault, Target
 from chaos.faults.broker import delay_message, double_messages, lose_message, wipe_broker
@@ -37,6 +37,7 @@ from chaos.served import Served
 from chaos.submitter import Submitter
 from chaos.watch import Watch
 from service.jobs import Database
+from service.settings import Settings
 from validation.provenance import provenance
 
 FAULTS: tuple[Fault, ...] = (
@@ -58,14 +59,13 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     told = parser.parse_args()
     os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    with (
-        tempfile.TemporaryDirectory(prefix="hockle-soak-", ignore_cleanup_errors=True) as directory,
-        environment("sqlite", Path(directory) / "data") as (settings, server, small),
-    ):
+    with tempfile.TemporaryDirectory(prefix="hockle-soak-", ignore_cleanup_errors=True) as directory:
+        settings = Settings(data=Path(directory) / "data", lease=LEASE, checkpoint=CHECKPOINT)
+        settings.make_directories()
         record, served = Record(told.seed), Served(settings, free_port())
         database, known = Database(settings.database_url), cases()
         submitter = Submitter(served, record, known)
-        target = Target(served, database, random.Random(told.seed), server, small, submitter.submit)  # no secret
+        target = Target(served, database, random.Random(told.seed), None, False, submitter.submit)  # no secret
         served.start()
         try:
             with Watch(settings, served) as watch:

@@ -39,6 +39,7 @@ def runs() -> list[Run]:
     """By hockle and the peers."""
     boxes = [box(n, 1.0, 0.5) for n in (10, 20, 40, 80, 160)]
     staggereds = [staggered(n, 2.5, 1e-2) for n in (10, 20, 40, 80, 160)]
+    elastica(ALPHA, 4)  # compiles what the statics need
     statics = [Run(SCENE, STATICS, f"N {n}", partial(or_outcome, _static, Numerics(intervals=n)))
                for n in (10, 20, 40, 80, 160)]  # fmt: skip
     return [

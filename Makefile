@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install --no-com
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: demo test serve lint bench bench-work-precision load chaos soak fuzz stress validate lock clean
+.PHONY: demo test serve lint bench bench-work-precision bench-skipping load chaos soak fuzz stress validate lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -44,6 +44,9 @@ stress: .venv/.dev  ## the solver at its limits: sweeps, maps and 10,000 random 
 
 bench-work-precision: .venv/.bench  ## CPU time against error, beside PyElastica and MuJoCo's cable
 	$(BIN)/python -m benchmarks.work_precision
+
+bench-skipping: .venv/.runtime  ## what contact, fluid and loads cost a scene that lacks them (a quarter of an hour)
+	$(BIN)/python -m benchmarks.skipping
 
 validate: .venv/.runtime  ## published scenes, and what they must show
 	$(BIN)/python -m validation

@@ -19,6 +19,8 @@ from service.settings import Settings
 
 AT_ONCE = 64
 """The most messages that are left for the workers: each makes one of them look for a job."""
+TIDY = 60.0
+"""Seconds after which a worker is rung though no job waits: it first removes what lost ones have left."""
 
 log = logging.getLogger(__name__)
 
@@ -91,9 +93,9 @@ def waiting(database: Database) -> int:
         return connection.scalar(select(func.count()).select_from(some)) or 0
 
 
-def ring_for_all(database: Database, doorbell: Doorbell) -> None:
-    """Have a message lie for each job that waits, up to AT_ONCE."""
-    if wanted := waiting(database):
+def ring_for_all(database: Database, doorbell: Doorbell, least: int = 0) -> None:
+    """Have a message lie for each job that waits, up to AT_ONCE, and `least` in any case."""
+    if wanted := max(waiting(database), least):
         doorbell.leave(wanted)
 
 
@@ -105,6 +107,7 @@ class Reconciler:
         self._watch = Watch(settings.lease)
         self._leader = Leader(database, settings.locks / "reconciler.lock")
         self._interval = min(5.0, settings.lease / 3)
+        self._tidy_at = time.monotonic()
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._run, name="reconciler", daemon=True)
 
@@ -123,7 +126,10 @@ class Reconciler:
             log.warning("job %s, epoch %d: its worker has fallen silent", lost.job_id, lost.epoch)
             take_back(self._database, lost, self._attempts)
         dismiss_cancelled(self._database)
-        ring_for_all(self._database, self._doorbell)
+        tidy = time.monotonic() >= self._tidy_at
+        ring_for_all(self._database, self._doorbell, least=int(tidy))
+        if tidy:
+            self._tidy_at = time.monotonic() + TIDY
 
     def _run(self) -> None:
         while True:

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from service.jobs import Database, NewJob, Reached, Registry, Status
+from service.jobs import Database, NewJob, Reached, Registry, Status, reconciler
 from service.jobs.doorbell import Doorbell, celery_settings
 from service.jobs.held import HeldJob, claim
 from service.jobs.leader import Leader
-from service.jobs.reconciler import AT_ONCE, Reconciler, Watch, beats, dismiss_cancelled, take_back
+from service.jobs.reconciler import AT_ONCE, Reconciler, Watch, beats, dismiss_cancelled, ring_for_all, take_back
 from service.settings import Settings
 
 LEASE, ATTEMPTS = 10.0, 3
@@ -118,16 +118,26 @@ def test_a_cancelled_job_that_is_handed_back_is_dismissed(registry):
     assert registry.get(job.job.id).status is Status.DISMISSED
 
 
-def test_messages_are_left_for_as_many_jobs_as_wait_up_to_a_bound(registry, settings):
+def test_messages_are_left_for_as_many_jobs_as_wait_up_to_a_bound(registry):
     bell = Bell()
-    reconciler = Reconciler(registry.database, bell, settings)
-    reconciler.once()
+    ring_for_all(registry.database, bell)
     assert bell.wanted == []
     for count in (3, AT_ONCE):
         for _ in range(count):
             registry.submit(NewJob({}))
-        reconciler.once()
+        ring_for_all(registry.database, bell)
     assert bell.wanted == [3, AT_ONCE]
+
+
+def test_what_the_lost_have_left_is_removed_though_no_job_comes_any_more(registry, settings, monkeypatch):
+    """A worker removes it at any message: so one comes at the start, and again and again."""
+    for every, wanted in ((1000.0, [1]), (0.0, [1, 1, 1])):
+        monkeypatch.setattr(reconciler, "TIDY", every)
+        bell = Bell()
+        looks = Reconciler(registry.database, bell, settings)
+        for _ in range(3):
+            looks.once()
+        assert bell.wanted == wanted
 
 
 def test_a_running_reconciler_takes_back_a_lost_job(registry, settings, until):
@@ -136,13 +146,13 @@ def test_a_running_reconciler_takes_back_a_lost_job(registry, settings, until):
         until(lambda: registry.get(job.job.id).status is Status.ACCEPTED)
 
 
-def test_one_of_many_leads_and_another_when_it_resigns(database, settings):
+def test_one_of_many_leads_and_another_when_it_resigns(database, settings, until):
     first, second = (Leader(database, settings.locks / "leader") for _ in range(2))
     assert first.elected()
     assert not second.elected()
     assert first.elected()
     first.resign()
-    assert second.elected()
+    until(second.elected)  # PostgreSQL frees the lock when it has seen that the connection is gone
     second.resign()
 
 

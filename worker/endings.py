@@ -46,7 +46,7 @@ def ending_of(error: Exception, job: Job, store: Path) -> Ending:
                            "give it more, or store less with output.fields or a longer output.interval")
         case CaseError():
             return _failed("invalid_case", str(error))
-        case MemoryError():
+        case _ if _began_with(error, MemoryError):
             return _failed("out_of_memory", f"the job needs more than its {job.limits.memory:,} bytes of memory, or "
                            "than there are: use fewer intervals or a longer output.interval")
         case OSError():
@@ -55,6 +55,11 @@ def ending_of(error: Exception, job: Job, store: Path) -> Ending:
     log.error("job %s failed", job.id, exc_info=error)
     return _failed("internal_error", f"hockle itself failed ({type(error).__name__}); the worker's log says where. "
                    f"Please report it with the case and the job id {job.id}")
+
+
+def _began_with(error: BaseException | None, kind: type[Exception]) -> bool:
+    """Whether it is of that kind, or came up while one of that kind was handled: cleaning up fails as well then."""
+    return error is not None and (isinstance(error, kind) or _began_with(error.__context__, kind))
 
 
 def is_full(error: OSError, store: Path) -> bool:

@@ -10,8 +10,11 @@ import os
 import signal
 import threading
 import time
+from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 
+import numpy as np
 import pytest
 from sqlalchemy.exc import OperationalError
 
@@ -24,7 +27,7 @@ from service.results import DatasetWriter, open_dataset, segments
 from service.results.segments import Segments
 from service.settings import Settings
 from solver import Outcome, RunFailed, simulate
-from worker import attempt, lease, run
+from worker import attempt, checkpoints, lease, run
 from worker.lock import job_lock
 
 SMALL = apply_settings(
@@ -273,6 +276,22 @@ def test_a_bug_is_told_without_its_traceback_which_is_logged(job, registry, sett
 def test_too_little_memory_has_a_name(job, registry, settings, monkeypatch):
     monkeypatch.setattr(attempt, "simulate", raising(MemoryError()))
     assert ended(job, registry, settings).outcome == "out_of_memory"
+
+
+def test_memory_that_ends_while_a_checkpoint_is_packed_has_the_same_name(job, registry, settings, monkeypatch):
+    """A BytesIO that cannot grow has lost its buffer, and is closed: so closing the archive in it is a ValueError."""
+
+    class Narrow(BytesIO):
+        def write(self, content):
+            if self.tell() + len(content) > 10_000:
+                self.close()
+                raise MemoryError
+            return super().write(content)
+
+    monkeypatch.setattr(checkpoints, "BytesIO", Narrow)
+    with pytest.raises(ValueError, match="closed"):
+        np.savez(Narrow(), np.zeros(10_000))
+    assert ended(job, registry, replace(settings, checkpoint=1e-9)).outcome == "out_of_memory"
 
 
 def test_a_case_that_this_version_refuses_fails_with_its_faults(registry, settings):

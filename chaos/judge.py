@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -67,7 +68,9 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
         verdict.steps += job.reached.steps
         verdict.steps_redone += job.reached.steps_redone
         verdict.outcomes[job.outcome] += 1
-        verdict.wrong_outcome += not _explained(job, record)
+        if not _explained(job, record):
+            verdict.wrong_outcome += 1
+            print(f"wrongly ended: {job.label}, {job.outcome}: {job.message or 'no message'}", file=sys.stderr)
         if job.status is Status.SUCCESSFUL and job.dataset is not None:
             verdict.published += 1
             name = record.accepted.get(job.id)

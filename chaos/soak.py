@@ -6,12 +6,14 @@ Only processes that run jobs are killed here: the others must live through it al
 from __future__ import annotations
 
 import argparse
+import itertools
 import os
 import random
 import sys
 import tempfile
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
@@ -33,7 +35,7 @@ from chaos.growth import Growth
 from chaos.judge import Verdict, judge
 from chaos.record import Record
 from chaos.report import RESULTS
-from chaos.served import Served
+from chaos.served import Served, wait_for
 from chaos.submitter import Submitter
 from chaos.watch import Watch
 from service.jobs import Database
@@ -50,6 +52,8 @@ OPEN = 3
 """So many jobs are kept open."""
 LISTEN = 5.0
 """Seconds for which the events of a job are followed."""
+CROWD = 60
+"""So many ask at once, after each sample: more than an API process has threads."""
 
 
 def main() -> int:
@@ -71,7 +75,8 @@ def main() -> int:
             with Watch(settings, served) as watch:
                 growth = _soak(target, record, 60.0 * told.minutes)
                 record.all_ended = come_to_an_end(target)
-                left = len(list(settings.work.iterdir()))
+                wait_for(lambda: not _left(settings))
+                left = _left(settings)
         finally:
             served.stop()
             database.close()
@@ -86,13 +91,20 @@ def main() -> int:
     return 0 if good else 1
 
 
-def _told(record: Record, verdict: Verdict, growth: Growth, left: int) -> str:
-    done = ", ".join(f"{name} {count}" for name, count in record.faults.most_common())
-    return (f"{verdict.jobs} jobs, {verdict.published} datasets, {growth.requests} looks at a job, {verdict.faults} "
-            f"faults ({done}). Lost {verdict.lost}, ended twice {verdict.duplicated}, overlaps {verdict.overlaps}, "
-            f"differing {verdict.not_identical}, wrongly ended {verdict.wrong_outcome}, stuck "
-            f"{'none' if record.all_ended else 'some'}, left in the work directory {left}, in the datasets "
-            f"{verdict.left_over}; {verdict.redone:.1%} of the steps redone.")  # fmt: skip
+def _left(settings: Settings) -> list[str]:
+    """Work directories and lock files of jobs."""
+    locks = (path for path in settings.locks.glob("*.lock") if path.stem != "reconciler")
+    return [path.name for path in (*settings.work.iterdir(), *locks)]
+
+
+def _told(record: Record, verdict: Verdict, growth: Growth, left: list[str]) -> str:
+    done, outcomes = (", ".join(f"{name} {count}" for name, count in counted.most_common())
+                      for counted in (record.faults, verdict.outcomes))  # fmt: skip
+    return (f"{verdict.jobs} jobs ({outcomes}), {verdict.published} datasets, {growth.requests} looks at a job, "
+            f"{verdict.faults} faults ({done}). Lost {verdict.lost}, ended twice {verdict.duplicated}, overlaps "
+            f"{verdict.overlaps}, differing {verdict.not_identical}, wrongly ended {verdict.wrong_outcome}, stuck "
+            f"{'none' if record.all_ended else 'some'}, work directories and lock files left {len(left)}, "
+            f"datasets {verdict.left_over}; {verdict.redone:.1%} of the steps redone.")  # fmt: skip
 
 
 def _soak(target: Target, record: Record, seconds: float) -> Growth:
@@ -108,6 +120,7 @@ def _soak(target: Target, record: Record, seconds: float) -> Growth:
         while time.monotonic() < end:
             if time.monotonic() >= due:
                 growth.sample()
+                _crowd(target, record)
                 due += min(60.0, seconds / 20)
             with suppress(Exception):  # a process may have just ended
                 fault = target.random.choice(FAULTS)
@@ -119,6 +132,19 @@ def _soak(target: Target, record: Record, seconds: float) -> Growth:
         for thread in (*others, *target.later):
             thread.join()
     return growth
+
+
+def _crowd(target: Target, record: Record) -> None:
+    """Many ask at once, each on a connection of its own, so that the pools are as full as they ever get."""
+    of_jobs = [f"/v1/jobs/{job_id}/data?variables=Tw,r&time_stride=20" for job_id in list(record.accepted)[-OPEN - 3 :]]
+    paths = itertools.islice(itertools.cycle(["/v1/jobs", "/metrics", *of_jobs]), CROWD)
+
+    def ask(path: str) -> None:
+        with suppress(httpx.TransportError):
+            httpx.get(target.served.address + path, timeout=20.0, trust_env=False)
+
+    with ThreadPoolExecutor(CROWD) as pool:
+        list(pool.map(ask, paths))
 
 
 def _look(target: Target, record: Record, growth: Growth, stopped: threading.Event) -> None:

@@ -105,7 +105,11 @@ def _set_up_sqlite(connection: Any, _record: object) -> None:
 
 def _begin_sqlite(connection: Connection) -> None:
     """Writers wait where they begin: one that first reads cannot be refused in its middle."""
-    _patiently(connection.exec_driver_sql, "BEGIN IMMEDIATE")
+    driver: Any = connection.connection.dbapi_connection  # a refusal costs it a fiftieth
+    try:
+        _patiently(driver.execute, "BEGIN IMMEDIATE")
+    except sqlite3.Error as error:
+        raise OperationalError("BEGIN IMMEDIATE", None, error) from error
 
 
 def _patiently(execute: Callable[[str], object], statement: str) -> None:
@@ -118,9 +122,8 @@ def _patiently(execute: Callable[[str], object], statement: str) -> None:
     while True:
         try:
             execute(statement)
-        except (sqlite3.OperationalError, OperationalError) as error:
-            code = getattr(getattr(error, "orig", error), "sqlite_errorcode", None)
-            if code != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
+        except sqlite3.OperationalError as error:
+            if error.sqlite_errorcode != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
                 raise
             time.sleep(0.001)
         else:

@@ -7,6 +7,7 @@ import json
 import secrets
 import time
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from service.jobs.lifecycle import Status
@@ -68,12 +69,12 @@ class NewJob:
     limits: Limits = Limits()
     id: str = field(default_factory=lambda: new_id())
 
-    @property
+    @cached_property
     def case_json(self) -> str:
         """The case as canonical JSON: equal cases give equal text."""
         return json.dumps(self.case, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
-    @property
+    @cached_property
     def case_sha256(self) -> str:
         """The hash that equal cases share."""
         return hashlib.sha256(self.case_json.encode()).hexdigest()

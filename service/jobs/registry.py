@@ -14,7 +14,7 @@ from service.jobs.audit import Actor, note
 from service.jobs.database import Database, Transaction
 from service.jobs.job import Job, NewJob
 from service.jobs.lifecycle import Status
-from service.jobs.tables import JOB_COLUMNS, events, job_of, jobs, owners
+from service.jobs.tables import FRESH, JOB_COLUMNS, events, job_of, jobs, owners
 
 ONE_JOB = select(*JOB_COLUMNS).where(jobs.c.id == bindparam("job_id"))
 """The read that is made most: put together once."""
@@ -68,8 +68,8 @@ class Registry:
     def submit(self, new: NewJob) -> Job:
         """Write an accepted job; when this returns, it is on disk."""
         with self.database.writing() as transaction:
-            insert_jobs(transaction, [new])
-        return self.get(new.id)
+            [job] = insert_jobs(transaction, [new])
+        return job
 
     def get(self, job_id: str) -> Job:
         """One job, by a point read. Raises UnknownJob."""
@@ -134,18 +134,20 @@ class Registry:
         return true() if self.owner is None else jobs.c.owner == self.owner
 
 
-def insert_jobs(transaction: Transaction, new: Sequence[NewJob]) -> None:
-    """Write accepted jobs, the owners that are new, and the jobs' first events."""
+def insert_jobs(transaction: Transaction, new: Sequence[NewJob]) -> list[Job]:
+    """Write accepted jobs, the owners that are new, and the jobs' first events; gives the jobs."""
     connection = transaction.connection
     dialect = postgresql if connection.dialect.name == "postgresql" else sqlite
     for owner in {job.owner for job in new}:
         connection.execute(dialect.insert(owners).values(name=owner).on_conflict_do_nothing())
-    connection.execute(insert(jobs), [{
+    rows = [{
         "id": job.id, "owner": job.owner, "status": Status.ACCEPTED.value, "title": job.title, "label": job.label,
         "priority": job.priority, "case_json": job.case_json, "case_sha256": job.case_sha256,
         "created": transaction.now, "limit_wall": job.limits.wall, "limit_memory": job.limits.memory,
         "limit_disk": job.limits.disk,
-    } for job in new])  # fmt: skip
+    } for job in new]  # fmt: skip
+    connection.execute(insert(jobs), rows)
     first = json.dumps({"status": Status.ACCEPTED.value})
     connection.execute(insert(events), [{"job_id": job.id, "seq": 1, "time": transaction.now, "kind": "accepted",
                                          "data": first} for job in new])  # fmt: skip
+    return [job_of({name: row.get(name, unwritten) for name, unwritten in FRESH.items()}) for row in rows]

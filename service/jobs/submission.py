@@ -6,10 +6,10 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import delete, func, insert, select, tuple_
+from sqlalchemy import bindparam, delete, func, insert, select, tuple_
 
 from service.jobs.audit import Actor, note
-from service.jobs.database import Database, Transaction
+from service.jobs.database import Transaction
 from service.jobs.job import Job, NewJob
 from service.jobs.lifecycle import Status
 from service.jobs.registry import insert_jobs
@@ -18,7 +18,17 @@ from service.jobs.tables import JOB_COLUMNS, idempotency_keys, job_of, jobs, web
 REMEMBERED = 86400.0
 """How long (s) an idempotency key is remembered."""
 
-UNFINISHED = (Status.ACCEPTED, Status.RUNNING)
+ALIKE = (
+    select(jobs.c.owner, jobs.c.case_sha256, func.max(jobs.c.id).label("id"))
+    .where(jobs.c.case_sha256.in_(bindparam("hashes", expanding=True)), jobs.c.status == Status.SUCCESSFUL)
+    .group_by(jobs.c.owner, jobs.c.case_sha256)
+)
+UNFINISHED = (
+    select(jobs.c.owner, func.count().label("many"))
+    .where(jobs.c.owner.in_(bindparam("owners", expanding=True)),
+           jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING)))
+    .group_by(jobs.c.owner)
+)  # fmt: skip
 
 
 class KeyReused(Exception):
@@ -50,18 +60,17 @@ class Submission:
         return self.new.owner, self.key
 
 
-def submit_all(database: Database, submissions: Sequence[Submission], quota: int) -> list[Job | Exception]:
-    """Write what is new of some submissions in one transaction; gives the job of each, or why there is none.
+def submit_all(transaction: Transaction, submissions: Sequence[Submission], quota: int) -> list[Job | Exception]:
+    """Write what is new of some submissions; gives the job of each, or why there is none.
 
     `quota`: the most unfinished jobs of one owner.
     """
-    with database.writing() as transaction:
-        desk = _Desk(transaction, submissions, quota)
-        verdicts = [desk.judge(submission) for submission in submissions]
-        desk.write()
-        ids = [verdict for verdict in verdicts if isinstance(verdict, str)]
-        rows = transaction.connection.execute(select(*JOB_COLUMNS).where(jobs.c.id.in_(ids))).mappings()
-        now = {row["id"]: job_of(row) for row in rows}
+    desk = _Desk(transaction, submissions, quota)
+    verdicts = [desk.judge(submission) for submission in submissions]
+    now = {job.id: job for job in desk.write()}
+    if older := {verdict for verdict in verdicts if isinstance(verdict, str)} - now.keys():
+        rows = transaction.connection.execute(select(*JOB_COLUMNS).where(jobs.c.id.in_(older))).mappings()
+        now |= {row["id"]: job_of(row) for row in rows}
     return [now[verdict] if isinstance(verdict, str) else verdict for verdict in verdicts]
 
 
@@ -95,11 +104,10 @@ class _Desk:
                                "job_id": verdict, "created": self._transaction.now})
         return verdict
 
-    def write(self) -> None:
-        """Write the jobs that are new, and what belongs to them."""
+    def write(self) -> list[Job]:
+        """Write the jobs that are new, and what belongs to them; gives the jobs."""
         connection = self._transaction.connection
-        if self._made:
-            insert_jobs(self._transaction, [one.new for one in self._made])
+        made = insert_jobs(self._transaction, [one.new for one in self._made]) if self._made else []
         for actor in {one.actor for one in self._made}:
             note(self._transaction, actor, "job_submitted", *(one.new.id for one in self._made if one.actor == actor))
         if self._keys:
@@ -108,6 +116,7 @@ class _Desk:
                  for one in self._made if one.webhook]  # fmt: skip
         if hooks:
             connection.execute(insert(webhooks), hooks)
+        return made
 
 
 def _known(transaction: Transaction, marks: Collection[tuple[str, str]]) -> dict[tuple[str, str], tuple[str, str]]:
@@ -127,19 +136,11 @@ def _alike(transaction: Transaction, hashes: Collection[str]) -> dict[tuple[str,
     """The newest successful job of each case, by owner and hash."""
     if not hashes:
         return {}
-    found = transaction.connection.execute(
-        select(jobs.c.owner, jobs.c.case_sha256, func.max(jobs.c.id).label("id"))
-        .where(jobs.c.case_sha256.in_(hashes), jobs.c.status == Status.SUCCESSFUL)
-        .group_by(jobs.c.owner, jobs.c.case_sha256)
-    )
+    found = transaction.connection.execute(ALIKE, {"hashes": list(hashes)})
     return {(row.owner, row.case_sha256): row.id for row in found}
 
 
 def _unfinished(transaction: Transaction, owners: Collection[str]) -> Counter[str]:
     """How many unfinished jobs each of the owners has."""
-    found = transaction.connection.execute(
-        select(jobs.c.owner, func.count().label("many"))
-        .where(jobs.c.owner.in_(owners), jobs.c.status.in_(UNFINISHED))
-        .group_by(jobs.c.owner)
-    )
+    found = transaction.connection.execute(UNFINISHED, {"owners": list(owners)})
     return Counter({row.owner: row.many for row in found})

@@ -69,12 +69,13 @@ class Submissions:
 
     def _commit(self) -> None:
         while (first := self._waiting.get()) is not None:
-            self._settle([one for one in (first, *self._more()) if one[1].set_running_or_notify_cancel()])
-            self._news.put(True)
+            if first[1].set_running_or_notify_cancel():
+                self._settle([first])
+                self._news.put(True)
         self._news.put(False)
 
     def _more(self) -> list[Waiting]:
-        """All that waits besides, up to a bound."""
+        """All that waits besides and is still wanted, up to a bound."""
         found: list[Waiting] = []
         while len(found) < AT_ONCE:
             try:
@@ -84,14 +85,18 @@ class Submissions:
             if item is None:  # the end, for the next look
                 self._waiting.put(None)
                 break
-            found.append(item)
+            if item[1].set_running_or_notify_cancel():
+                found.append(item)
         return found
 
     def _settle(self, batch: list[Waiting], again: bool = True) -> None:
-        """Answer a batch. If it fails, each is tried once more by itself: one may be at fault, or another process
-        may have written the same idempotency key in the meantime."""
+        """Answer a batch, with all that came while other processes wrote. If it fails, each is tried once more by
+        itself: one may be at fault, or another process may have written the same idempotency key in the meantime."""
         try:
-            results = submit_all(self._database, [submission for submission, _ in batch], self._quota)
+            with self._database.writing() as transaction:
+                if again:
+                    batch += self._more()
+                results = submit_all(transaction, [submission for submission, _ in batch], self._quota)
         except Exception as error:
             for one in batch:
                 if again:

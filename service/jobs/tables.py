@@ -9,6 +9,7 @@ from sqlalchemy import (
     BigInteger,
     Boolean,
     Column,
+    ColumnDefault,
     Double,
     ForeignKey,
     Index,
@@ -131,6 +132,9 @@ webhooks = Table(
 
 NOT_OF_THE_JOB = ("case_json", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
 JOB_COLUMNS = [column for column in jobs.columns if column.name not in NOT_OF_THE_JOB]
+FRESH = {column.name: column.default.arg if isinstance(column.default, ColumnDefault) else None
+         for column in JOB_COLUMNS}  # fmt: skip
+"""What a job's row holds where nothing was written."""
 
 
 def job_of(row: Mapping[Any, Any]) -> Job:

@@ -23,7 +23,8 @@ def wanted(case=None, owner="alice", **terms):
 
 
 def submit(database, *submissions, quota=MANY):
-    return submit_all(database, submissions, quota)
+    with database.writing() as transaction:
+        return submit_all(transaction, submissions, quota)
 
 
 def run(database, job, status=Status.SUCCESSFUL):

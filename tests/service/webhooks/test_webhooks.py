@@ -82,7 +82,8 @@ def ended(database, key):
 
     def make(url: str) -> str:
         wanted = Submission(NewJob({}, owner="alice"), Actor("alice", key.prefix), webhook=url)
-        [job] = submit_all(database, [wanted], 10)
+        with database.writing() as transaction:
+            [job] = submit_all(transaction, [wanted], 10)
         held = claim(database, job.id, 9.0, "here")
         held.finish(Status.FAILED, "step_too_small", "soften it", None, Reached())
         return job.id
@@ -104,7 +105,9 @@ def test_its_owner_can_check_the_signature(database, key, ended, receiver):
 
 
 def test_nothing_is_due_before_the_end(database, key):
-    submit_all(database, [Submission(NewJob({}, owner="alice"), Actor("alice", key.prefix), webhook="http://x/")], 10)
+    wanted = Submission(NewJob({}, owner="alice"), Actor("alice", key.prefix), webhook="http://x/")
+    with database.writing() as transaction:
+        submit_all(transaction, [wanted], 10)
     assert take_due(database, 9) == []
 
 

@@ -97,9 +97,10 @@ class StaggeredMethod:
 
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
-        stages = self.stages
-        self._place_nodes(stages.R[2], stages.omega[2], stages.base[2], np.stack([stages.r[2], stages.V[2]]))
-        return self.contact.refusal(self._bending(stages.quaternion[2]), self._nodes[0], self._nodes[1])
+        # not into the state's own nodes: from them a refused step is tried again
+        stages, (r, V) = self.stages, np.empty_like(self._nodes)
+        place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
+        return self.contact.refusal(self._bending(stages.quaternion[2]), r, V)
 
     def take_step(self, t: float, dt: float) -> None:
         """Make the trial the state."""

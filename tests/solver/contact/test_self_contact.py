@@ -15,7 +15,9 @@ from solver import Contact, Curve, DistributedLoad, End, Initial, Outcome, Rod, 
 from solver.contact.self_contact import SelfContact
 from solver.curve import constant_vector
 from solver.initial import nodes_at_rest
+from solver.methods.staggered.method import StaggeredMethod
 from solver.rod import Array
+from solver.simulation import Simulation
 from solver.step_control import StepControl
 from tests.solver.scenes import fixed_steps, moved_clamp
 
@@ -208,3 +210,21 @@ def test_strands_that_approach_limit_the_next_step_to_part_of_the_time_to_touch(
     assert contact.refusal(bending, r, velocity) == ""
     gap = contact.smallest_gap(r, velocity) + DIAMETER
     assert 0.0 < contact.step_limit < gap / speed
+
+
+def test_a_step_that_is_refused_is_tried_again_from_where_it_began() -> None:
+    """The second trial's separations are compared with those of the state, not with those of the first trial."""
+    numerics = replace(fixed_steps(INTERVALS, 0.02), method="staggered")
+    simulation = Simulation(replace(looped(replace(CONTACT, k1=3e-6), 0.02), numerics=numerics))
+    while simulation.t < 0.3:
+        simulation.advance()
+    method = simulation._method
+    assert isinstance(method, StaggeredMethod)
+    pairs = method.contact.touch.pairs
+    method.try_step(simulation.t, 0.01)
+    count = pairs.counts[0]
+    before = pairs.before[:count].copy()
+    assert count > 0
+    method.refusal()
+    method.try_step(simulation.t, 0.005)
+    assert np.array_equal(pairs.before[:count], before)

@@ -14,6 +14,7 @@ class Outcome(StrEnum):
     STEP_TOO_SMALL = "step_too_small"
     ROD_CROSSED_ITSELF = "rod_crossed_itself"
     MESH_TOO_COARSE = "mesh_too_coarse"
+    ROD_STRETCHED = "rod_stretched"
     SHOOTING_LOST_DIGITS = "shooting_lost_digits"
     SINGULAR_SYSTEM = "singular_system"
     EQUILIBRIUM_LOST = "equilibrium_lost"
@@ -39,6 +40,10 @@ REMEDY: dict[Outcome, str] = {
     Outcome.MESH_TOO_COARSE: (
         "the rod bends or twists by more than half a turn from one node to the next, which no longer says how it lies: "
         "use more intervals, or look for a load or an end that is far too strong for the rod"
+    ),
+    Outcome.ROD_STRETCHED: (
+        "the rod, which cannot stretch, was no longer as long as it is: use more intervals, a smaller dt_max or "
+        "increment_tolerance, or the method staggered, which keeps the length whatever happens"
     ),
     Outcome.SHOOTING_LOST_DIGITS: (
         "shooting cannot resolve this rod at this step: use linear_solver block_elimination, or a larger dt_max"

@@ -23,6 +23,8 @@ from solver.step_control import CONSISTENT_STEPS, StepControl
 FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
 """Outcomes that a shorter step does not avert."""
 
+LARGEST_STRAIN = 0.1
+"""Beyond this the rod that is computed is another one."""
 
 METHODS: dict[str, type[BoxMethod] | type[StaggeredMethod]] = {"box": BoxMethod, "staggered": StaggeredMethod}
 
@@ -131,6 +133,8 @@ class Simulation(Run):
             return "Newton's iteration stalled", Outcome.STEP_TOO_SMALL
         if self._control.too_coarse(increment):
             return "the motion is faster than the step", Outcome.STEP_TOO_SMALL
+        if self._method.strain() > LARGEST_STRAIN:
+            return f"an interval stretched by {self._method.strain():.2g} of its length", Outcome.ROD_STRETCHED
         return self._method.refusal(), Outcome.ROD_CROSSED_ITSELF
 
     def _take(self, t: float, dt: float, iterations: int) -> None:

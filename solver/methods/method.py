@@ -38,6 +38,9 @@ class Method(Protocol):
     def relative_increment(self, dt: float) -> float:
         """The trial's local error relative to its motion."""
 
+    def strain(self) -> float:
+        """By what part of its length an interval of the trial has stretched at the most: the exact rod cannot."""
+
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
 

@@ -56,7 +56,7 @@ class BoxMethod:
         self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
         self._gain = STRETCH_FEEDBACK / scene.t_end
-        self._stretch, self._stretch_before = np.zeros((numerics.intervals, 3)), np.zeros((numerics.intervals, 3))
+        self._stretch, self._stretch_before, self._trial_stretch = np.zeros((3, numerics.intervals, 3))
         self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space),
                                scene.contact is not None)  # fmt: skip
         self.shortest_step = 0.0
@@ -87,6 +87,7 @@ class BoxMethod:
             self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt),
             self._scales, self.contact.touch, self.work,
         )  # fmt: skip
+        measure_stretch(self.trial, self.h, self._trial_stretch)
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> None:
@@ -99,8 +100,9 @@ class BoxMethod:
             turned = self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0
             end.follow(shift[0] if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift)[0], turned)
         self.state, self.trial, self._taken_dt = new, old, dt
-        self._stretch, self._stretch_before = self._stretch_before, self._stretch
-        measure_stretch(self.state, self.h, self._stretch)
+        self._stretch_before, self._stretch, self._trial_stretch = (
+            self._stretch, self._trial_stretch, self._stretch_before
+        )  # fmt: skip
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
@@ -117,6 +119,10 @@ class BoxMethod:
         change = float(np.abs(self.trial.rate[:, :3] - self.state.rate[:, :3]).max())
         motion = float(np.abs(self.trial.r - self.state.r).max())
         return dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1]))
+
+    def strain(self) -> float:
+        """The trial's largest stretch of an interval, over its length."""
+        return float(np.abs(self._trial_stretch).max()) / self.h
 
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""

@@ -95,6 +95,10 @@ class StaggeredMethod:
         )
         return max(turn_error / (turned + SMALL_MOTION), move_error / (moved + SMALL_MOTION * float(self.s[-1])))
 
+    def strain(self) -> float:
+        """None: segments are rigid."""
+        return 0.0
+
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
         # not into the state's own nodes: from them a refused step is tried again

@@ -15,8 +15,8 @@ from service.jobs.lifecycle import Status
 from service.jobs.registry import insert_jobs
 from service.jobs.tables import JOB_COLUMNS, idempotency_keys, job_of, jobs, webhooks
 
-REMEMBERED = 86400.0
-"""How long (s) an idempotency key is remembered."""
+REMEMBERED = 3 * 86400.0
+"""How long (s) an idempotency key is remembered: a day, which is promised, between clocks that are a day wrong."""
 
 ALIKE = (
     select(jobs.c.owner, jobs.c.case_sha256, func.max(jobs.c.id).label("id"))

@@ -53,6 +53,7 @@ validate: .venv/.runtime  ## published scenes, and what they must show
 
 lock:  ## after a change of a requirements*.in (needs uv)
 	$(LOCK) requirements.in requirements-build.in -o requirements.txt
+	$(LOCK) --constraint requirements.txt requirements-s3.in -o requirements-s3.txt
 	$(LOCK) requirements-dev.in -o requirements-dev.txt
 	$(LOCK) --constraint requirements.txt requirements-bench.in -o requirements-bench.txt
 

@@ -6,6 +6,7 @@ import os
 import tomllib
 from collections.abc import Mapping
 from dataclasses import fields
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
 from urllib.parse import urlsplit
@@ -31,6 +32,16 @@ def _kombu_url(url: str) -> str:
     return url
 
 
+def _bucket_url(url: str) -> str:
+    """The address of an object store, for which there is a library."""
+    parts = urlsplit(url)
+    if url and (parts.scheme != "s3" or not parts.netloc or parts.query or parts.fragment):
+        raise ValueError("must be s3://bucket or s3://bucket/prefix")
+    if url and find_spec("boto3") is None:
+        raise ValueError("needs boto3: install hockle[s3]")
+    return url
+
+
 def _sqlalchemy_url(url: str) -> str:
     """A PostgreSQL address as SQLAlchemy spells it, with the driver that is installed."""
     scheme, separator, rest = url.partition("://")
@@ -47,7 +58,8 @@ class Settings:
 
     `data` is of one host. `database` is a postgresql:// URL, or empty: SQLite in `data`. `broker` is a
     redis:// URL, or empty: messages then lie as files in `data`. `store` holds datasets and
-    checkpoints, empty for `data`; several hosts share it.
+    checkpoints, empty for `data`; several hosts share it. `objects` is an s3:// URL that holds the datasets in place of
+    `store`, or empty.
     `lease`: how long a silent worker keeps its job. `attempts`: how often a job is tried that gets no
     farther. `checkpoint`: how much running a lost worker may cost.
     `longest_run`: the most computing that a case may ask for, by its estimate. Of one owner: `quota`, the most
@@ -60,6 +72,7 @@ class Settings:
     database: Annotated[str, AfterValidator(_sqlalchemy_url), Field(repr=False)] = ""
     broker: Annotated[str, AfterValidator(_kombu_url), Field(repr=False)] = ""
     store: Path | None = None
+    objects: Annotated[str, AfterValidator(_bucket_url)] = ""
     lease: Annotated[float, Positive] = 30.0
     attempts: Annotated[int, Positive] = 3
     checkpoint: Annotated[float, Positive] = 10.0
@@ -88,6 +101,11 @@ class Settings:
         return (self.store or self.data) / "datasets"
 
     @property
+    def copies(self) -> Path:
+        """The directory of this host's copies of objects."""
+        return self.data / "copies"
+
+    @property
     def work(self) -> Path:
         """The directory of what unfinished jobs have reached: one directory each."""
         return (self.store or self.data) / "work"
@@ -104,7 +122,7 @@ class Settings:
 
     def make_directories(self) -> None:
         """Make the data directory and what it holds, for this user only."""
-        for directory in (self.data, self.datasets, self.work, self.locks, self.messages):
+        for directory in (self.data, self.datasets, self.copies, self.work, self.locks, self.messages):
             directory.mkdir(mode=0o700, parents=True, exist_ok=True)
 
     def environment(self) -> dict[str, str]:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from uuid import uuid4
 
 import pytest
+
+from service.results import bucket
 
 LONGEST = 60.0
 
@@ -22,3 +25,42 @@ def until() -> Callable[[Callable[[], object], str], None]:
             time.sleep(0.01)
 
     return wait
+
+
+@pytest.fixture(scope="session")
+def s3() -> Iterator[str]:
+    """A server on loopback that speaks S3; gives its address."""
+    from moto.server import ThreadedMotoServer  # it takes a second to load
+
+    server = ThreadedMotoServer("127.0.0.1", 0, verbose=False)
+    server.start()
+    yield "http://{}:{}".format(*server.get_host_and_port())
+    server.stop()
+
+
+@pytest.fixture
+def objects(s3: str, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+    """The address of an empty place in a bucket there."""
+    import boto3
+
+    for name, value in {"AWS_ENDPOINT_URL": s3, "AWS_ACCESS_KEY_ID": "x", "AWS_SECRET_ACCESS_KEY": "x",
+                        "AWS_DEFAULT_REGION": "us-east-1", "AWS_CONFIG_FILE": "/nowhere"}.items():
+        monkeypatch.setenv(name, value)
+    bucket.client.cache_clear()
+    name = f"hockle-{uuid4()}"
+    boto3.client("s3").create_bucket(Bucket=name)
+    yield f"s3://{name}/datasets"
+    bucket.client.cache_clear()
+
+
+@pytest.fixture
+def held_objects(objects: str) -> Callable[[], list[str]]:
+    """Gives the names of the objects that lie in that place now."""
+    import boto3
+
+    def names() -> list[str]:
+        name = objects.split("/")[2]
+        found = boto3.client("s3").list_objects_v2(Bucket=name).get("Contents", [])
+        return [one["Key"].removeprefix("datasets/") for one in found]
+
+    return names

@@ -13,7 +13,7 @@ import yaml
 ROOT = Path(__file__).parent.parent
 
 
-@pytest.mark.parametrize("name", ["requirements.txt", "requirements-dev.txt"])
+@pytest.mark.parametrize("name", ["requirements.txt", "requirements-dev.txt", "requirements-s3.txt"])
 def test_a_lock_has_versions_and_hashes_and_no_place(name):
     lines = (ROOT / name).read_text().splitlines()
     pinned = [line for line in lines if line and not line.startswith(" ")]
@@ -22,15 +22,16 @@ def test_a_lock_has_versions_and_hashes_and_no_place(name):
     assert not re.search(r"https?://|file:|--(extra-)?index|--find-links|(^|\s)/", "\n".join(lines))
 
 
-def test_both_locks_agree():
+@pytest.mark.parametrize("other", ["requirements-dev.txt", "requirements-s3.txt"])
+def test_the_locks_agree(other):
     def versions(name: str) -> dict[str, set[str]]:
         found: dict[str, set[str]] = {}
         for package, version in re.findall(r"^([a-z0-9._-]+)==(\S+)", (ROOT / name).read_text(), re.M):
             found.setdefault(package, set()).add(version)
         return found
 
-    runtime, dev = versions("requirements.txt"), versions("requirements-dev.txt")
-    assert [name for name in runtime if name in dev and dev[name] != runtime[name]] == []
+    runtime, beside = versions("requirements.txt"), versions(other)
+    assert [name for name in runtime if name in beside and beside[name] != runtime[name]] == []
 
 
 def test_no_container_is_reached_from_the_network():

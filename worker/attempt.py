@@ -13,9 +13,9 @@ from typing import TypeVar
 from sqlalchemy.exc import DBAPIError
 
 from service.cases import CaseSpec, build_scene, parse_case
-from service.jobs import Dataset, Drift, Job, Reached, Status
+from service.jobs import Dataset, Drift, Reached, Status
 from service.jobs.held import HeldJob
-from service.results import DatasetWriter
+from service.results import Datasets, DatasetWriter, StoreUnreachable
 from service.results.durable import size_of
 from service.settings import Settings
 from solver import Frame, Outcome, Run, RunFailed, Scene, code_digest, simulate
@@ -35,9 +35,9 @@ ROOM_WITHIN, LOOK_AGAIN = 600.0, 1.0
 """Seconds for which a run waits on a full disk before it is given up, and between two looks at it."""
 
 
-def dataset_file(job: Job) -> str:
-    """The name of what this attempt publishes: no attempt writes over another's file."""
-    return f"{job.id}.{job.epoch}.nc"
+def dataset_file(job_id: str, epoch: int) -> str:
+    """The name of what an attempt publishes: no attempt writes over another's file."""
+    return f"{job_id}.{epoch}.nc"
 
 
 def work_directory(settings: Settings, job_id: str) -> Path:
@@ -51,15 +51,16 @@ class Attempt:
     def __init__(self, held: HeldJob, lease: Lease, lock: JobLock, settings: Settings) -> None:
         self._held, self._lease, self._lock = held, lease, lock
         self._interval = settings.checkpoint
-        self._path = settings.datasets / dataset_file(held.job)
         self._directory = work_directory(settings, held.job.id)
+        self._datasets = Datasets(settings.datasets, settings.copies, settings.objects)
+        self._path = self._datasets.place(dataset_file(held.job.id, held.job.epoch), self._directory)
         key = f"{held.job.case_sha256} {code_digest()}"
         self._checkpoints = Checkpoints(self._directory, held.job.epoch, key)
         self._redone = 0
         self._due = 0.0
 
     def run(self) -> Ending:
-        """Compute the frames, write and publish the dataset. Raises whatever else ends a run."""
+        """Compute the frames and put the dataset together. Raises whatever else ends a run."""
         self._with_room(lambda: self._directory.mkdir(mode=0o700, parents=True, exist_ok=True))
         spec = parse_case(self._held.case)
         scene = build_scene(spec)
@@ -80,6 +81,10 @@ class Attempt:
             published = self._with_room(lambda: writer.publish(outcome, message, simulation.s, simulation.statistics))
         dataset = Dataset(self._path.name, published.sha256, published.bytes)
         return Ending(status, outcome, message, dataset, self._drift(spec))
+
+    def publish(self) -> None:
+        """Have the dataset lie where all can read it. Raises whatever ends a run."""
+        self._with_room(lambda: self._datasets.publish(self._path))
 
     def _compute(self, simulation: Run, scene: Scene, writer: DatasetWriter) -> None:
         self._due = time.monotonic() + self._interval
@@ -121,7 +126,7 @@ class Attempt:
         self._due = now + max(self._interval, (now - began) / SHARE)
 
     def _with_room(self, write: Callable[[], Made]) -> Made:
-        """What `write` makes, once the disk has room for it: hours of computing may be worth minutes of waiting.
+        """What `write` makes, once there is room for it: hours of computing may be worth minutes of waiting.
 
         What fails is tried once more in any case: the disk may have been full, and have room again by now.
         Raises what `write` does, and whatever else ends a run.
@@ -132,9 +137,10 @@ class Attempt:
             try:
                 return write()
             except OSError as error:
-                if time.monotonic() >= deadline or (failed and not is_full(error, self._path.parent)):
+                waits = isinstance(error, StoreUnreachable) or is_full(error, self._path.parent)
+                if time.monotonic() >= deadline or (failed and not waits):
                     raise
-                log.warning("job %s waits for room on the disk: %s", self._held.job.id, error)
+                log.warning("job %s waits for room: %s", self._held.job.id, error)
             failed = True
             self._wait_for_room(deadline)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from service.cases import CaseError
 from service.jobs import Dataset, Drift, Job, Status
+from service.results import StoreUnreachable
 from solver import Outcome
 from worker.lease import Cancelled, OutOfTime
 
@@ -49,6 +50,10 @@ def ending_of(error: Exception, job: Job, store: Path) -> Ending:
         case _ if _began_with(error, MemoryError):
             return _failed("out_of_memory", f"the job needs more than its {job.limits.memory:,} bytes of memory, or "
                            "than there are: use fewer intervals or a longer output.interval")
+        case StoreUnreachable():
+            log.error("job %s could not be uploaded: %s", job.id, error)
+            return _failed("dataset_not_written", "the object store could not be reached for ten minutes, and nothing "
+                           "of the run is kept: see the worker's log, and submit the case again")
         case OSError():
             log.exception("job %s could not be written", job.id, exc_info=error)
             return _not_written(error, store)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import os
 import platform
-import shutil
 import time
 
 from sqlalchemy.exc import DBAPIError
@@ -15,12 +14,12 @@ from service.jobs.held import HeldJob, claim, next_in_turn
 from service.logs import about
 from service.settings import Settings
 from worker import stopping
-from worker.attempt import Attempt, dataset_file, work_directory
+from worker.attempt import Attempt
 from worker.endings import Ending, ending_of
 from worker.lease import Lease, LeaseLost
 from worker.lock import JobLock, job_lock
 from worker.memory import memory_limit
-from worker.sweep import remove_datasets, sweep
+from worker.sweep import remove_datasets, remove_work, sweep
 
 TRY_AGAIN = 0.2
 log = logging.getLogger(__name__)
@@ -44,11 +43,13 @@ def run_next(database: Database, settings: Settings) -> None:
 
 def _run(held: HeldJob, lease: Lease, lock: JobLock, settings: Settings) -> None:
     job = held.job
-    remove_datasets(settings, job.id, job.epoch)
     with lease:
+        remove_datasets(settings, job.id, range(1, job.epoch))
         try:
+            attempt = Attempt(held, lease, lock, settings)
             with memory_limit(job.limits.memory):
-                ending = Attempt(held, lease, lock, settings).run()
+                ending = attempt.run()
+            attempt.publish()  # what a library takes for that is not the job's
         except stopping.Stopping:
             held.release()
             log.info("job %s is handed back: this worker was told to stop", job.id)
@@ -62,10 +63,10 @@ def _run(held: HeldJob, lease: Lease, lock: JobLock, settings: Settings) -> None
             kept = _finish(held, ending, lease)
     if kept:
         log.info("job %s: %s, %s", job.id, ending.status, ending.outcome)
-        shutil.rmtree(work_directory(settings, job.id), ignore_errors=True)
+        remove_work(settings, job.id, job.epoch, ending.dataset.file if ending.dataset else "")
     else:
         log.warning("job %s was given to another worker; what was computed here is dropped", job.id)
-        (settings.datasets / dataset_file(job)).unlink(missing_ok=True)
+        remove_datasets(settings, job.id, [job.epoch])
 
 
 def _finish(held: HeldJob, ending: Ending, lease: Lease) -> bool:

@@ -21,6 +21,7 @@ from service.jobs import Database, Registry
 from service.jobs.doorbell import Doorbell
 from service.jobs.reconciler import Reconciler, ring_for_all
 from service.jobs.submissions import Submissions
+from service.results import Datasets
 from service.settings import Settings
 from service.webhooks import Notifier
 
@@ -47,7 +48,8 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
               Submissions(database, settings.quota, lambda: ring_for_all(database, doorbell)) as submissions):
             async with Feed(registry).running() as feed:
                 limit = RateLimit(settings.rate, int(settings.rate * BURST))
-                app.state.parts = Parts(settings, registry, doorbell, KeyStore(database), limit, submissions, feed)
+                app.state.parts = Parts(settings, registry, doorbell, KeyStore(database), limit, submissions, feed,
+                                        Datasets(settings.datasets, settings.copies, settings.objects))
                 _warm_up()
                 yield
         doorbell.close()

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
-from fastapi.responses import FileResponse
+from fastapi.responses import FileResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.responses import MalformedRangeHeader, RangeNotSatisfiable
 
 from service.api.description import NOT_MODIFIED, problems
-from service.api.parts import InParts, Jobs, Parts, matches
+from service.api.parts import InParts, Jobs, matches
 from service.api.problems import Problem
-from service.jobs import ENDED, Dataset, Registry
-from service.results import SubsetTooLarge, UnknownVariable, subset
+from service.jobs import ENDED, Dataset, Job
+from service.results import StoreUnreachable, SubsetTooLarge, UnknownVariable, subset
+from service.results.bucket import Bucket
 
 NETCDF = "application/x-netcdf"
 BINARY = {NETCDF: {"schema": {"type": "string", "format": "binary"}}}
@@ -23,6 +26,7 @@ FILE: dict[int | str, dict[str, Any]] = {
     206: {"description": "A range of it", "content": BINARY | {"multipart/byteranges": {"schema": {"type": "string"}}}},
 }
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
+log = logging.getLogger(__name__)
 
 
 class Part(BaseModel):
@@ -53,20 +57,29 @@ class DatasetFile(FileResponse):
 
 
 @router.head("/dataset", include_in_schema=False)
-@router.get("/dataset", response_class=FileResponse, responses={**FILE, **NOT_MODIFIED, **problems(404, 409, 416)})
+@router.get("/dataset", response_class=FileResponse, responses={**FILE, **NOT_MODIFIED, **problems(404, 409, 416, 503)})
 def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Response:
     """The NetCDF file, whole or by byte ranges; xarray opens it by this address with #mode=bytes."""
-    path, published = _published(job_id, parts, jobs)
+    job = jobs.get(job_id)
+    published = _published(job)
     headers = {"ETag": f'"{published.sha256}"', "Cache-Control": "private, immutable"}
     if matches(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    return DatasetFile(path, headers=headers, media_type=NETCDF, filename=f"{job_id}.nc")
+    headers["Content-Disposition"] = f'attachment; filename="{job_id}.nc"'
+    with _there(job):
+        found = parts.datasets.find(published.file)
+        if isinstance(found, Bucket):
+            return _object(found, published, request, headers)
+    return DatasetFile(found, headers=headers, media_type=NETCDF)
 
 
-@router.get("/data", responses=problems(404, 409, 422))
+@router.get("/data", responses=problems(404, 409, 422, 503))
 def data(job_id: str, part: Annotated[Part, Query()], parts: InParts, jobs: Jobs) -> dict[str, Any]:
     """Some variables over a range of time and arclength, as JSON."""
-    path, _ = _published(job_id, parts, jobs)
+    job = jobs.get(job_id)
+    published = _published(job)
+    with _there(job):
+        path = parts.datasets.file(published.file, published.bytes, published.sha256)
     told = part.model_dump()
     names = [name.strip() for name in told.pop("variables").split(",")]
     try:
@@ -77,13 +90,48 @@ def data(job_id: str, part: Annotated[Part, Query()], parts: InParts, jobs: Jobs
         raise Problem(422, "unknown_variable", str(error)) from None
 
 
-def _published(job_id: str, parts: Parts, jobs: Registry) -> tuple[Path, Dataset]:
-    """The job's file. Raises Problem 404 or 409, UnknownJob."""
-    job = jobs.get(job_id)
-    if job.dataset is None and job.status not in ENDED:
-        raise Problem(409, "not_finished", f"job {job.id} is {job.status}: its dataset comes at its end",
-                      {"Retry-After": "1"})
-    path = parts.settings.datasets / job.dataset.file if job.dataset else None
-    if job.dataset is None or path is None or not path.is_file():
-        raise Problem(404, "no_dataset", f"job {job.id} is {job.status} and has no dataset: {job.message}")
-    return path, job.dataset
+def _object(bucket: Bucket, published: Dataset, request: Request, headers: dict[str, str]) -> Response:
+    """What DatasetFile gives, from an object."""
+    size = published.bytes
+    part = _one_range(request, headers["ETag"], size)
+    start, stop = part or (0, size)
+    headers |= {"Accept-Ranges": "bytes", "Content-Length": str(stop - start)}
+    if part:
+        headers["Content-Range"] = f"bytes {start}-{stop - 1}/{size}"
+    content = () if request.method == "HEAD" else bucket.read(published.file, start, stop)
+    return StreamingResponse(content, 206 if part else 200, headers, NETCDF)
+
+
+def _one_range(request: Request, etag: str, size: int) -> tuple[int, int] | None:
+    """The first byte that is wanted, and the one after the last; of several ranges the whole, as RFC 9110 allows."""
+    if request.headers.get("if-range", etag) != etag:
+        return None
+    ranges = DatasetFile._parse_range_header(request.headers.get("range", ""), size)
+    return ranges[0] if len(ranges) == 1 else None
+
+
+def _published(job: Job) -> Dataset:
+    """What the job has published. Raises Problem 404 or 409."""
+    if job.dataset is not None:
+        return job.dataset
+    if job.status in ENDED:
+        raise _no_dataset(job)
+    raise Problem(409, "not_finished", f"job {job.id} is {job.status}: its dataset comes at its end",
+                  {"Retry-After": "1"})
+
+
+@contextmanager
+def _there(job: Job) -> Iterator[None]:
+    """While its dataset is looked for. Raises Problem 404 or 503."""
+    try:
+        yield
+    except FileNotFoundError:
+        raise _no_dataset(job) from None
+    except StoreUnreachable as error:
+        log.warning("job %s: its dataset cannot be read: %s", job.id, error)
+        raise Problem(503, "store_unreachable", "the object store that holds the dataset cannot give it now: ask later",
+                      {"Retry-After": "5"}) from None
+
+
+def _no_dataset(job: Job) -> Problem:
+    return Problem(404, "no_dataset", f"job {job.id} is {job.status} and has no dataset: {job.message}")

@@ -16,6 +16,7 @@ from service.api.problems import Problem
 from service.jobs import Registry
 from service.jobs.doorbell import Doorbell
 from service.jobs.submissions import Submissions
+from service.results import Datasets
 from service.settings import Settings
 
 
@@ -30,6 +31,7 @@ class Parts:
     rate: RateLimit
     submissions: Submissions
     feed: Feed
+    datasets: Datasets
 
 
 class _With(SecurityBase):

@@ -1,5 +1,7 @@
 """Results: the dataset of a run, its contents, how it is written and read."""
 
+from service.results.bucket import StoreUnreachable
+from service.results.published import Datasets
 from service.results.query import SubsetTooLarge, UnknownVariable, open_dataset, subset
 from service.results.schema import VARIABLES, Variable
 from service.results.writer import DatasetWriter, Published
@@ -7,7 +9,9 @@ from service.results.writer import DatasetWriter, Published
 __all__ = [
     "VARIABLES",
     "DatasetWriter",
+    "Datasets",
     "Published",
+    "StoreUnreachable",
     "SubsetTooLarge",
     "UnknownVariable",
     "Variable",

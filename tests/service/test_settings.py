@@ -15,7 +15,7 @@ def test_an_empty_environment_is_enough():
 
 def test_settings_survive_the_way_to_a_child_process(tmp_path):
     told = Settings(tmp_path, "postgresql://h/x", "redis+socket:///tmp/b.sock", tmp_path / "shared", lease=0.7,
-                    attempts=2, checkpoint=1.25)
+                    attempts=2, checkpoint=1.25, objects="s3://bucket/prefix")
     assert from_environment(told.environment()) == told
     assert from_environment(Settings(tmp_path).environment()) == Settings(tmp_path)
 
@@ -51,6 +51,7 @@ def test_redis_urls_are_spelt_for_kombu(url, kombu):
     ({"HOCKLE_LEASE": "long"}, "HOCKLE_LEASE: Input should be a valid number.*got 'long'"),
     ({"HOCKLE_LEASE": "-1"}, "HOCKLE_LEASE: Input should be greater than 0, got '-1'"),
     ({"HOCKLE_DATABASE": "mysql://me:secret@x/y"}, "HOCKLE_DATABASE: .*must be postgresql:// or sqlite://"),
+    ({"HOCKLE_OBJECTS": "gs://x"}, "HOCKLE_OBJECTS: .*must be s3://bucket or s3://bucket/prefix, got 'gs://x'"),
     ({"REDIS_URL": "amqp://x"}, "REDIS_URL: .*must be redis://"),
 ])
 def test_a_refusal_names_the_setting_the_value_and_the_rule(environment, message):
@@ -62,3 +63,9 @@ def test_directories_are_for_this_user_only(tmp_path):
     settings = Settings(Path(tmp_path / "var"))
     settings.make_directories()
     assert settings.data.stat().st_mode & 0o077 == 0
+
+
+def test_an_object_store_needs_its_library(monkeypatch):
+    monkeypatch.setattr("service.settings.find_spec", lambda name: None)
+    with pytest.raises(ValueError, match=r"HOCKLE_OBJECTS: .*install hockle\[s3\]"):
+        from_environment({"HOCKLE_OBJECTS": "s3://bucket"})

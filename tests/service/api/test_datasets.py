@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 import hashlib
+from pathlib import Path
 
 import pytest
+
+from service.results import bucket
+from service.settings import Settings
+
+
+@pytest.fixture(params=["files", "objects"])
+def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
+    """Where datasets lie makes no difference to who reads them."""
+    return Settings(data=tmp_path, objects=request.getfixturevalue("objects") if request.param == "objects" else "")
 
 
 @pytest.fixture
@@ -111,6 +121,22 @@ def test_a_cancelled_job_has_no_results_ever(client, case, what):
     assert (answer.status_code, answer.json()["type"]) == (404, "urn:hockle:problem:no_dataset")
 
 
-def test_a_file_that_somebody_removed_is_a_problem_not_a_crash(client, registry, settings, done, address):
-    (settings.datasets / registry.get(done).dataset.file).unlink()
-    assert client.get(address).status_code == 404
+@pytest.mark.parametrize("what", ["dataset", "data?variables=Tw"])
+def test_a_dataset_that_somebody_removed_is_a_problem_not_a_crash(client, registry, done, what):
+    client.app.state.parts.datasets.discard(registry.get(done).dataset.file)
+    answer = client.get(f"/v1/jobs/{done}/{what}")
+    assert (answer.status_code, answer.json()["type"]) == (404, "urn:hockle:problem:no_dataset")
+
+
+@pytest.mark.parametrize("what", ["dataset", "data?variables=Tw"])
+@pytest.mark.parametrize("settings", ["objects"], indirect=True)
+def test_an_object_store_that_does_not_answer_is_told_and_asked_again(client, done, monkeypatch, what):
+    with monkeypatch.context() as away:
+        away.setenv("AWS_ENDPOINT_URL", "http://127.0.0.1:9")
+        bucket.client.cache_clear()
+        answer = client.get(f"/v1/jobs/{done}/{what}")
+    assert (answer.status_code, answer.json()["type"]) == (503, "urn:hockle:problem:store_unreachable")
+    assert "retry-after" in answer.headers
+    assert "127.0.0.1" not in answer.text
+    bucket.client.cache_clear()
+    assert client.get(f"/v1/jobs/{done}/{what}").status_code == 200

@@ -30,8 +30,9 @@ class Frame:
     components to lab ones. Energies, works and dissipation in J, the last three accumulated from t = 0;
     `energy_balance` = (sum of energies) - (its value at t = 0) - work_ends - work_loads + dissipation.
     `Tw`, `Wr`, `Lk` in turns (`Wr`, `Lk` NaN if not asked for). `min_gap` (m): smallest surface-to-surface
-    distance of points more than the contact's skip of arc apart (NaN without contact); `contacts`: number
-    of point pairs that press on each other. `dt` (s) and `newton_iterations`: of the step that ended here.
+    distance of points more than the contact's skip of arc apart (NaN without contact, and while the total curvature
+    proves that none are within its cutoff); `contacts`: number of point pairs that press on each other.
+    `dt` (s) and `newton_iterations`: of the step that ended here.
 
     Of a static analysis: `parameter` (s), the time in the schedules, which goes back behind a fold while `t`, by how
     much it has changed, grows; `negative_modes`: in how many directions the energy falls, 0 if the equilibrium is

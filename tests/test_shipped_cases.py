@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import cache
-from math import asinh, atan, pi, sinh, sqrt
+from math import asinh, atan, isnan, pi, sinh, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -208,7 +208,8 @@ def test_the_loop_is_held_apart_by_its_contact():
     assert frames[0].energy_contact == 0.0
     assert last.contacts > 0
     assert last.energy_contact > 0.0
-    assert 0.0 < last.min_gap < frames[0].min_gap / 2
+    first = next(f.min_gap for f in frames if not isnan(f.min_gap))  # before, the total curvature rules contact out
+    assert 0.0 < last.min_gap < first / 2
     assert max(abs(f.Tw + f.Wr - frames[0].Tw - frames[0].Wr) for f in frames) < 0.01
 
 

@@ -113,7 +113,7 @@ VARIABLES: tuple[Variable, ...] = (
     _number("Tw", "turn", "twist"),
     _number("Wr", "turn", "writhe of the centreline continued by straight rays"),
     _number("Lk", "turn", "linking number, the relative rotation of the ends"),
-    _number("min_gap", "m", "smallest gap between surfaces"),
+    _number("min_gap", "m", "smallest gap between surfaces, once the total curvature does not rule contact out"),
     _number("contacts", "1", "number of point pairs that press on each other", "i4"),
     _number("dt", "s", "length of the time step that ended here"),
     _number("newton_iterations", "1", "Newton iterations of the time step that ended here", "i4"),

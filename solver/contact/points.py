@@ -47,28 +47,28 @@ def contact_points(contact: Contact, rod: Rod, s: Array) -> Points:
     h, last = float(s[1] - s[0]), len(s) - 1
     interval = np.minimum((at / h).astype(np.int64), last - 1)
     first = np.clip(interval - 1, 0, last + 1 - REACH)
-    weights, slopes = np.zeros((count, REACH)), np.zeros((count, REACH))
-    for i, (j, x) in enumerate(zip(interval, at / h - interval, strict=True)):
-        place = ((1 + 2 * x) * (1 - x) ** 2, x * (1 - x) ** 2, x**2 * (3 - 2 * x), x**2 * (x - 1))
-        along = (6 * x * (x - 1), (1 - x) * (1 - 3 * x), 6 * x * (1 - x), x * (3 * x - 2))
-        for row, (start, leave, end, arrive) in ((weights[i], place), (slopes[i], along)):
-            row[j - first[i]] += start
-            row[j + 1 - first[i]] += end
-            for node, share in ((j, leave), (j + 1, arrive)):
-                for k, part in _slope_at(int(node), last):
-                    row[k - first[i]] += share * part
+    x = at / h - interval
+    place = ((1 + 2 * x) * (1 - x) ** 2, x * (1 - x) ** 2, x**2 * (3 - 2 * x), x**2 * (x - 1))
+    along = (6 * x * (x - 1), (1 - x) * (1 - 3 * x), 6 * x * (1 - x), x * (3 * x - 2))
+    weights, slopes = (_shares(interval, first, last, *hermite) for hermite in (place, along))
     vectors = [np.zeros((count, 3)) for _ in range(4)]
     return Points(first, weights, slopes / h, np.asarray(rod.mass(at)), np.asarray(rod.diameter(at)), float(at[1]),
                   *vectors)  # fmt: skip
 
 
-def _slope_at(node: int, last: int) -> tuple[tuple[int, float], ...]:
-    """Nodes and their shares in the derivative by node at a node: central, of second order at the ends too."""
-    if node == 0:
-        return ((0, -1.5), (1, 2.0), (2, -0.5))
-    if node == last:
-        return ((last, 1.5), (last - 1, -2.0), (last - 2, 0.5))
-    return ((node - 1, -0.5), (node + 1, 0.5))
+def _shares(interval: Array, first: Array, last: int, start: Array, leave: Array, end: Array, arrive: Array) -> Array:
+    """Shares (M, 4) of the nodes from `first` on, where those of the interval's ends and of the slopes there are known.
+
+    The derivative by node at a node is central, and of second order at the ends of the rod too.
+    """
+    shares, rows = np.zeros((len(interval), REACH)), np.arange(len(interval))
+    for node, own, slope in ((interval, start, leave), (interval + 1, end, arrive)):
+        shares[rows, node - first] += own
+        middle = np.clip(node, 1, last - 1)  # at x = -1, 0 or 1 from the middle of a parabola
+        at = node - middle
+        for k, part in ((-1, at - 0.5), (0, -2.0 * at), (1, at + 0.5)):
+            shares[rows, middle + k - first] += slope * part
+    return shares
 
 
 @kernel

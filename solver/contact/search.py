@@ -9,6 +9,7 @@ somebody has moved by half of it.
 
 from __future__ import annotations
 
+from math import cos, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -53,10 +54,9 @@ class Pairs(NamedTuple):
         )  # fmt: skip
 
 
-@kernel
 def cannot_touch(bending: float, distance: float, law: Law) -> bool:
     """Whether total curvature `bending` keeps all pairs more than law.skip of arc apart beyond `distance`."""
-    return bool(bending < np.pi and law.skip * np.cos(0.5 * bending) > distance)
+    return bending < pi and law.skip * cos(0.5 * bending) > distance
 
 
 @kernel

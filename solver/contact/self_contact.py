@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import inf, nan
 
 import numpy as np
 
@@ -85,14 +85,14 @@ class SelfContact:
             self.step_limit = min(self.step_limit, LARGEST_SHIFT * self._slack / speed)
         return "two parts of the rod could have passed through each other" if approach > LARGEST_APPROACH else ""
 
-    def smallest_gap(self, r: Array, velocity: Array) -> float:
-        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
-        if not self._present:
-            return float("nan")
+    def smallest_gap(self, bending: float, r: Array, velocity: Array) -> float:
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
+        if not self._present or cannot_touch(bending, self._law.cutoff, self._law):
+            return nan
         points = self.touch.points
         place_points(points, r, velocity)
         distance = smallest_distance(points, self._law.skip, inf)
-        return float(distance - points.diameter.max()) if distance < inf else float("nan")
+        return float(distance - points.diameter.max()) if distance < inf else nan
 
     def power(self) -> Array:
         """Power (stages, 2) in W stored in contact, and dissipated by it, at the times of the last evaluation."""

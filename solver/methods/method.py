@@ -66,7 +66,7 @@ class Method(Protocol):
         """Tw of the state, in turns."""
 
     def smallest_gap(self) -> float:
-        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""

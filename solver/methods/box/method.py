@@ -166,8 +166,8 @@ class BoxMethod:
         return float(np.sum(0.5 * (twist[1:] + twist[:-1])) * self.h / (2 * np.pi))
 
     def smallest_gap(self) -> float:
-        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
-        return self.contact.smallest_gap(*self._centreline(self.state)[1:])
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
+        return self.contact.smallest_gap(*self._centreline(self.state))
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""

@@ -173,8 +173,8 @@ class StaggeredMethod:
         return float(twist(self.state.quaternion) / (2 * np.pi))
 
     def smallest_gap(self) -> float:
-        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN without contact."""
-        return self.contact.smallest_gap(self._nodes[0], self._nodes[1])
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
+        return self.contact.smallest_gap(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1])
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""

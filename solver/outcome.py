@@ -15,6 +15,7 @@ class Outcome(StrEnum):
     ROD_CROSSED_ITSELF = "rod_crossed_itself"
     MESH_TOO_COARSE = "mesh_too_coarse"
     ROD_STRETCHED = "rod_stretched"
+    ENERGY_MADE = "energy_made"
     SHOOTING_LOST_DIGITS = "shooting_lost_digits"
     SINGULAR_SYSTEM = "singular_system"
     EQUILIBRIUM_LOST = "equilibrium_lost"
@@ -44,6 +45,10 @@ REMEDY: dict[Outcome, str] = {
     Outcome.ROD_STRETCHED: (
         "the rod, which cannot stretch, was no longer as long as it is: use more intervals, a smaller dt_max or "
         "increment_tolerance, or the method staggered, which keeps the length whatever happens"
+    ),
+    Outcome.ENERGY_MADE: (
+        "the equations keep energy, but the numbers made it: use more intervals where the section varies, a smaller "
+        "dt_max or increment_tolerance, a smaller rho_inf, or the other method"
     ),
     Outcome.SHOOTING_LOST_DIGITS: (
         "shooting cannot resolve this rod at this step: use linear_solver block_elimination, or a larger dt_max"

@@ -25,6 +25,8 @@ FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
 
 LARGEST_STRAIN = 0.1
 """Beyond this the rod that is computed is another one."""
+LARGEST_MADE = 0.1
+"""Part of the energy that changed its form or hands: a run that made more of it says nothing of the rod."""
 
 METHODS: dict[str, type[BoxMethod] | type[StaggeredMethod]] = {"box": BoxMethod, "staggered": StaggeredMethod}
 
@@ -77,6 +79,9 @@ class Simulation(Run):
         if not turn < pi:
             told = f"by {turn:.3g} rad within an interval"
             raise RunFailed(Outcome.MESH_TOO_COARSE, self.t, self.statistics.steps, told)
+        if self._accounts.made > LARGEST_MADE:
+            told = f"{self._accounts.made:.2g} of all that changed hands"
+            raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, told)
         before, self._turns = self._turns, frame.Tw + frame.Wr - frame.Lk
         if self._scene.contact is not None and abs(self._turns - before) > 1.0:
             # a rod that passes through itself makes Tw + Wr - Lk jump by 2

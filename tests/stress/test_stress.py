@@ -134,6 +134,23 @@ def test_a_rod_that_is_torn_longer_ends_by_name():
     assert (result.ending, result.outcome) == (Ending.NAMED, "rod_stretched")
 
 
+THROWN = {
+    "schema_version": 1,
+    "rod": {"length": 4.0, "diameter": 0.14, "shear_modulus": 1.3e11, "density": 400.0,
+            "bending_stiffness": {"s": [1.8, 2.2], "value": [6.5e6, 2.6e9], "interpolation": "smoothstep"}},
+    "initial": {"shape": "straight", "direction": [0.0, 0.0, 1.0], "velocity": [-180.0, 0.0, 0.0]},
+    "ends": {"start": "pin", "end": "free"}, "loads": {"gravity": [0.0, 9e4, -18e4]},
+    "numerics": {"method": "box", "intervals": 8, "dt_max": 1.5e-2}, "t_end": 1.5e-2, "output": {"interval": 7e-4},
+}  # fmt: skip
+
+
+def test_a_run_that_makes_energy_ends_by_name():
+    """Found among the random cases, [1, 244]: where the stiffness steps by 400 within an interval the box method
+    made energy without end, and went on."""
+    result = run(Task("", (), THROWN, steps=3000))
+    assert (result.ending, result.outcome) == (Ending.NAMED, "energy_made")
+
+
 def test_every_case_of_the_sweeps_is_valid():
     counted = sum(parse_case(task.case).t_end > 0.0 for sweep in (*SWEEPS, *MAPS) for task in sweep.tasks())
     assert counted > 1000

@@ -102,6 +102,8 @@ class SelfContact:
 
     def compile(self) -> None:
         """Have every kernel compiled that a run in contact needs."""
+        points = self.touch.points
+        place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
         self._search()
         find_pairs(self.touch.points, self._law.skip, 0.0, self.touch.pairs)
         keep_separations(self.touch.points, self.touch.pairs)

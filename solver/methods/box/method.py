@@ -176,6 +176,7 @@ class BoxMethod:
     def compile(self) -> None:
         """Have every kernel compiled that a run may need."""
         self.contact.compile()
+        rescale_aux(self.state, 1.0)
 
     def _centreline(self, state: State) -> tuple[float, Array, Array]:
         return total_bending(state.Y, self.h), state.r, state.Y

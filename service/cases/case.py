@@ -30,6 +30,9 @@ MOST_STEPS = 10_000_000
 TOLERANCE, INTERVALS, DT_MAX = 1e-3, 200, 0.05
 """Where nothing is said about the resolution, the first; where something is, the others."""
 
+NULLABLE = ("tolerance", "intervals", "dt_max", "increment_tolerance")
+"""What numerics may say null to, as if it were not given."""
+
 Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 
 
@@ -52,7 +55,7 @@ class NumericsSpec(Spec):
         """Where nothing is said about the resolution or the box method, a tolerance; else all of the resolution."""
         if not isinstance(given, dict):
             return given
-        told = {name: value for name, value in given.items() if value is not None}
+        told = {name: value for name, value in given.items() if value is not None or name not in NULLABLE}
         if "tolerance" in told or (told.keys() <= {"method", "verify"} and told.get("method") != "box"):
             return {"method": "staggered", "tolerance": TOLERANCE, **told}
         return {"intervals": INTERVALS, "dt_max": DT_MAX, **told}

@@ -124,6 +124,8 @@ REFUSED: list[tuple[str, Any, str]] = [
     ("contact.aperture", 1.2, "/contact/aperture"),
     ("contact.sum", "integral", "/contact/sum"),
     ("contact.skip", ..., "/contact/skip"),
+    ("numerics.method", None, "/numerics/method"),
+    ("numerics.rho_inf", None, "/numerics/rho_inf"),
     ("numerics.method", "finite_elements", "/numerics/method"),
     ("numerics.intervals", 100.5, "/numerics/intervals"),
     ("numerics.intervals", 1, "/numerics/intervals"),

@@ -36,6 +36,7 @@ NEVER_NUMBERS: list[Any] = [*NOWHERE_VALID, "1", -(10**400), None, []]
 REQUIRED = ["/schema_version", "/rod", "/rod/length", "/rod/diameter", "/initial", "/initial/shape", "/ends",
             "/ends/start", "/ends/end", "/t_end", "/output", "/output/interval"]  # fmt: skip
 POSITIVE = ["/rod/length", "/t_end", "/output/interval", "/numerics/dt_max", "/numerics/increment_tolerance"]
+MAY_BE_NULL = ("/numerics/intervals", "/numerics/dt_max", "/numerics/increment_tolerance")  # as if it were not given
 FREE_TEXT = ("/title", "/description")
 CASES = [load_case(name) for name in shipped_cases()]
 
@@ -119,6 +120,8 @@ def malformed(draw: st.DrawFn) -> tuple[dict[str, Any], str]:
         pointer, value = draw(st.sampled_from(found))
         number = isinstance(value, (int, float)) and not isinstance(value, bool)
         never = NEVER_NUMBERS if number else [bad for bad in NOWHERE_VALID if type(bad) is not type(value)]
+        if pointer in MAY_BE_NULL:
+            never = [bad for bad in never if bad is not None]
         bad = draw(st.sampled_from(never))
         return changed(case, pointer, lambda parent, key: parent.__setitem__(key, bad)), pointer
     if kind == "number":

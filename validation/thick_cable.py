@@ -20,7 +20,7 @@ DIAMETER = 0.01
 TURNS, BY, THEN = 1.74, 12.0, 0.15
 """Turns by a time (s), and turns a second after it."""
 NUMERICS = {"numerics.method": "staggered", "numerics.intervals": 200, "numerics.dt_max": 0.1,
-            "numerics.increment_tolerance": 3e-2, "t_end": 36.0}  # fmt: skip
+            "numerics.increment_tolerance": 0.1, "t_end": 36.0}  # fmt: skip
 CONTACT = {"contact.cutoff": 0.025, "contact.skip": 0.035, "contact.spacing": 0.0025}
 LAST = 0.5
 """s; the corners of the schedule are rounded over so long."""

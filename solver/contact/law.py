@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.contact.points import Points
-from solver.kernel import kernel
+from solver.kernel import inlined, kernel
 from solver.rod import Array
 from solver.scene import Contact
 
@@ -65,23 +65,34 @@ def _repulsion(law: Law, gap: float, floor: float) -> tuple[float, float]:
     return value + slope * (gap - at), slope
 
 
-@kernel
-def pair_force(law: Law, points: Points, a: int, b: int, n: Array, G: Array, k: Array) -> tuple[float, float, float]:
-    """Force on point a from point b: elastic part, damping part (N, along n from b to a), and the distance (m).
-
-    Writes n (3,), and the tangents of the force: G (3, 3) by the separation; n k[0] n by t_a, n k[1] n by t_b and
-    n k[2] n by the relative velocity. Two zeros beyond the cutoff or outside the aperture, where nothing is written.
-    """
+@inlined
+def sees(law: Law, points: Points, a: int, b: int) -> bool:
+    """Whether points a and b are within the cutoff and in each other's aperture."""
     x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
     square = x * x + y * y + z * z
     if square >= law.cutoff * law.cutoff:
-        return 0.0, 0.0, np.sqrt(square)
-    d = np.sqrt(square)
+        return False
+    c_a = x * points.t[a, 0] + y * points.t[a, 1] + z * points.t[a, 2]
+    c_b = x * points.t[b, 0] + y * points.t[b, 1] + z * points.t[b, 2]
+    widest = law.sine * law.sine * square
+    return bool(c_a * c_a < widest and c_b * c_b < widest)
+
+
+@kernel
+def pair_force(law: Law, points: Points, a: int, b: int, n: Array, g: Array, k: Array) -> tuple[float, float, float]:
+    """Force on point a from point b: elastic part, damping part (N, along n from b to a), and the gap d - D/2 (m).
+
+    Writes n (3,), and the tangents of the force: n g + 1 force/d by the separation, with g (3,); n k[0] n by t_a,
+    n k[1] n by t_b and n k[2] n by the relative velocity. Three zeros beyond the cutoff or outside the aperture, where
+    nothing is written.
+    """
+    if not sees(law, points, a, b):
+        return 0.0, 0.0, 0.0
+    x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
+    d = np.sqrt(x * x + y * y + z * z)
     n[0], n[1], n[2] = x / d, y / d, z / d
     c_a = n[0] * points.t[a, 0] + n[1] * points.t[a, 1] + n[2] * points.t[a, 2]
     c_b = n[0] * points.t[b, 0] + n[1] * points.t[b, 1] + n[2] * points.t[b, 2]
-    if abs(c_a) >= law.sine or abs(c_b) >= law.sine:
-        return 0.0, 0.0, d
     inverse = 1.0 / (law.sine * law.sine)
     S_a, dS_a = _fade(1.0 - c_a * c_a * inverse)
     S_b, dS_b = _fade(1.0 - c_b * c_b * inverse)
@@ -94,7 +105,8 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, G: Array, k: 
     closing = 0.0
     for i in range(3):
         closing += n[i] * (points.w[a, i] - points.w[b, i])
-    push, slope = _repulsion(law, d - 0.5 * D, LINEAR_BELOW * D)
+    gap = d - 0.5 * D
+    push, slope = _repulsion(law, gap, LINEAR_BELOW * D)
     speed = abs(closing) ** law.k4
     drag = -law.k3 / d * closing * speed
     law_value = push + drag
@@ -106,7 +118,5 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, G: Array, k: 
     for j in range(3):
         along = by_d * n[j] + k[0] / d * (points.t[a, j] - c_a * n[j]) + k[1] / d * (points.t[b, j] - c_b * n[j])
         along += k[2] / d * (points.w[a, j] - points.w[b, j] - closing * n[j])
-        for i in range(3):
-            G[i, j] = n[i] * (along - force / d * n[j])
-        G[j, j] += force / d
-    return scale * S_a * S_b * S_d * push, scale * S_a * S_b * S_d * drag, d
+        g[j] = along - force / d * n[j]
+    return scale * S_a * S_b * S_d * push, scale * S_a * S_b * S_d * drag, gap

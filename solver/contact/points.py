@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.kernel import kernel
+from solver.kernel import inlined, kernel
 from solver.rod import Array, Rod
 from solver.scene import Contact
 
@@ -71,7 +71,7 @@ def _shares(interval: Array, first: Array, last: int, start: Array, leave: Array
     return shares
 
 
-@kernel
+@inlined
 def place_point(points: Points, i: int, r: Array, velocity: Array) -> None:
     """Write p, t and w of point i from the nodes' positions (n, 3) and lab velocities (n, >= 3)."""
     for k in range(3):

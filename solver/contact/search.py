@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.contact.law import Law
-from solver.contact.points import REACH, Points
+from solver.contact.members import Members, dismiss, take_in
+from solver.contact.points import Points
 from solver.kernel import kernel
 from solver.rod import Array
 
@@ -23,35 +24,21 @@ from solver.rod import Array
 class Pairs(NamedTuple):
     """Pairs of points that may touch, until the next search.
 
-    `counts` (4,): pairs, points and nodes that take part, and whether the list overflowed; `first`, `second`
-    (capacity,); `points` (M,) and `nodes` (n,) that take part, `slot` (n,) a node's place among them or -1.
-    At the current iterate, for each stage of the step: `n` (stages, capacity, 3), `G` (stages, capacity, 3, 3), `k`
-    (stages, capacity, 3), see `pair_force`; `force` (stages, capacity, 2): elastic and damping; `power` (stages, 2):
-    into the elastic part and taken by damping, W. `before` (capacity, 3): separations at the start of the step.
+    `counts` (2,): pairs that are listed, and that did not fit; `first`, `second` (capacity,) their points; `members`
+    that take part; `before` (capacity, 3): separations at the start of the step.
     """
 
     counts: Array
     first: Array
     second: Array
-    points: Array
-    nodes: Array
-    slot: Array
-    n: Array
-    G: Array
-    k: Array
-    force: Array
-    power: Array
+    members: Members
     before: Array
 
     @classmethod
-    def empty(cls, stages: int, capacity: int, points: int, nodes: int) -> Pairs:
+    def empty(cls, capacity: int, points: int, nodes: int) -> Pairs:
         """No pairs, with room for `capacity`."""
-        return cls(
-            np.zeros(4, np.int64), np.zeros(capacity, np.int64), np.zeros(capacity, np.int64),
-            np.zeros(points, np.int64), np.zeros(nodes, np.int64), np.full(nodes, -1),
-            np.zeros((stages, capacity, 3)), np.zeros((stages, capacity, 3, 3)), np.zeros((stages, capacity, 3)),
-            np.zeros((stages, capacity, 2)), np.zeros((stages, 2)), np.zeros((capacity, 3)),
-        )  # fmt: skip
+        return cls(np.zeros(2, np.int64), np.zeros(capacity, np.int64), np.zeros(capacity, np.int64),
+                   Members.none(points, nodes), np.zeros((capacity, 3)))  # fmt: skip
 
 
 def cannot_touch(bending: float, distance: float, law: Law) -> bool:
@@ -102,7 +89,7 @@ def largest_displacement(points: Points) -> float:
 
 @kernel
 def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None:
-    """List the pairs nearer than `radius`; counts[3] says how many did not fit."""
+    """List the pairs nearer than `radius`; counts[1] says how many did not fit."""
     M, pitch = len(points.p), longest_spacing(points)
     apart = int(np.ceil(skip / points.spacing))
     found = 0
@@ -120,25 +107,8 @@ def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None
             else:
                 b += max(1, int((d - radius) / pitch))
     pairs.counts[0] = min(found, len(pairs.first))
-    pairs.counts[3] = found - pairs.counts[0]
-    _list_members(points, pairs)
-
-
-@kernel
-def _list_members(points: Points, pairs: Pairs) -> None:
-    taking_part = np.zeros(len(points.p), np.bool_)
+    pairs.counts[1] = found - pairs.counts[0]
+    dismiss(pairs.members)
     for pair in range(pairs.counts[0]):
-        taking_part[pairs.first[pair]] = True
-        taking_part[pairs.second[pair]] = True
-    pairs.slot[:] = -1
-    pairs.counts[1] = 0
-    pairs.counts[2] = 0
-    for i in range(len(taking_part)):
-        if taking_part[i]:
-            pairs.points[pairs.counts[1]] = i
-            pairs.counts[1] += 1
-            for node in range(points.first[i], points.first[i] + REACH):
-                if pairs.slot[node] < 0:
-                    pairs.slot[node] = pairs.counts[2]
-                    pairs.nodes[pairs.counts[2]] = node
-                    pairs.counts[2] += 1
+        take_in(pairs.members, points, pairs.first[pair])
+        take_in(pairs.members, points, pairs.second[pair])

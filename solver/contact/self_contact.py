@@ -6,7 +6,7 @@ from math import inf, nan
 
 import numpy as np
 
-from solver.contact.forces import Touch
+from solver.contact.forces import Pressing, Touch, touching
 from solver.contact.law import Law
 from solver.contact.points import Points, contact_points, place_points
 from solver.contact.search import Pairs, cannot_touch, find_pairs, largest_displacement, smallest_distance
@@ -14,8 +14,10 @@ from solver.kernel import kernel
 from solver.rod import Array, Rod
 from solver.scene import Contact
 
-SKIN = 0.5
-"""In cutoffs: how much farther than the cutoff a search looks."""
+SKIN = (0.1, 1.5)
+"""In cutoffs: how much farther than the cutoff a search looks, at least and at the most."""
+FORESEEN = 7.5
+"""Steps for which the fastest point may go on within what a search has looked at."""
 LARGEST_APPROACH = 0.35
 """Part of its distance that a pair may move in a step: too little to leap from where the force is weak to where the
 aperture hides it (points nearer to each other than they are spaced see each other along the rod)."""
@@ -39,7 +41,7 @@ class SelfContact:
         settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
         points = contact_points(settings, rod, s)
         self._law = Law.of(settings, points.spacing)
-        self._reach = (1.0 + SKIN) * self._law.cutoff
+        self._farthest = (1.0 + SKIN[1]) * self._law.cutoff
         self._slack = 0.0
         self._looked = False
         self._make_room(points, 1024 if contact else 1)
@@ -49,21 +51,20 @@ class SelfContact:
     @property
     def pressing(self) -> int:
         """Number of pairs that press on each other."""
-        pairs = self.touch.pairs
-        return int(np.count_nonzero(pairs.force[-1, : pairs.counts[0], 0])) if self._present else 0
+        return int(self.touch.pressing.many[-1]) if touching(self.touch) else 0
 
-    def prepare(self, bending: float, r: Array, velocity: Array) -> None:
-        """Before a step from a state: make the list of pairs good for it."""
+    def prepare(self, bending: float, r: Array, velocity: Array, dt: float) -> None:
+        """Before a step of dt (s) from a state: make the list of pairs good for it."""
         if not self._present:
             return
         points, pairs = self.touch.points, self.touch.pairs
-        if cannot_touch(bending, self._reach, self._law):
+        if cannot_touch(bending, self._farthest, self._law):
             pairs.counts[:] = 0
             self._looked = False
             return
         place_points(points, r, velocity)
         if not self._looked or largest_displacement(points) > 0.25 * self._slack:
-            self._search()
+            self._search(dt)
         keep_separations(self.touch.points, self.touch.pairs)
 
     def refusal(self, bending: float, r: Array, velocity: Array) -> str:
@@ -74,7 +75,7 @@ class SelfContact:
         points, pairs = self.touch.points, self.touch.pairs
         place_points(points, r, velocity)
         if not self._looked:
-            near = smallest_distance(points, self._law.skip, self._reach) <= self._law.cutoff
+            near = smallest_distance(points, self._law.skip, self._farthest) <= self._law.cutoff
             return "the rod came near itself within one step" if near else ""
         if largest_displacement(points) > 0.5 * self._slack:
             return "the rod moved farther than the contact search looked"
@@ -96,40 +97,37 @@ class SelfContact:
 
     def power(self) -> Array:
         """Power (stages, 2) in W stored in contact, and dissipated by it, at the times of the last evaluation."""
-        if not self._present or self.touch.pairs.counts[0] == 0:
-            return np.zeros((self._stages, 2))
-        return self.touch.pairs.power
+        return self.touch.pressing.power if touching(self.touch) else np.zeros((self._stages, 2))
 
     def compile(self) -> None:
         """Have every kernel compiled that a run in contact needs."""
         points = self.touch.points
         place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
-        self._search()
-        find_pairs(self.touch.points, self._law.skip, 0.0, self.touch.pairs)
+        self._search(0.0)
+        smallest_distance(self.touch.points, self._law.skip, 0.0)
         keep_separations(self.touch.points, self.touch.pairs)
         approaches(self.touch.points, self.touch.pairs)
         fastest(self.touch.points)
         largest_displacement(self.touch.points)
 
-    def _search(self) -> None:
-        points = self.touch.points
+    def _search(self, dt: float) -> None:
+        """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
+        points, law = self.touch.points, self._law
         points.checked[:] = points.p
         self._looked = True
-        nearest = smallest_distance(points, self._law.skip, 1.5 * self._reach)
-        if nearest > self._reach:
-            self.touch.pairs.counts[:] = 0
-            self._slack = nearest - self._law.cutoff
-            return
-        self._slack = SKIN * self._law.cutoff
-        find_pairs(points, self._law.skip, self._reach, self.touch.pairs)
-        if self.touch.pairs.counts[3] > 0:
-            self._make_room(points, 2 * int(self.touch.pairs.counts[0] + self.touch.pairs.counts[3]))
-            find_pairs(points, self._law.skip, self._reach, self.touch.pairs)
+        self._slack = min(max(FORESEEN * fastest(points) * dt, SKIN[0] * law.cutoff), SKIN[1] * law.cutoff)
+        find_pairs(points, law.skip, law.cutoff + self._slack, self.touch.pairs)
+        if self.touch.pairs.counts[1] > 0:
+            self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))
+            find_pairs(points, law.skip, law.cutoff + self._slack, self.touch.pairs)
+        if self.touch.pairs.counts[0] == 0:
+            self._slack = smallest_distance(points, law.skip, 2.0 * self._farthest) - law.cutoff
 
     def _make_room(self, points: Points, capacity: int) -> None:
         n, M = self._nodes, len(points.p)
-        pairs = Pairs.empty(self._stages, capacity, M, n)
-        self.touch = Touch(self._present, self._law, points, pairs, np.zeros((M, 9)), np.zeros((self._stages, n, 3)))
+        pairs, pressing = Pairs.empty(capacity, M, n), Pressing.empty(self._stages, capacity, M, n)
+        changes = np.zeros((M, 9)), np.zeros((M, 3)), np.zeros((self._stages, n, 3))
+        self.touch = Touch(self._present, self._law, points, pairs, pressing, *changes)
 
 
 @kernel

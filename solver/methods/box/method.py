@@ -82,7 +82,7 @@ class BoxMethod:
         self.loads = self.applied.at(t + dt)
         self.work.feedback[:] = gain * (self._stretch + ahead * (self._stretch - self._stretch_before))
         self._guess(dt, consistent)
-        self.contact.prepare(*self._centreline(self.state))
+        self.contact.prepare(*self._centreline(self.state), dt)
         status, iterations = step(
             self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt),
             self._scales, self.contact.touch, self.work,

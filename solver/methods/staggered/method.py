@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.contact.forces import keeps_apart, touching
 from solver.contact.self_contact import SelfContact
 from solver.ends import DrivenEnd
 from solver.frame import Fields
@@ -15,7 +16,7 @@ from solver.methods.staggered.coupling import place_nodes
 from solver.methods.staggered.energies import energies, stage_powers, twist
 from solver.methods.staggered.initial import chain_of, lay_out
 from solver.methods.staggered.joints import bend_joints
-from solver.methods.staggered.motion import extrapolate, follow_segments
+from solver.methods.staggered.motion import extrapolate, follow_segments, move, spin_steadily
 from solver.methods.staggered.newton import LARGEST_ITERATIONS, Scheme, Work, estimate_error, finish, step
 from solver.methods.staggered.segments import Driven
 from solver.methods.status import CONVERGED
@@ -39,7 +40,7 @@ class StaggeredMethod:
 
     increment_order = 4.0
     increment_tolerance = 0.01
-    easy_iterations = 7
+    easy_iterations = 4
     shortest_step = 0.0
 
     def __init__(self, scene: Scene) -> None:
@@ -76,11 +77,13 @@ class StaggeredMethod:
         With `consistent`, from rest: an end that is set going at once gives forces that say nothing of what follows.
         """
         self._drive(t, dt)
+        self.contact.prepare(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1], dt)
         if consistent:
             self._guess_rest()
         else:
             self._guess(dt)
-        self.contact.prepare(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1])
+            if touching(self.contact.touch) and not self._guess_keeps_apart(dt):
+                self._guess_standstill(dt)
         status, iterations = self._solve(dt)
         if consistent and iterations == LARGEST_ITERATIONS and status != CONVERGED:
             # an end that is let go turns at once, however short the step: go on from there, with new tangents
@@ -184,6 +187,7 @@ class StaggeredMethod:
         """Have every kernel compiled that a run may need."""
         self.contact.compile()
         self._guess(1.0)
+        self._guess_keeps_apart(1.0)
         self.relative_increment(1.0)
 
     def _solve(self, dt: float) -> tuple[int, int]:
@@ -235,6 +239,20 @@ class StaggeredMethod:
         self.stages.theta[:] = 0.0
         self.stages.shift[:] = 0.0
         self.stages.F[:] = 0.0
+
+    def _guess_keeps_apart(self, dt: float) -> bool:
+        """Whether the guess leaves parts that press on each other apart: where they rattle, the last step misleads."""
+        stages, (r, V) = self.stages, np.empty_like(self._nodes)
+        spin_steadily(self.state, tableau.C, dt, stages)
+        move(self.state, stages, tableau.INVERSE, dt, self.chain.h)
+        place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
+        return bool(keeps_apart(self.contact.touch, r))
+
+    def _guess_standstill(self, dt: float) -> None:
+        """Nothing moves."""
+        self.stages.theta[:] = -(tableau.C * dt)[:, None, None] * self.state.omega
+        self.stages.shift[:] = 0.0
+        self.stages.F[:] = self.state.F
 
     def _drive(self, t: float, dt: float) -> None:
         """Write what is given at the stages of a step."""

@@ -31,6 +31,9 @@ TOLERANCE = 1e-10
 far below a buckling seed. A step may leave a part of its largest departure from steady rotation, if that is more; not
 of the rotation itself, for a rod may spin fast with a small seed."""
 
+IN_CONTACT = 10.0
+"""How many times more a step in contact may leave, whose error is that of strands that rattle."""
+
 
 class Scheme(NamedTuple):
     """Radau's coefficients as the kernels take them: see `tableau`."""
@@ -118,8 +121,9 @@ def _turn_residuals(driven: Driven, stages: Stages, R: Array, residuals: Residua
 
 
 @kernel
-def _update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: Stages, work: Work) -> float:
-    """Add a fraction of the increments to the stages; return their size."""
+def _update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: Stages,
+            work: Work) -> tuple[float, float]:  # fmt: skip
+    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one."""
     T, frame = scheme.transform, work.tangents.R
     real, pair = work.real, work.pair
     turned, forced, largest = 0.0, 0.0, unit
@@ -146,7 +150,7 @@ def _update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: 
             theta[2] += p2 - 0.5 * c2 + (u * c1 - v * c0) / 12.0
             turned = max(turned, abs(p0), abs(p1), abs(p2))
             if not np.isfinite(p0):
-                return np.inf
+                return np.inf, np.inf
         for a in range(stages.F.shape[1]):
             for k in range(3):
                 change = t0 * real.x[a, 3 + k] + t1 * pair.x[a, 3 + k].real + t2 * pair.x[a, 3 + k].imag
@@ -156,7 +160,7 @@ def _update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: 
         for k in range(3):
             z0 = node_moves(chain, work.tangents, pair, 0, k)
             stages.shift[i, k] += t0 * node_moves(chain, work.tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
-    return max(turned, forced / largest) / fraction
+    return turned / fraction, forced / (fraction * largest)
 
 
 @kernel
@@ -191,22 +195,26 @@ def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, 
             return STALLED, iteration
         evaluate(chain, loads, driven, stages, touch, work)
         if iteration == 1:
+            work.coupling.known[0] = 0
             segment_tangents(chain, loads, driven, stages, 1, work.tangents)
             if not factor(chain, driven, work.tangents, scheme.gamma / dt, work.real):
                 return SINGULAR, iteration
             if not factor(chain, driven, work.tangents, scheme.pair / dt, work.pair):
                 return SINGULAR, iteration
         fraction = _increment(chain, driven, scheme, dt, stages, touch, work)
-        size = _update(chain, scheme, unit, fraction, stages, work)
-        if not size < LARGEST_INCREMENT:
+        turned, forced = _update(chain, scheme, unit, fraction, stages, work)
+        if not max(turned, forced) < LARGEST_INCREMENT:
             return STALLED, iteration
+        share = part * IN_CONTACT if touching(touch) else part
+        enough = max(TOLERANCE, share * largest_departure(stages))
+        # contact's forces are as large as they are whatever the step: what counts is their own relative error
+        size = max(turned / enough, forced / (max(enough, share) if touching(touch) else enough))
         rate = size / before if before > 0.0 else 1.0
-        enough = max(TOLERANCE, part * largest_departure(stages))
-        if size < enough or (before > 0.0 and rate < 1.0 and size * rate / (1.0 - rate) < enough):
+        if size < 1.0 or (before > 0.0 and rate < 1.0 and size * rate / (1.0 - rate) < 1.0):
             move(state, stages, scheme.inverse, dt, chain.h)
             evaluate(chain, loads, driven, stages, touch, work)
             return CONVERGED, iteration
-        if iteration > 2 and before > 0.0 and rate > 2.0 and fraction == 1.0:
+        if iteration > 2 and before > 0.0 and rate > 2.0 and not touching(touch):
             return STALLED, iteration
         before = size if fraction == 1.0 else 0.0
     return STALLED, LARGEST_ITERATIONS

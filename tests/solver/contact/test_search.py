@@ -66,7 +66,7 @@ def distances(points: Points, skip: float = SKIP) -> dict[tuple[int, int], float
 
 
 def found_by(points: Points, radius: float, capacity: int = 12000) -> Pairs:
-    pairs = Pairs.empty(1, capacity, len(points.p), len(S))
+    pairs = Pairs.empty(capacity, len(points.p), len(S))
     find_pairs(points, SKIP, radius, pairs)
     return pairs
 
@@ -120,11 +120,11 @@ def test_a_folded_rod_is_found_out_although_the_search_marches() -> None:
 def test_what_does_not_fit_is_counted() -> None:
     points = points_of(tangents(S, 3, 7.0))
     everything = found_by(points, 0.2)
-    assert everything.counts[3] == 0
+    assert everything.counts[1] == 0
     total = int(everything.counts[0])
     assert total > 10
     some = found_by(points, 0.2, capacity=10)
-    assert (some.counts[0], some.counts[3]) == (10, total - 10)
+    assert (some.counts[0], some.counts[1]) == (10, total - 10)
     assert listed(some) <= listed(everything)
 
 
@@ -133,12 +133,14 @@ def test_the_points_and_nodes_of_the_pairs_are_listed_once_each() -> None:
     pairs = found_by(points, 0.1)
     members = {i for pair in listed(pairs) for i in pair}
     assert members
-    assert sorted(pairs.points[: pairs.counts[1]]) == sorted(members)
+    taking = pairs.members
+    assert sorted(taking.points[: taking.counts[0]]) == sorted(members)
+    assert set(np.flatnonzero(taking.taken)) == members
     nodes = {int(points.first[i]) + side for i in members for side in range(4)}
-    assert sorted(pairs.nodes[: pairs.counts[2]]) == sorted(nodes)
-    for place, node in enumerate(pairs.nodes[: pairs.counts[2]]):
-        assert pairs.slot[node] == place
-    assert np.count_nonzero(pairs.slot >= 0) == len(nodes)
+    assert sorted(taking.nodes[: taking.counts[1]]) == sorted(nodes)
+    for place, node in enumerate(taking.nodes[: taking.counts[1]]):
+        assert taking.slot[node] == place
+    assert np.count_nonzero(taking.slot >= 0) == len(nodes)
 
 
 def test_points_lie_on_the_rod_evenly_from_end_to_end() -> None:

@@ -189,14 +189,14 @@ def contact_of_the_loop() -> tuple[SelfContact, Array]:
 
 def test_a_step_that_swaps_the_strands_is_refused() -> None:
     contact, s = contact_of_the_loop()
-    contact.prepare(*state_of(loop(RISE), s))
+    contact.prepare(*state_of(loop(RISE), s), 0.01)
     assert contact.refusal(*state_of(loop(RISE), s)) == ""
     assert contact.refusal(*state_of(loop(-RISE), s)) != ""
 
 
 def test_a_step_that_brings_a_straight_rod_to_touch_itself_is_refused() -> None:
     contact, s = contact_of_the_loop()
-    contact.prepare(*state_of(lambda s: np.outer(s, [1.0, 0.0, 0.0]), s))
+    contact.prepare(*state_of(lambda s: np.outer(s, [1.0, 0.0, 0.0]), s), 0.01)
     assert contact.refusal(*state_of(loop(0.01), s)) == "the rod came near itself within one step"
 
 
@@ -205,7 +205,7 @@ def test_strands_that_approach_limit_the_next_step_to_part_of_the_time_to_touch(
     bending, r, velocity = state_of(loop(0.04), s)
     speed = 0.5
     velocity[: INTERVALS // 2, 2], velocity[INTERVALS // 2 :, 2] = 0.5 * speed, -0.5 * speed
-    contact.prepare(bending, r, velocity)
+    contact.prepare(bending, r, velocity, 0.01)
     assert contact.refusal(bending, r, velocity) == ""
     gap = contact.smallest_gap(bending, r, velocity) + DIAMETER
     assert 0.0 < contact.step_limit < gap / speed

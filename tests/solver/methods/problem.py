@@ -132,18 +132,18 @@ class Problem:
     def _contact_matrix(self, count: int, size: int, left: int) -> Array:
         A = np.zeros((count, count))
         touch, system = self.contact.touch, self.work.system
-        pairs = touch.pairs
-        if pairs.counts[0] == 0:
+        near = touch.pairs.members
+        if near.counts[0] == 0:
             return A
         x, y = np.zeros((len(self.new.Y), 12)), np.zeros(3 * len(self.new.Y))
         for column in range(12 * len(x)):
             x[:] = 0.0
             x.ravel()[column] = 1.0
-            _move(x, self.c0, system, touch, self.work.coupling)
+            _move(x, self.c0, system, touch, near, self.work.coupling)
             change_forces(touch, 0, y)
             at = size * (column // 12) + column % 12
-            for m in range(pairs.counts[2]):
-                node = pairs.nodes[m]
+            for m in range(near.counts[1]):
+                node = near.nodes[m]
                 for j in (node - 1, node):
                     if 0 <= j < len(system.panels):
                         rows, share = left + size * j + 6, 1.0 if node in (0, len(system.panels)) else 0.5
@@ -186,5 +186,5 @@ def problem(
     work.feedback[:] = 1e-4 * random.normal(size=work.feedback.shape)
     touching = SelfContact(contact, scene.rod, s, stages=1)
     if contact is not None:
-        touching.prepare(total_bending(old.Y, float(s[1])), old.r, old.Y)
+        touching.prepare(total_bending(old.Y, float(s[1])), old.r, old.Y, dt)
     return Problem(old, new, section, none._replace(**loads), ends, scheme, dt, work, touching, h)  # type: ignore[arg-type]

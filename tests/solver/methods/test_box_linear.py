@@ -1,4 +1,4 @@
-"""The linear solves: block elimination, shooting, and GMRES on the contact forces."""
+"""The linear solves: block elimination, shooting, and conjugate residuals on the contact forces."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def test_the_solve_with_contact_solves_the_whole_system() -> None:
     expected = np.linalg.solve(case.matrix(), case.residual()).reshape(-1, 12)
     eliminate(case)
     iterations = solve_with_contact(case.c0, case.h, case.work.system, case.contact.touch, case.work.coupling)
-    # GMRES stops at a relative residual of 1e-6 in the contact forces
+    # the solve stops at a relative residual of 1e-6 in the contact forces
     assert np.abs(case.work.system.x - expected).max() <= 1e-4 * np.abs(expected).max()
     assert 0 < iterations <= 40
 

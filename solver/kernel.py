@@ -17,7 +17,10 @@ import numba
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "fastmath": {"contract"}}
+_OPTIONS: dict[str, Any] = {
+    "cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "fastmath": {"contract", "arcp"},
+}  # fmt: skip
+"""`arcp`: divisions by constants and by what does not change in a loop become multiplications."""
 
 
 @cache

@@ -85,12 +85,16 @@ def right_jacobian(theta: Array, scale: float, J: Array) -> None:
     """
     x, y, z = theta[0], theta[1], theta[2]
     square = x * x + y * y + z * z
-    if square > 1e-4:
+    if square < 1.0:
+        first, second = 1.0, 1.0
+        # sums over k of (-square)^k / (2 k + 2)! and / (2 k + 3)!, exact to rounding
+        for k in range(7, -1, -1):
+            first = 1.0 - first * square / ((2 * k + 3.0) * (2 * k + 4.0))
+            second = 1.0 - second * square / ((2 * k + 4.0) * (2 * k + 5.0))
+        first, second = 0.5 * first, second / 6.0
+    else:
         angle = np.sqrt(square)
         first, second = (1.0 - np.cos(angle)) / square, (angle - np.sin(angle)) / (square * angle)
-    else:
-        first = 0.5 - square / 24.0 + square * square / 720.0
-        second = 1.0 / 6.0 - square / 120.0 + square * square / 5040.0
     J[0, 0] = scale * (1.0 - second * (y * y + z * z))
     J[1, 1] = scale * (1.0 - second * (x * x + z * z))
     J[2, 2] = scale * (1.0 - second * (x * x + y * y))
@@ -112,12 +116,17 @@ def relative_rotation(left: Array, right: Array, theta: Array) -> None:
     theta[1] = a * y + b * z - c * w - d * x
     theta[2] = a * z - b * y + c * x - d * w
     square = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]
-    scale = 2.0 + square / 3.0
-    if square > 1e-6:
+    if square < 0.04 * cosine * cosine:
+        # 2 arctan(t) / t with t = sin / cos, by its series: exact to rounding
+        t, scale = square / (cosine * cosine), 0.0
+        for k in range(11, -1, -1):
+            scale = 1.0 / (2 * k + 1.0) - t * scale
+        scale *= 2.0 / cosine
+    else:
         sine = np.sqrt(square)
         scale = 2.0 * np.arctan2(sine, abs(cosine)) / sine
-    if cosine < 0.0:
-        scale = -scale
+        if cosine < 0.0:
+            scale = -scale
     for i in range(3):
         theta[i] *= scale
 

@@ -34,6 +34,20 @@ def add_added_mass(coefficient: float, c0: float, acceleration: Array, T: Array,
 
 
 @kernel
+def add_fluid_force(added_mass: float, normal: float, tangential: float, acceleration: Array, u: Array, T: Array,
+                    P: Array) -> None:  # fmt: skip
+    """What `add_added_mass` and `add_drag` do to P, without tangents."""
+    along = u[0] * T[0] + u[1] * T[1] + u[2] * T[2]
+    pushed = acceleration[0] * T[0] + acceleration[1] * T[1] + acceleration[2] * T[2]
+    n0, n1, n2 = u[0] - along * T[0], u[1] - along * T[1], u[2] - along * T[2]
+    drag = normal * np.sqrt(n0 * n0 + n1 * n1 + n2 * n2)
+    by_T = tangential * abs(along) * along - added_mass * pushed
+    P[0] += added_mass * acceleration[0] + drag * n0 + by_T * T[0]
+    P[1] += added_mass * acceleration[1] + drag * n1 + by_T * T[1]
+    P[2] += added_mass * acceleration[2] + drag * n2 + by_T * T[2]
+
+
+@kernel
 def fluid_power(added_mass: float, normal: float, tangential: float, velocity: Array, current: Array,
                 acceleration: Array, T: Array, T_t: Array) -> tuple[float, float]:  # fmt: skip
     """Power (W/m) that the current gives to the rod, and that the fluid takes from it for good.

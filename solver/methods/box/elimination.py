@@ -11,7 +11,18 @@ import numpy as np
 
 from solver.kernel import kernel
 from solver.methods.box.augmented import wide_panel, wide_start
-from solver.methods.box.condensation import backward, forward, reduce_interval
+from solver.methods.box.condensation import (
+    LOCAL,
+    WIDTH,
+    backward,
+    condense,
+    eliminate_right,
+    factor_anew,
+    factor_as_before,
+    forward,
+    keep_multipliers,
+    sweep,
+)
 from solver.methods.box.fields import Linear, Nodes, Wide
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.space import BOX
@@ -98,14 +109,27 @@ def factor(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system
     """Factor the system of the iterate `Y` (n, 12), making each panel when its turn comes; False if it is singular."""
     if len(system.wide.A) > 0:
         return bool(_factor_wide(Y, c0, h, nodes, section, system))
-    carried, panel = system.carried, system.panel
-    carried[:, :] = system.start
-    for j in range(len(system.panels)):
+    # made here, so that the compiler knows their strides
+    carried, panel, left, right = np.zeros((6, WIDTH)), np.zeros((12, 24)), np.empty((12, LOCAL)), np.zeros((12, WIDTH))
+    swaps, inverse, entries = np.arange(LOCAL, dtype=np.int64), np.empty(LOCAL), left.reshape(12 * LOCAL)
+    carried[:, :12] = system.start
+    for j in range(len(system.lower)):
         interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, system.mean, panel, 0)
-        if not reduce_interval(carried, panel, system.swept[j], system.by_swept[j], system.panels[j], system.swaps[j]):
-            return False
+        sweep(panel, system.swept[j])
+        condense(carried, panel, system.swept[j], left, right)
+        keep_multipliers(carried, panel, system.by_swept[j])
+        if not factor_as_before(left, swaps, inverse):
+            condense(carried, panel, system.swept[j], left, right)
+            if not factor_anew(left, swaps):
+                return False
+        eliminate_right(left, swaps, right, system.upper[j], carried)
+        lower, kept = system.lower[j], system.swaps[j]
+        for m in range(12 * LOCAL):
+            lower[m] = entries[m]
+        for m in range(LOCAL):
+            kept[m] = swaps[m]
     system.last[:, :] = 0.0
-    system.last[:6, :12] = carried
+    system.last[:6, :12] = carried[:, :12]
     system.last[6:, :12] = system.end
     return bool(_eliminate(system.last, system.last_swaps))
 
@@ -115,11 +139,11 @@ def _factor_wide(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, 
     wide, mean = system.wide, np.zeros((MEANS, 3))
     for j in range(len(wide.panels)):
         W = wide.panels[j]
+        W[:, :] = 0.0
         if j == 0:
             wide_start(Y, c0, h, nodes, section, system, mean, W)
         else:
             W[:18, :24] = wide.panels[j - 1, 24:, 24:]
-            W[:18, 24:] = 0.0
         wide_panel(j, Y, c0, h, nodes, section, system, mean, W)
         if not _eliminate(W, wide.swaps[j]):
             return False
@@ -139,13 +163,13 @@ def solve(system: Linear, scale: float, b: Array, x: Array) -> None:
     if len(wide.A) == 0:
         N, y = len(b), system.rhs
         for j in range(N):
-            forward(system.rhs_start, b[j], system.swept[j], system.by_swept[j], system.panels[j], system.swaps[j],
+            forward(system.rhs_start, b[j], system.swept[j], system.by_swept[j], system.lower[j], system.swaps[j],
                     y[j], system.local)  # fmt: skip
         for i in range(6):
             x[N, i] = system.rhs_start[i]
         _close(system.last, system.last_swaps, system.rhs_end, x[N])
         for j in range(N - 1, -1, -1):
-            backward(y[j], system.swept[j], system.panels[j], x[j + 1], x[j])
+            backward(y[j], system.swept[j], system.lower[j], system.upper[j], x[j + 1], x[j])
         return
     for i in range(18):
         wide.rhs_start[i] = scale * wide.b_start[i]

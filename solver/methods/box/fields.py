@@ -101,17 +101,18 @@ class Wide(NamedTuple):
 class Linear(NamedTuple):
     """The almost block diagonal system and its factors.
 
-    `space` the scheme along s; factors, see condensation.py: `swept` (N, 6, 24), `by_swept` (N, 9, 6), `panels`
-    (N, 12, 18) with `swaps` (N, 6), `last` (12, 24) with `last_swaps` (12,); `start`, `end` (6, 12) rows of the ends;
-    residuals `b` (N, 12), `b_start`, `b_end` (6,); `x` (n, 12) solution; `columns`, `rows` (12,) scales; `wide` what
-    rho_inf_space < 1 needs. Scratch: `rhs` (N, 12), `rhs_start`, `rhs_end` (6,), `local` (12,), `carried` (6, 12),
-    `panel` (12, 24), `mean` (5, 3).
+    `space` the scheme along s; factors, see condensation.py: `swept` (N, 6, 3, 3), `by_swept` (N, 9, 6), `lower`
+    (N, 72) with `swaps` (N, 6), `upper` (N, 96), `last` (12, 24) with `last_swaps` (12,); `start`, `end` (6, 12)
+    rows of the ends; residuals `b` (N, 12), `b_start`, `b_end` (6,); `x` (n, 12) solution; `columns`, `rows` (12,)
+    scales; `wide` what rho_inf_space < 1 needs. Scratch: `rhs` (N, 12), `rhs_start`, `rhs_end` (6,), `local` (12,),
+    `mean` (5, 3).
     """
 
     space: SpaceScheme
     swept: Array
     by_swept: Array
-    panels: Array
+    lower: Array
+    upper: Array
     start: Array
     end: Array
     b: Array
@@ -128,8 +129,6 @@ class Linear(NamedTuple):
     rhs_start: Array
     rhs_end: Array
     local: Array
-    carried: Array
-    panel: Array
     mean: Array
 
     @classmethod
@@ -137,9 +136,9 @@ class Linear(NamedTuple):
         """Zeros for a rod of `intervals` intervals."""
         N = intervals
         return cls(
-            space, np.zeros((N, 6, 24)), np.zeros((N, 9, 6)), np.zeros((N, 12, 18)), np.zeros((6, 12)),
-            np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6), np.zeros(6), np.zeros((N, 6), np.int64),
-            np.zeros((12, 24)), np.zeros(12, np.int64), np.zeros((N + 1, 12)), np.zeros((N, 12)), np.ones(12),
-            np.ones(12), Wide.empty(0 if space == BOX else N), np.zeros(6), np.zeros(6), np.zeros(12),
-            np.zeros((6, 12)), np.zeros((12, 24)), np.zeros((5, 3)),
+            space, np.zeros((N, 6, 3, 3)), np.zeros((N, 9, 6)), np.zeros((N, 72)), np.zeros((N, 96)),
+            np.zeros((6, 12)), np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6), np.zeros(6),
+            np.zeros((N, 6), np.int64), np.zeros((12, 24)), np.zeros(12, np.int64), np.zeros((N + 1, 12)),
+            np.zeros((N, 12)), np.ones(12), np.ones(12), Wide.empty(0 if space == BOX else N), np.zeros(6),
+            np.zeros(6), np.zeros(12), np.zeros((5, 3)),
         )  # fmt: skip

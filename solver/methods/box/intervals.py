@@ -86,16 +86,14 @@ def _take_means(j: int, Y: Array, left: float, right: float, nodes: Nodes, mean:
         mean[4, 1] += (left * nodes.R[j, i, 0] + right * nodes.R[j + 1, i, 0]) * mean[2, i]
 
 
-@kernel
+@inlined
 def interval_panel(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes, section: Section,
                    rows: Array, columns: Array, mean: Array, panel: Array, top: int) -> None:  # fmt: skip
     """Write the tangents of interval j's residuals by the scaled unknowns into rows `top` to `top` + 11 of `panel`.
 
-    Columns 0 to 11 belong to node j, those from the panel's middle on to node j + 1. `mean` (MEANS, 3) is scratch.
+    Columns 0 to 11 belong to node j, those from the panel's middle on to node j + 1. Zeros are not written: the panel
+    has them, or an interval's tangents. `mean` (MEANS, 3) is scratch.
     """
-    for i in range(top, top + 12):
-        for k in range(panel.shape[1]):
-            panel[i, k] = 0.0
     _take_means(j, Y, space.w_left, space.w_right, nodes, mean)
     for side in range(2):
         node = j + side

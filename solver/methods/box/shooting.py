@@ -26,10 +26,10 @@ def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system:
 
     Returns the growth of the homogeneous solutions from s = 0 to s = L (inf if a block is singular).
     """
-    N = len(system.panels)
+    N = len(system.lower)
     if not _start(system.start, system.b_start, marched[0]):
         return np.inf
-    A, panel, mean = np.empty((12, 12)), np.empty((18, 24)), np.zeros((MEANS, 3))
+    A, panel, mean = np.empty((12, 12)), np.zeros((18, 24)), np.zeros((MEANS, 3))
     for j in range(N):
         interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 6)
         for i in range(12):

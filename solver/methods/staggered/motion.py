@@ -28,10 +28,15 @@ LARGEST_TURN = 2.0
 
 @inlined
 def _series(square: float) -> tuple[float, float, float, float]:
-    """a, b and their derivatives by x^2, from their series."""
+    """a, b and their derivatives by x^2, exact to rounding: seven terms up to 0.3 rad, eleven up to LARGEST_TURN."""
+    return _sum_series(square, 7) if square < 0.1 else _sum_series(square, 11)
+
+
+@inlined
+def _sum_series(square: float, terms: int) -> tuple[float, float, float, float]:
+    """`terms` terms of sum over k of (-x^2)^k / (2 k + 2)! and / (2 k + 3)!, and of their derivatives, by Horner."""
     a, b, da, db = 0.0, 0.0, 0.0, 0.0
-    # sum over k of (-square)^k / (2 k + 2)! and / (2 k + 3)!, by Horner
-    for k in range(10, -1, -1):
+    for k in range(terms - 1, -1, -1):
         da = -(a + square * da) / ((2 * k + 3.0) * (2 * k + 4.0))
         a = 1.0 - a * square / ((2 * k + 3.0) * (2 * k + 4.0))
         db = -(b + square * db) / ((2 * k + 4.0) * (2 * k + 5.0))
@@ -124,12 +129,9 @@ def move(state: State, stages: Stages, inverse: Array, dt: float, h: float) -> f
 
     `inverse` is A^-1: theta_t = A^-1 theta / dt, theta_tt = A^-1 theta_t / dt.
     """
-    n = stages.theta.shape[1]
+    _differentiate(inverse, dt, stages.theta, stages.theta_t)
+    _differentiate(inverse, dt, stages.theta_t, stages.theta_tt)
     for i in range(STAGES):
-        for j in range(n):
-            for k in range(3):
-                stages.theta_t[i, j, k] = (inverse[i, 0] * stages.theta[0, j, k] + inverse[i, 1] * stages.theta[1, j, k]
-                                           + inverse[i, 2] * stages.theta[2, j, k]) / dt  # fmt: skip
         for k in range(3):
             stages.base[i, 0, k] = state.base[0, k] + stages.shift[i, k]
             stages.base[i, 1, k] = (inverse[i, 0] * stages.shift[0, k] + inverse[i, 1] * stages.shift[1, k]
@@ -137,11 +139,6 @@ def move(state: State, stages: Stages, inverse: Array, dt: float, h: float) -> f
     largest = 0.0
     for i in range(STAGES):
         total = inverse[i, 0] + inverse[i, 1] + inverse[i, 2]
-        for j in range(n):
-            for k in range(3):
-                stages.theta_tt[i, j, k] = (
-                    inverse[i, 0] * stages.theta_t[0, j, k] + inverse[i, 1] * stages.theta_t[1, j, k]
-                    + inverse[i, 2] * stages.theta_t[2, j, k]) / dt  # fmt: skip
         for k in range(3):
             stages.base[i, 2, k] = (inverse[i, 0] * stages.base[0, 1, k] + inverse[i, 1] * stages.base[1, 1, k]
                                     + inverse[i, 2] * stages.base[2, 1, k] - total * state.base[1, k]) / dt  # fmt: skip
@@ -149,6 +146,18 @@ def move(state: State, stages: Stages, inverse: Array, dt: float, h: float) -> f
         follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], h,
                         stages.r[i], stages.V[i], stages.A[i])  # fmt: skip
     return float(np.sqrt(largest))
+
+
+@kernel
+def _differentiate(inverse: Array, dt: float, values: Array, rates: Array) -> None:
+    """rates = A^-1 values / dt, stages first."""
+    count = values.shape[1] * values.shape[2]
+    source, target = values.reshape(STAGES, count), rates.reshape(STAGES, count)
+    for i in range(STAGES):
+        a, b, c = inverse[i, 0] / dt, inverse[i, 1] / dt, inverse[i, 2] / dt
+        first, second, third, out = source[0], source[1], source[2], target[i]
+        for m in range(count):
+            out[m] = a * first[m] + b * second[m] + c * third[m]
 
 
 @kernel

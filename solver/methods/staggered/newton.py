@@ -76,12 +76,19 @@ def _mix(weights: Array, source: Array, target: Array) -> None:
 
 
 @kernel
-def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, touch: Touch, work: Work) -> None:
-    """Write the residuals of all stages, whose motion is known."""
+def join_stages(chain: Chain, driven: Driven, stages: Stages, touch: Touch, work: Work) -> None:
+    """Write the forces of contact and the moments of all stages, whose motion is known."""
     if touching(touch):
         press_stages(chain, stages, driven, touch, work.coupling)
     for i in range(STAGES):
         bend_joints(chain, stages.quaternion[i], stages.bend[i], stages.moment[i], stages.left[i], stages.right[i])
+
+
+@kernel
+def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, touch: Touch, work: Work) -> None:
+    """Write the residuals of all stages, whose motion is known."""
+    join_stages(chain, driven, stages, touch, work)
+    for i in range(STAGES):
         balance_segments(chain, loads, driven, stages, work.residuals, i)
         condition_ends(chain, driven, stages, work.residuals, i)
 
@@ -212,7 +219,7 @@ def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, 
         rate = size / before if before > 0.0 else 1.0
         if size < 1.0 or (before > 0.0 and rate < 1.0 and size * rate / (1.0 - rate) < 1.0):
             move(state, stages, scheme.inverse, dt, chain.h)
-            evaluate(chain, loads, driven, stages, touch, work)
+            join_stages(chain, driven, stages, touch, work)
             return CONVERGED, iteration
         if iteration > 2 and before > 0.0 and rate > 2.0 and not touching(touch):
             return STALLED, iteration

@@ -17,7 +17,7 @@ import numpy as np
 from solver.ends import LOAD, LOAD_LAB, RATE, RATE_LAB, Kinds
 from solver.kernel import inlined, kernel
 from solver.loads.applied import Loads
-from solver.loads.fluid import add_added_mass, add_drag
+from solver.loads.fluid import add_added_mass, add_drag, add_fluid_force
 from solver.methods.staggered.chain import Chain, Residuals, Stages
 from solver.methods.staggered.joints import joint_tangents
 from solver.rod import Array
@@ -86,7 +86,7 @@ def balance_segments(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     N = len(chain.mass)
     F, push = stages.F[i], driven.push[i]
     left, right = stages.left[i], stages.right[i]
-    P, P_V, P_w, u, T, T_w = np.zeros(3), np.zeros((3, 3)), np.zeros((3, 3)), np.zeros(3), np.zeros(3), np.zeros((3, 3))
+    P, u, T = np.zeros(3), np.zeros(3), np.zeros(3)
     for j in range(N):
         R, V, A = stages.R[i, j + 1], stages.V[i, j], stages.A[i, j]
         mass = chain.mass[j]
@@ -101,8 +101,7 @@ def balance_segments(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
             for k in range(3):
                 u[k] = V[k] - loads.current[k]
                 T[k] = R[k, 2]
-            add_added_mass(loads.added_mass[j], 1.0, A, T, T_w, P, P_V, P_w)
-            add_drag(loads.drag_normal[j], loads.drag_tangential[j], u, T, T_w, P, P_V, P_w)
+            add_fluid_force(loads.added_mass[j], loads.drag_normal[j], loads.drag_tangential[j], A, u, T, P)
         for k in range(3):
             residuals.translation[i, j, k] = (h * P[k] - (F[j + 1, k] - F[j, k])
                                               - (near * push[j, k] + far * push[j + 1, k]))  # fmt: skip

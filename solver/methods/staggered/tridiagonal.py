@@ -273,13 +273,21 @@ def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex
 def load_rows(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, rotation: Array,
               translation: Array, ends: Array, factors: Factors) -> None:  # fmt: skip
     """Write the right-hand side for residuals `rotation` (N + 2, 3), `translation` (N, 3), `ends` (2, 3) into x."""
-    N = len(chain.mass)
-    X, b = factors.X, factors.x
-    factors.load[:] = translation
-    b[:] = 0.0
-    for a in range(N + 2):
+    for a in range(len(rotation)):
         for k in range(3):
-            b[a, k] = -rotation[a, k]
+            factors.x[a, k] = -rotation[a, k]
+    for j in range(len(translation)):
+        for k in range(3):
+            factors.load[j, k] = translation[j, k]
+    _complete_rows(chain, driven, tangents, eigenvalue, ends, factors)
+
+
+@kernel
+def _complete_rows(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, ends: Array,
+                   factors: Factors) -> None:  # fmt: skip
+    """Write the rows of F into x and condition the ends; rotation, with minus, is there, and translation in `load`."""
+    N = len(chain.mass)
+    X, b, load = factors.X, factors.x, factors.load
     for side in range(2):
         frame = 0 if side == 0 else N + 1
         for k in range(3):
@@ -287,11 +295,14 @@ def load_rows(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: comp
                 b[frame, k] /= eigenvalue
             elif side == 0:
                 b[frame, k] = -b[frame, k]
+    for k in range(3):
+        b[0, 3 + k] = 0.0
+        b[N + 1, 3 + k] = 0.0
     for j in range(N):
         for k in range(3):
-            moved = X[j, k, 0] * translation[j, 0] + X[j, k, 1] * translation[j, 1] + X[j, k, 2] * translation[j, 2]
+            moved = X[j, k, 0] * load[j, 0] + X[j, k, 1] * load[j, 1] + X[j, k, 2] * load[j, 2]
             b[j, 3 + k] += moved
-            b[j + 1, 3 + k] -= moved
+            b[j + 1, 3 + k] = -moved
     for side in range(2):
         node, R = (0, tangents.R[0]) if side == 0 else (N, tangents.R[N + 1])
         x, y, z = b[node, 3], b[node, 4], b[node, 5]
@@ -306,29 +317,34 @@ def load_rows(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: comp
                 b[node, 3 + k] = -ends[side, k]
 
 
+@inlined
+def _row(A: Array, k: int, x: tuple) -> complex:  # type: ignore[type-arg]
+    """Row k of A (6, 6) times x (6)."""
+    total: complex = (A[k, 0] * x[0] + A[k, 1] * x[1] + A[k, 2] * x[2]
+                      + (A[k, 3] * x[3] + A[k, 4] * x[4] + A[k, 5] * x[5]))  # fmt: skip
+    return total
+
+
 @kernel
 def solve(factors: Factors) -> None:
-    """Replace the right-hand side in x by the solution."""
+    """Replace the right-hand side in x by the solution. (Tuples stay in registers, which arrays do not.)"""
     x, n = factors.x, len(factors.x)
-    y = np.zeros_like(x[0])
+    zero = 0.0 * x[0, 0]
+    last = (zero, zero, zero, zero, zero, zero)
     for a in range(n):
+        b, lower, inverse = x[a], factors.lower[a], factors.inverse[a]
+        y = (b[0] - _row(lower, 0, last), b[1] - _row(lower, 1, last), b[2] - _row(lower, 2, last),
+             b[3] - _row(lower, 3, last), b[4] - _row(lower, 4, last), b[5] - _row(lower, 5, last))  # fmt: skip
+        last = (_row(inverse, 0, y), _row(inverse, 1, y), _row(inverse, 2, y),
+                _row(inverse, 3, y), _row(inverse, 4, y), _row(inverse, 5, y))  # fmt: skip
         for k in range(6):
-            y[k] = x[a, k]
-        if a > 0:
-            lower = factors.lower[a]
-            for k in range(6):
-                for m in range(6):
-                    y[k] -= lower[k, m] * x[a - 1, m]
-        inverse = factors.inverse[a]
-        for k in range(6):
-            x[a, k] = 0.0
-            for m in range(6):
-                x[a, k] += inverse[k, m] * y[m]
+            b[k] = last[k]
     for a in range(n - 2, -1, -1):
-        upper = factors.upper[a]
+        b, upper = x[a], factors.upper[a]
+        last = (b[0] - _row(upper, 0, last), b[1] - _row(upper, 1, last), b[2] - _row(upper, 2, last),
+                b[3] - _row(upper, 3, last), b[4] - _row(upper, 4, last), b[5] - _row(upper, 5, last))  # fmt: skip
         for k in range(6):
-            for m in range(6):
-                x[a, k] -= upper[k, m] * x[a + 1, m]
+            b[k] = last[k]
 
 
 @kernel
@@ -336,11 +352,11 @@ def displace(factors: Factors) -> None:
     """Write the displacements of the centres that belong to the solution."""
     x, X, Y = factors.x, factors.X, factors.Y
     for j in range(len(factors.moved)):
+        psi, near, far, load = x[j + 1], x[j], x[j + 1], factors.load[j]
+        u, v, w = far[3] - near[3] - load[0], far[4] - near[4] - load[1], far[5] - near[5] - load[2]
         for k in range(3):
-            total = 0.0 * x[0, 0]
-            for m in range(3):
-                total += X[j, k, m] * (x[j + 1, 3 + m] - x[j, 3 + m] - factors.load[j, m]) + Y[j, k, m] * x[j + 1, m]
-            factors.moved[j, k] = total
+            factors.moved[j, k] = (X[j, k, 0] * u + X[j, k, 1] * v + X[j, k, 2] * w
+                                   + (Y[j, k, 0] * psi[0] + Y[j, k, 1] * psi[1] + Y[j, k, 2] * psi[2]))  # fmt: skip
 
 
 @kernel
@@ -359,8 +375,12 @@ def solve_stages(chain: Chain, driven: Driven, tangents: Tangents, gamma: float,
     load_rows(chain, driven, tangents, gamma, rows.rotation[0], rows.translation[0], rows.ends[0], real_factors)
     solve(real_factors)
     displace(real_factors)
-    translation = rows.translation[1] + 1j * rows.translation[2]
-    load_rows(chain, driven, tangents, pair, rows.rotation[1] + 1j * rows.rotation[2], translation,
-              rows.ends[1] + 1j * rows.ends[2], pair_factors)  # fmt: skip
+    for a in range(rows.rotation.shape[1]):
+        for k in range(3):
+            pair_factors.x[a, k] = complex(-rows.rotation[1, a, k], -rows.rotation[2, a, k])
+    for j in range(rows.translation.shape[1]):
+        for k in range(3):
+            pair_factors.load[j, k] = complex(rows.translation[1, j, k], rows.translation[2, j, k])
+    _complete_rows(chain, driven, tangents, pair, rows.ends[1] + 1j * rows.ends[2], pair_factors)
     solve(pair_factors)
     displace(pair_factors)

@@ -113,7 +113,7 @@ class Problem:
         """The tangents as the solver writes them, contact included."""
         self.residual()
         system, nodes, Y = self.work.system, self.work.nodes, self.new.Y
-        N, mean = len(system.panels), np.zeros((MEANS, 3))
+        N, mean = len(system.lower), np.zeros((MEANS, 3))
         size, left = (24, 18) if self.wide else (12, 6)
         A, W = np.zeros((size * (N + 1), size * (N + 1))), np.zeros((left + size, 2 * size))
         A[:6, :12] = system.start
@@ -145,8 +145,8 @@ class Problem:
             for m in range(near.counts[1]):
                 node = near.nodes[m]
                 for j in (node - 1, node):
-                    if 0 <= j < len(system.panels):
-                        rows, share = left + size * j + 6, 1.0 if node in (0, len(system.panels)) else 0.5
+                    if 0 <= j < len(system.lower):
+                        rows, share = left + size * j + 6, 1.0 if node in (0, len(system.lower)) else 0.5
                         A[rows : rows + 3, at] += share * system.rows[6:9] * y[3 * m : 3 * m + 3]
         return A
 

@@ -20,6 +20,9 @@ from service.jobs.tables import events, jobs
 BUSY = 20.0
 """Seconds for which a write waits for another one, or for a connection."""
 
+PRIMARY = 0xFF
+"""The part of SQLite's error codes that says what, not why: another process may also be recovering the log."""
+
 
 @dataclass(frozen=True)
 class Transaction:
@@ -123,7 +126,7 @@ def _patiently(execute: Callable[[str], object], statement: str) -> None:
         try:
             execute(statement)
         except sqlite3.OperationalError as error:
-            if error.sqlite_errorcode != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
+            if error.sqlite_errorcode & PRIMARY != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
                 raise
             time.sleep(0.001)
         else:

@@ -11,6 +11,7 @@ from alembic.runtime.migration import MigrationContext
 from sqlalchemy import create_engine, text
 
 from service.jobs import Database
+from service.jobs.database import _patiently
 from service.jobs.migrations import WrongSchema
 from service.jobs.tables import metadata
 
@@ -64,3 +65,16 @@ def test_what_fails_in_its_middle_changes_nothing(registry):
         insert_jobs(transaction, [NewJob({})])
         raise ZeroDivisionError
     assert registry.page(1).jobs == []
+
+
+def test_opening_waits_for_another_process_that_recovers_the_log():
+    recovering = sqlite3.OperationalError("database is locked")
+    recovering.sqlite_errorcode = sqlite3.SQLITE_BUSY_RECOVERY
+    refusals = [recovering, recovering]
+
+    def execute(_statement: str) -> None:
+        if refusals:
+            raise refusals.pop()
+
+    _patiently(execute, "PRAGMA journal_mode=WAL")
+    assert refusals == []

@@ -16,6 +16,7 @@ from sqlalchemy.exc import OperationalError
 from service.jobs.lifecycle import ENDED, Status, allowed_before
 from service.jobs.migrations import migrate
 from service.jobs.tables import events, jobs
+from service.jobs.turn import turn
 
 BUSY = 20.0
 """Seconds for which a write waits for another one, or for a connection."""
@@ -107,10 +108,11 @@ def _set_up_sqlite(connection: Any, _record: object) -> None:
 
 
 def _begin_sqlite(connection: Connection) -> None:
-    """Writers wait where they begin: one that first reads cannot be refused in its middle."""
+    """Writers wait where they begin, in turn: one that first reads cannot be refused in its middle."""
     driver: Any = connection.connection.dbapi_connection  # a refusal costs it a fiftieth
     try:
-        _patiently(driver.execute, "BEGIN IMMEDIATE")
+        with turn(f"{connection.engine.url.database}-turn"):
+            _patiently(driver.execute, "BEGIN IMMEDIATE")
     except sqlite3.Error as error:
         raise OperationalError("BEGIN IMMEDIATE", None, error) from error
 

@@ -17,8 +17,14 @@ from service.api.parts import InParts, Jobs
 from service.jobs import ENDED, Registry
 
 STILL_HERE = 15.0
+EVENT = {
+    "type": "object", "description": "Each event of the stream.",
+    "properties": {"id": {"type": "string", "pattern": "^[0-9]+$"}, "event": {"type": "string"},
+                   "data": {"type": "string", "contentMediaType": "application/json"}},
+    "required": ["id", "event", "data"],
+}  # fmt: skip
 STREAM: dict[int | str, dict[str, Any]] = {
-    200: {"content": {"text/event-stream": {"schema": {"type": "string"}}},
+    200: {"content": {"text/event-stream": {"schema": EVENT}},
                 "description": "Events until the job has ended: `accepted`, `started`, `cancel_requested`, "
                 "`handed_back`, `taken_back`, `ended`, each with its time; and `progress` with the whole job."},
           204: {"description": "The job has ended, and there is nothing after Last-Event-ID."}}  # fmt: skip

@@ -14,7 +14,7 @@ from chaos.record import Record
 from chaos.watch import Watch
 from service.jobs import ENDED, Database, Job, Registry, Status
 from service.jobs.registry import Selection
-from service.jobs.tables import events
+from service.jobs.tables import events, jobs, owners
 from service.settings import Settings
 
 MOST_REDONE = 0.10
@@ -36,6 +36,7 @@ class Verdict:
     not_identical: int = 0
     wrong_outcome: int = 0
     left_over: int = 0
+    miscounted: int = 0
     steps: int = 0
     steps_redone: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
@@ -48,7 +49,8 @@ class Verdict:
     @property
     def good(self) -> bool:
         """Whether all that must be zero is, and little was computed again."""
-        bad = (self.lost, self.duplicated, self.overlaps, self.not_identical, self.wrong_outcome, self.left_over)
+        bad = (self.lost, self.duplicated, self.overlaps, self.not_identical, self.wrong_outcome, self.left_over,
+               self.miscounted)  # fmt: skip
         return not any(bad) and self.redone < MOST_REDONE
 
     def __add__(self, other: Verdict) -> Verdict:
@@ -78,6 +80,7 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
             verdict.not_identical += made not in ([expected[name]] if name else expected.values())
     named = {job.dataset.file for job in found.values() if job.dataset}
     verdict.left_over = len({path.name for path in settings.datasets.iterdir()} ^ named)
+    verdict.miscounted = _miscounted(database)
     database.close()
     return verdict
 
@@ -106,3 +109,10 @@ def _ends(database: Database) -> dict[str, int]:
     ended = select(events.c.job_id, func.count().label("number")).where(events.c.kind == "ended")
     with database.reading() as connection:
         return {row.job_id: row.number for row in connection.execute(ended.group_by(events.c.job_id))}
+
+
+def _miscounted(database: Database) -> int:
+    """How many owners' unfinished jobs are not as many as the registry remembers."""
+    there_are = select(func.count()).where(jobs.c.owner == owners.c.name, jobs.c.status.not_in(ENDED)).scalar_subquery()
+    with database.reading() as connection:
+        return connection.scalar(select(func.count()).where(owners.c.unfinished != there_are)) or 0

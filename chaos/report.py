@@ -11,7 +11,7 @@ from validation.provenance import provenance
 
 RESULTS = Path(__file__).parent / "results"
 COLUMNS = ("jobs", "faults", "published", "lost", "duplicated", "overlaps", "not_identical", "wrong_outcome",
-           "left_over")  # fmt: skip
+           "left_over", "miscounted")  # fmt: skip
 HEAD = ("seed", *(name.replace("_", " ") for name in COLUMNS), "redone", "s", "")
 
 

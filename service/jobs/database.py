@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from sqlalchemy.exc import OperationalError
 
 from service.jobs.lifecycle import ENDED, Status, allowed_before
 from service.jobs.migrations import migrate
-from service.jobs.tables import events, jobs
+from service.jobs.tables import events, jobs, owners
 from service.jobs.turn import turn
 
 BUSY = 20.0
@@ -48,13 +49,21 @@ class Transaction:
                 values |= {"finished": self.now}
         values = {"version": jobs.c.version + 1} | values
         changed = self.connection.execute(
-            update(jobs).where(*where).values(**values).returning(jobs.c.id, jobs.c.version, jobs.c.epoch)
-        ).all()
+            update(jobs).where(*where).values(**values)
+            .returning(jobs.c.id, jobs.c.owner, jobs.c.version, jobs.c.epoch)
+        ).all()  # fmt: skip
+        if status in ENDED:
+            self._finished(Counter(row.owner for row in changed))
         if event:
-            for job_id, version, epoch in changed:
-                told = {"status": status.value} if status is not None else {}
-                self.note(job_id, version, event, told | {"epoch": epoch})
+            told = {"status": status.value} if status is not None else {}
+            for row in changed:
+                self.note(row.id, row.version, event, told | {"epoch": row.epoch})
         return [row.id for row in changed]
+
+    def _finished(self, ended: Counter[str]) -> None:
+        for owner, many in sorted(ended.items()):  # in one order: rows are locked in it
+            fewer = update(owners).where(owners.c.name == owner).values(unfinished=owners.c.unfinished - many)
+            self.connection.execute(fewer)
 
     def note(self, job_id: str, version: int, kind: str, data: Mapping[str, Any]) -> None:
         """Write an event of a job, told by its version."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -138,8 +139,10 @@ def insert_jobs(transaction: Transaction, new: Sequence[NewJob]) -> list[Job]:
     """Write accepted jobs, the owners that are new, and the jobs' first events; gives the jobs."""
     connection = transaction.connection
     dialect = postgresql if connection.dialect.name == "postgresql" else sqlite
-    for owner in {job.owner for job in new}:
-        connection.execute(dialect.insert(owners).values(name=owner).on_conflict_do_nothing())
+    for owner, many in sorted(Counter(job.owner for job in new).items()):  # in one order: rows are locked in it
+        added = dialect.insert(owners).values(name=owner, unfinished=many)
+        more = {"unfinished": owners.c.unfinished + added.excluded.unfinished}
+        connection.execute(added.on_conflict_do_update(index_elements=["name"], set_=more))
     rows = [{
         "id": job.id, "owner": job.owner, "status": Status.ACCEPTED.value, "title": job.title, "label": job.label,
         "priority": job.priority, "case_json": job.case_json, "case_sha256": job.case_sha256,

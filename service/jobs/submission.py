@@ -13,7 +13,7 @@ from service.jobs.database import Transaction
 from service.jobs.job import Job, NewJob
 from service.jobs.lifecycle import Status
 from service.jobs.registry import insert_jobs
-from service.jobs.tables import JOB_COLUMNS, idempotency_keys, job_of, jobs, webhooks
+from service.jobs.tables import JOB_COLUMNS, idempotency_keys, job_of, jobs, owners, webhooks
 
 REMEMBERED = 3 * 86400.0
 """How long (s) an idempotency key is remembered: a day, which is promised, between clocks that are a day wrong."""
@@ -23,12 +23,7 @@ ALIKE = (
     .where(jobs.c.case_sha256.in_(bindparam("hashes", expanding=True)), jobs.c.status == Status.SUCCESSFUL)
     .group_by(jobs.c.owner, jobs.c.case_sha256)
 )
-UNFINISHED = (
-    select(jobs.c.owner, func.count().label("many"))
-    .where(jobs.c.owner.in_(bindparam("owners", expanding=True)),
-           jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING)))
-    .group_by(jobs.c.owner)
-)  # fmt: skip
+UNFINISHED = select(owners.c.name, owners.c.unfinished).where(owners.c.name.in_(bindparam("owners", expanding=True)))
 
 
 class KeyReused(Exception):
@@ -143,4 +138,4 @@ def _alike(transaction: Transaction, hashes: Collection[str]) -> dict[tuple[str,
 def _unfinished(transaction: Transaction, owners: Collection[str]) -> Counter[str]:
     """How many unfinished jobs each of the owners has."""
     found = transaction.connection.execute(UNFINISHED, {"owners": list(owners)})
-    return Counter({row.owner: row.many for row in found})
+    return Counter({row.name: row.unfinished for row in found})

@@ -70,10 +70,11 @@ jobs = Table(
 )
 
 owners = Table(
-    "owners",  # all who ever submitted a job; `served` orders their latest claims
+    "owners",  # all who ever submitted a job; `served` orders their latest claims, `unfinished` counts their jobs
     metadata,
     Column("name", String(64), primary_key=True),
     Column("served", BigInteger, nullable=False, default=0),
+    Column("unfinished", BigInteger, nullable=False, default=0),
 )
 
 events = Table(

@@ -8,12 +8,12 @@ import threading
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
-from sqlalchemy import create_engine, text
+from sqlalchemy import create_engine, select, text
 
-from service.jobs import Database
+from service.jobs import Database, NewJob
 from service.jobs.database import _patiently
 from service.jobs.migrations import WrongSchema
-from service.jobs.tables import metadata
+from service.jobs.tables import metadata, owners
 
 
 def test_the_migrations_make_the_tables_that_the_code_knows(database):
@@ -41,6 +41,18 @@ def test_opening_waits_for_another_process_that_makes_the_file(tmp_path):
         Database(f"sqlite:///{tmp_path}/registry.db").close()
 
 
+def test_an_older_registry_is_upgraded_with_its_unfinished_jobs_counted(database, registry, url):
+    first, _ = registry.submit(NewJob({})), registry.submit(NewJob({}))
+    registry.cancel(first.id)
+    with database.engine.begin() as connection:
+        connection.execute(text("ALTER TABLE owners DROP COLUMN unfinished"))
+        connection.execute(text("UPDATE alembic_version SET version_num = '0003'"))
+    upgraded = Database(url)
+    with upgraded.reading() as connection:
+        assert connection.scalar(select(owners.c.unfinished)) == 1
+    upgraded.close()
+
+
 def test_a_registry_of_a_newer_version_is_refused(database, url):
     with database.engine.begin() as connection:
         connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
@@ -58,7 +70,6 @@ def test_a_registry_from_before_the_migrations_is_refused(url):
 
 
 def test_what_fails_in_its_middle_changes_nothing(registry):
-    from service.jobs import NewJob
     from service.jobs.registry import insert_jobs
 
     with pytest.raises(ZeroDivisionError), registry.database.writing() as transaction:

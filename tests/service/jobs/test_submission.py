@@ -11,6 +11,7 @@ from sqlalchemy import event
 from service.jobs import Dataset, Job, NewJob, Reached, Registry, Status
 from service.jobs.audit import Actor, trail
 from service.jobs.held import claim
+from service.jobs.reconciler import beats, take_back
 from service.jobs.submission import REMEMBERED, KeyReused, QuotaReached, Submission, submit_all
 from service.jobs.submissions import InFlight, Submissions
 
@@ -98,6 +99,29 @@ def test_a_quota_bounds_the_unfinished_jobs_of_an_owner(database):
     assert [type(one) for one in made] == [Job, Job, QuotaReached, Job]
     run(database, made[0])
     assert [type(one) for one in submit(database, wanted(), wanted(), quota=2)] == [Job, QuotaReached]
+
+
+def test_a_job_counts_for_the_quota_until_it_has_ended_however_it_ends(database, registry):
+    def room() -> int:
+        with database.writing() as transaction:
+            made = submit_all(transaction, [wanted() for _ in range(9)], quota=9)
+            transaction.connection.rollback()
+        return sum(isinstance(one, Job) for one in made)
+
+    waiting, handed_back, lost, failed, dismissed = submit(database, *[wanted() for _ in range(5)])
+    assert room() == 4
+    claim(database, handed_back.id, 9.0, "here").release()
+    claim(database, lost.id, 9.0, "here")
+    take_back(database, beats(database)[0], attempts=3)
+    assert room() == 4
+    run(database, failed, Status.FAILED)
+    registry.cancel(dismissed.id)
+    registry.cancel(dismissed.id)
+    assert room() == 6
+    claim(database, lost.id, 9.0, "here")
+    take_back(database, beats(database)[0], attempts=1)  # hopeless
+    registry.cancel(waiting.id)
+    assert room() == 8
 
 
 def test_the_trail_tells_of_each_job_that_was_made(database):

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -57,20 +58,8 @@ run.run_next(Database(settings.database_url), settings)
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
-    made = Settings(tmp_path, lease=1000.0)
-    made.make_directories()
-    return made
-
-
-@pytest.fixture
-def registry(settings: Settings) -> Registry:
-    return Registry(Database(settings.database_url))
-
-
-@pytest.fixture
-def job(registry: Registry) -> Job:
-    return registry.submit(NewJob(CASE))
+def case() -> dict[str, Any]:
+    return CASE
 
 
 def killed(settings: Settings, registry: Registry, steps: int, checkpoint: float = 1e-9) -> None:

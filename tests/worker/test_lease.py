@@ -6,11 +6,10 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
-from service.jobs import Database, Limits, NewJob, Reached, Registry
+from service.jobs import Limits, NewJob, Reached, Registry
 from service.jobs.held import HeldJob, claim
 from worker import lease as lease_module
 from worker.lease import Cancelled, Lease, LeaseLost, OutOfTime
@@ -21,11 +20,6 @@ LONG = 1000.0  # the kernel ends this process after 3/4 of it
 @pytest.fixture(autouse=True)
 def quick_renewals(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lease_module, "RENEWAL", 0.01)
-
-
-@pytest.fixture
-def registry(tmp_path: Path) -> Registry:
-    return Registry(Database(f"sqlite:///{tmp_path}/registry.db"))
 
 
 def held(registry: Registry, limits: Limits | None = None) -> HeldJob:

@@ -8,17 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from service.cases import apply_settings, load_case
-from service.jobs import Database, Job, NewJob, Registry, Status
-from service.jobs.reconciler import beats, take_back
+from service.jobs import Job, Registry, Status
 from service.results import Datasets, StoreUnreachable, open_dataset
 from service.settings import Settings
 from worker import attempt, run
 
 ROOT = Path(__file__).parents[2]
-SMALL = apply_settings(
-    load_case("cantilever-vibration"), {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8}
-)
 KILLED = """
 import os, signal, sys
 from pathlib import Path
@@ -39,16 +34,6 @@ def settings(tmp_path: Path, objects: str) -> Settings:
     return made
 
 
-@pytest.fixture
-def registry(settings: Settings) -> Registry:
-    return Registry(Database(settings.database_url))
-
-
-@pytest.fixture
-def job(registry: Registry) -> Job:
-    return registry.submit(NewJob(SMALL))
-
-
 def ended(job: Job, registry: Registry, settings: Settings) -> Job:
     run.run_next(registry.database, settings)
     return registry.get(job.id)
@@ -58,11 +43,6 @@ def killed_before_its_commit(settings: Settings) -> None:
     """A worker takes the job and is killed between the upload and the commit of the row."""
     told = [sys.executable, "-c", KILLED, str(settings.data), settings.objects]
     assert subprocess.run(told, cwd=ROOT).returncode == -9
-
-
-def take_back_all(registry: Registry) -> None:
-    for beat in beats(registry.database):
-        take_back(registry.database, beat, 3)
 
 
 def files(settings: Settings) -> list[Path]:
@@ -81,27 +61,29 @@ def test_a_job_ends_with_an_object_whose_hash_its_row_tells(job, registry, setti
         assert dataset.attrs["outcome"] == "completed"
 
 
-def test_a_worker_killed_between_upload_and_commit_publishes_nothing_twice(job, registry, settings, held_objects):
+def test_a_worker_killed_between_upload_and_commit_publishes_nothing_twice(job, registry, settings, held_objects,
+                                                                           take_back_all):
     killed_before_its_commit(settings)
     assert held_objects() == [f"{job.id}.1.nc"]
-    take_back_all(registry)
+    take_back_all()
     done = ended(job, registry, settings)
     assert (done.status, done.dataset.file) == (Status.SUCCESSFUL, f"{job.id}.3.nc")
     assert (held_objects(), files(settings)) == ([done.dataset.file], [])
 
 
-def test_what_was_uploaded_for_a_job_that_then_was_cancelled_is_removed(job, registry, settings, held_objects):
+def test_what_was_uploaded_for_a_job_that_then_was_cancelled_is_removed(job, registry, settings, held_objects,
+                                                                        take_back_all):
     killed_before_its_commit(settings)
     registry.cancel(job.id)
-    take_back_all(registry)
+    take_back_all()
     assert ended(job, registry, settings).status is Status.DISMISSED
     assert (held_objects(), files(settings)) == ([], [])
 
 
-def test_what_cannot_be_removed_now_is_removed_later(job, registry, settings, held_objects, monkeypatch):
+def test_what_cannot_be_removed_now_is_removed_later(job, registry, settings, held_objects, monkeypatch, take_back_all):
     killed_before_its_commit(settings)
     registry.cancel(job.id)
-    take_back_all(registry)
+    take_back_all()
     with monkeypatch.context() as unreachable:
         unreachable.setattr(Datasets, "discard", away)
         run.run_next(registry.database, settings)

@@ -18,38 +18,15 @@ import numpy as np
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from service.cases import apply_settings, load_case
-from service.jobs import Database, Job, Limits, NewJob, Registry, Status
+from service.jobs import Job, Limits, NewJob, Registry, Status
 from service.jobs.held import HeldJob, claim
 from service.jobs.measures import measure
-from service.jobs.reconciler import beats, take_back
 from service.results import DatasetWriter, open_dataset, segments
 from service.results.segments import Segments
 from service.settings import Settings
 from solver import Outcome, RunFailed, simulate
 from worker import attempt, checkpoints, lease, run
 from worker.lock import job_lock
-
-SMALL = apply_settings(
-    load_case("cantilever-vibration"), {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8}
-)
-
-
-@pytest.fixture
-def settings(tmp_path: Path) -> Settings:
-    made = Settings(data=tmp_path, lease=1000.0)
-    made.make_directories()
-    return made
-
-
-@pytest.fixture
-def registry(settings: Settings) -> Registry:
-    return Registry(Database(settings.database_url))
-
-
-@pytest.fixture
-def job(registry: Registry) -> Job:
-    return registry.submit(NewJob(SMALL))
 
 
 def ended(job: Job, registry: Registry, settings: Settings) -> Job:
@@ -99,8 +76,8 @@ def test_a_job_ends_with_a_dataset_whose_hash_its_row_tells(job, registry, setti
     assert left_over(settings) == [path]
 
 
-def test_the_registry_learns_how_far_a_run_has_drifted(registry, settings):
-    ended(registry.submit(NewJob(SMALL)), registry, settings)
+def test_the_registry_learns_how_far_a_run_has_drifted(registry, settings, case):
+    ended(registry.submit(NewJob(case)), registry, settings)
     told = measure(registry.database, 1.0, 0.0)
     (topology,), (energy,) = told.drift_topology, told.drift_energy
     assert (topology.method, topology.count, energy.method, energy.count) == ("box", 1, "box", 1)
@@ -117,10 +94,10 @@ def test_a_message_without_a_waiting_job_does_nothing(registry, settings):
     assert left_over(settings) == []
 
 
-def test_a_job_whose_lock_another_process_holds_is_left_alone(job, registry, settings):
+def test_a_job_whose_lock_another_process_holds_is_left_alone(job, registry, settings, case):
     with job_lock(settings.locks / f"{job.id}.lock") as mine:
         assert mine
-        other = registry.submit(NewJob(SMALL))
+        other = registry.submit(NewJob(case))
         assert ended(other, registry, settings).status is Status.SUCCESSFUL
         assert registry.get(job.id).status is Status.ACCEPTED
 
@@ -168,8 +145,8 @@ def test_a_job_cancelled_while_it_runs_leaves_nothing(job, registry, settings, m
     assert left_over(settings) == []
 
 
-def test_a_job_that_runs_too_long_ends_by_name(registry, settings, monkeypatch, until):
-    job = registry.submit(NewJob(SMALL, limits=Limits(wall=0.05)))
+def test_a_job_that_runs_too_long_ends_by_name(registry, settings, monkeypatch, until, case):
+    job = registry.submit(NewJob(case, limits=Limits(wall=0.05)))
 
     def dawdle():
         until(lambda: registry.get(job.id).reached.wall > 0.1, "a renewal tells the time")
@@ -294,8 +271,8 @@ def test_memory_that_ends_while_a_checkpoint_is_packed_has_the_same_name(job, re
     assert ended(job, registry, replace(settings, checkpoint=1e-9)).outcome == "out_of_memory"
 
 
-def test_a_case_that_this_version_refuses_fails_with_its_faults(registry, settings):
-    done = ended(registry.submit(NewJob(SMALL | {"t_end": -1})), registry, settings)
+def test_a_case_that_this_version_refuses_fails_with_its_faults(registry, settings, case):
+    done = ended(registry.submit(NewJob(case | {"t_end": -1})), registry, settings)
     assert (done.status, done.outcome) == (Status.FAILED, "invalid_case")
     assert "t_end" in done.message
 
@@ -313,10 +290,9 @@ def test_a_worker_told_to_stop_hands_its_job_back_and_the_next_one_goes_on(job, 
     assert left_over(settings) == [settings.datasets / done.dataset.file]
 
 
-def test_a_worker_that_lost_its_job_writes_nothing_for_it(job, registry, settings, monkeypatch):
+def test_a_worker_that_lost_its_job_writes_nothing_for_it(job, registry, settings, monkeypatch, take_back_all):
     def give_away():
-        for beat in beats(registry.database):
-            take_back(registry.database, beat, 3)
+        take_back_all()
 
     monkeypatch.setattr(attempt, "simulate", simulation_that(give_away))
     run.run_next(registry.database, settings)
@@ -325,14 +301,13 @@ def test_a_worker_that_lost_its_job_writes_nothing_for_it(job, registry, setting
     assert left_over(settings) == [settings.work / job.id]  # for who has it next
 
 
-def test_what_was_left_of_a_job_that_ended_without_a_worker_is_removed(job, registry, settings):
+def test_what_was_left_of_a_job_that_ended_without_a_worker_is_removed(job, registry, settings, take_back_all):
     (settings.work / job.id).mkdir()
     (settings.work / job.id / "checkpoint-1.1").write_bytes(b"x")
     (settings.locks / f"{job.id}.lock").touch()
     claim(registry.database, job.id, 9.0, "here")
     (settings.datasets / f"{job.id}.1.nc").write_bytes(b"published, but never told")
     registry.cancel(job.id)
-    for beat in beats(registry.database):
-        take_back(registry.database, beat, 3)
+    take_back_all()
     run.run_next(registry.database, settings)
     assert left_over(settings) == []

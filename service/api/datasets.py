@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.responses import MalformedRangeHeader, RangeNotSatisfiable
 
 from service.api.description import NOT_MODIFIED, problems
+from service.api.numbers import WHOLE
 from service.api.parts import InParts, Jobs, matches
 from service.api.problems import Problem
 from service.jobs import ENDED, Dataset, Job
@@ -38,8 +39,8 @@ class Part(BaseModel):
     t_max: float | None = Field(None, allow_inf_nan=False)
     s_min: float | None = Field(None, allow_inf_nan=False)
     s_max: float | None = Field(None, allow_inf_nan=False)
-    time_stride: int = Field(1, ge=1)
-    s_stride: int = Field(1, ge=1)
+    time_stride: Annotated[int, Field(ge=1), WHOLE] = 1
+    s_stride: Annotated[int, Field(ge=1), WHOLE] = 1
 
 
 class DatasetFile(FileResponse):

@@ -13,6 +13,7 @@ from fastapi.responses import StreamingResponse
 from service.api.description import problems
 from service.api.documents import document
 from service.api.feed import Feed
+from service.api.numbers import WHOLE
 from service.api.parts import InParts, Jobs
 from service.jobs import ENDED, Registry
 
@@ -33,7 +34,7 @@ router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["jobs"])
 
 @router.get("/events", response_class=Response, responses={**STREAM, **problems(404, 422)})
 async def events(job_id: str, parts: InParts, jobs: Jobs,
-                 last_event_id: Annotated[int, Header(alias="Last-Event-ID", ge=0, le=2**62)] = 0) -> Response:
+                 last_event_id: Annotated[int, Header(alias="Last-Event-ID", ge=0, le=2**62), WHOLE] = 0) -> Response:
     """Follow a job; after a break, Last-Event-ID (the job's version that was seen last) goes on from there."""
     job = jobs.get(job_id)
     if job.status in ENDED and last_event_id >= job.version:

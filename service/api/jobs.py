@@ -12,6 +12,7 @@ from pydantic import AwareDatetime, BaseModel, BeforeValidator, ConfigDict, Fiel
 from service.access import Scope
 from service.api.description import NOT_MODIFIED, problems
 from service.api.documents import JobDocument, JobsDocument, answer, document
+from service.api.numbers import WHOLE
 from service.api.parts import Jobs, OwnJobs, Reader, Submitter, matches
 from service.api.problems import Problem
 from service.jobs import Selection, Status
@@ -35,7 +36,7 @@ class Listing(BaseModel):
     """Which jobs a list holds."""
 
     model_config = ConfigDict(extra="forbid")
-    limit: int = Field(50, ge=1, le=200)
+    limit: Annotated[int, Field(ge=1, le=200), WHOLE] = 50
     after: str | None = Field(None, pattern="^[0-9a-z]{26}$", description="only jobs older than this id")
     status: Status | None = None
     label: str | None = Field(None, max_length=100)

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from service.api.bodies import json_object
 from service.api.description import EXECUTE_BODY, problems
 from service.api.documents import JobDocument, document
+from service.api.numbers import WHOLE
 from service.api.parts import InParts, Jobs, OwnJobs, Reader, Submitter
 from service.api.problems import Problem
 from service.api.requests import wanted
@@ -85,7 +86,7 @@ class Paging(BaseModel):
     """Which part of the list of jobs."""
 
     model_config = ConfigDict(extra="forbid")
-    limit: int = Field(50, ge=1, le=200)
+    limit: Annotated[int, Field(ge=1, le=200), WHOLE] = 50
     status: Status | None = None
     after: str | None = Field(None, pattern="^[0-9a-z]{26}$")
 

@@ -14,6 +14,7 @@ from prometheus_client.registry import Collector
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.description import problems
+from service.api.numbers import WHOLE
 from service.api.parts import InParts, Operator
 from service.jobs.audit import trail
 from service.jobs.measures import BOUNDS, Histogram, Measures, measure
@@ -46,8 +47,8 @@ class Stretch(BaseModel):
     """Which part of the trail."""
 
     model_config = ConfigDict(extra="forbid")
-    limit: int = Field(100, ge=1, le=1000)
-    before: int | None = Field(None, ge=0, le=2**62, description="only deeds before this one")
+    limit: Annotated[int, Field(ge=1, le=1000), WHOLE] = 100
+    before: Annotated[int | None, Field(ge=0, le=2**62, description="only deeds before this one"), WHOLE] = None
 
 
 @router.get("/metrics", response_class=Response, responses={**TEXT})

@@ -69,7 +69,7 @@ def test_a_job_of_nobody_has_no_events(client):
     assert client.get("/v1/jobs/nobody/events").status_code == 404
 
 
-@pytest.mark.parametrize("last", ["x", "-1", "1.5", str(2**70)])
+@pytest.mark.parametrize("last", ["x", "-1", "1.5", "+0.0", "1_0", str(2**70)])
 def test_a_faulty_last_event_id_is_refused_by_its_name(client, done, last):
     answer = client.get(f"/v1/jobs/{done}/events", headers={"Last-Event-ID": last})
     assert answer.status_code == 422

@@ -139,7 +139,7 @@ def test_what_is_not_there_or_not_allowed_is_a_problem(client, method, path, sta
     assert status != 405 or answer.headers["allow"]
 
 
-@pytest.mark.parametrize("query", ["limit=0", "limit=201", "limit=x", "status=done", "page=2"])
+@pytest.mark.parametrize("query", ["limit=0", "limit=5.0", "limit=201", "limit=x", "status=done", "page=2"])
 def test_a_faulty_list_query_is_refused_by_the_name_of_its_parameter(client, query):
     problem = assert_problem(client.get(f"/v1/jobs?{query}"), 422)
     assert [error["parameter"] for error in problem["errors"]] == [query.partition("=")[0]]

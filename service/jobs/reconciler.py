@@ -8,19 +8,20 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 
 from service.jobs.database import Database
 from service.jobs.doorbell import Doorbell
 from service.jobs.leader import Leader
 from service.jobs.lifecycle import Status
-from service.jobs.tables import jobs
+from service.jobs.tables import jobs, owners
 from service.settings import Settings
 
 AT_ONCE = 64
 """The most messages that are left for the workers: each makes one of them look for a job."""
 TIDY = 60.0
-"""Seconds after which a worker is rung though no job waits: it first removes what lost ones have left."""
+"""Seconds after which a worker is rung though no job waits: it first removes what lost ones have left. As often owners'
+unfinished jobs are counted."""
 
 log = logging.getLogger(__name__)
 
@@ -86,6 +87,25 @@ def dismiss_cancelled(database: Database) -> None:
                            status=Status.DISMISSED, outcome="cancelled", message="cancelled while it waited")
 
 
+def recount(database: Database) -> None:
+    """Set right how many unfinished jobs owners have: a process of an older version, which does not keep the number,
+    may have run beside this one."""
+    there_are = (
+        select(func.count())
+        .where(jobs.c.owner == owners.c.name, jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING)))
+        .scalar_subquery()
+    )
+    with database.reading() as connection:
+        wrong = connection.scalars(select(owners.c.name).where(owners.c.unfinished != there_are)).all()
+    if not wrong:
+        return
+    theirs = owners.c.name.in_(wrong)
+    with database.writing() as transaction:
+        # held first, in one order, and counted after: what another transaction changes meanwhile it adds itself
+        transaction.connection.execute(select(owners.c.name).where(theirs).order_by(owners.c.name).with_for_update())
+        transaction.connection.execute(update(owners).where(theirs).values(unfinished=there_are))
+
+
 def waiting(database: Database) -> int:
     """How many jobs wait for a worker, counted up to AT_ONCE."""
     some = select(jobs.c.id).where(jobs.c.status == Status.ACCEPTED).limit(AT_ONCE).subquery()
@@ -129,6 +149,7 @@ class Reconciler:
         tidy = time.monotonic() >= self._tidy_at
         ring_for_all(self._database, self._doorbell, least=int(tidy))
         if tidy:
+            recount(self._database)
             self._tidy_at = time.monotonic() + TIDY
 
     def _run(self) -> None:

@@ -5,12 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from sqlalchemy import select, update
 
 from service.jobs import Database, NewJob, Reached, Registry, Status, reconciler
 from service.jobs.doorbell import Doorbell, celery_settings
 from service.jobs.held import HeldJob, claim
 from service.jobs.leader import Leader
-from service.jobs.reconciler import AT_ONCE, Reconciler, Watch, beats, dismiss_cancelled, ring_for_all, take_back
+from service.jobs.reconciler import (
+    AT_ONCE,
+    Reconciler,
+    Watch,
+    beats,
+    dismiss_cancelled,
+    recount,
+    ring_for_all,
+    take_back,
+)
+from service.jobs.tables import owners
 from service.settings import Settings
 
 LEASE, ATTEMPTS = 10.0, 3
@@ -53,6 +64,17 @@ def test_a_lease_is_lost_when_it_was_seen_unchanged_for_its_whole_length(registr
     assert watch.lost(beats(registry.database)) == []
     clock.now += 2
     assert [beat.job_id for beat in watch.lost(beats(registry.database))] == [job.job.id]
+
+
+def test_the_unfinished_jobs_of_an_owner_are_counted_again_where_their_number_is_wrong(registry):
+    """As after a rolling upgrade, in which processes that do not keep the number end jobs."""
+    held(registry)
+    registry.submit(NewJob({}))
+    with registry.database.writing() as transaction:
+        transaction.connection.execute(update(owners).values(unfinished=7))
+    recount(registry.database)
+    with registry.database.reading() as connection:
+        assert connection.scalars(select(owners.c.unfinished)).all() == [2]
 
 
 def test_a_clock_that_jumps_takes_no_job_from_a_living_worker(registry, clock):

@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline
 
 import solver.contact.self_contact as self_contact
 from solver import Contact, Curve, DistributedLoad, End, Initial, Outcome, Rod, RunFailed, Scene, simulate, warm
+from solver.contact.forces import allowed_fraction, keeps_apart, move_points, press
 from solver.contact.self_contact import SelfContact
 from solver.curve import constant_vector
 from solver.initial import nodes_at_rest
@@ -227,3 +228,27 @@ def test_a_step_that_is_refused_is_tried_again_from_where_it_began() -> None:
     method.refusal()
     method.try_step(simulation.t, 0.005)
     assert np.array_equal(pairs.before[:count], before)
+
+
+def test_a_guess_that_closes_more_than_half_of_a_gap_is_told_from_one_that_does_not() -> None:
+    contact, s = contact_of_the_loop()
+    contact.prepare(*state_of(loop(0.04), s), 0.01)
+    assert keeps_apart(contact.touch, state_of(loop(0.04), s)[1])
+    assert keeps_apart(contact.touch, state_of(loop(0.036), s)[1])
+    assert not keeps_apart(contact.touch, state_of(loop(0.02), s)[1])
+
+
+def test_no_update_of_newtons_closes_a_gap_that_presses() -> None:
+    contact, s = contact_of_the_loop()
+    _, r, velocity = state_of(loop(0.04), s)
+    contact.prepare(*state_of(loop(0.04), s), 0.01)
+    touch = contact.touch
+    press(touch, r[None], velocity[None])
+    assert touch.pressing.many[0] > 0
+    change = state_of(loop(0.015), s)[1] - r
+    move_points(touch, touch.pairs.members, change, np.zeros_like(change))
+    fraction = allowed_fraction(touch, 0)
+    assert 0.0 < fraction < 1.0
+    gap = touch.pressing.gap[0, : touch.pressing.many[0]].min()
+    press(touch, (r + fraction * change)[None], velocity[None])
+    assert 0.1 * gap < touch.pressing.gap[0, : touch.pressing.many[0]].min() < gap

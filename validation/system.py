@@ -1,4 +1,4 @@
-"""The box method's linear system, taken out of a step before it is factored.
+"""The linear systems of both methods, taken out of a step.
 
 The one place of the validation and the benchmarks that knows the solver's inner signatures.
 """
@@ -15,6 +15,9 @@ from solver.methods.box.method import BoxMethod
 from solver.methods.box.newton import assemble, set_scales
 from solver.methods.box.shooting import shoot
 from solver.methods.box.space import BOX
+from solver.methods.staggered.method import SCHEME, StaggeredMethod
+from solver.methods.staggered.motion import move, spin_steadily
+from solver.methods.staggered.newton import evaluate, factor_both, solve_increments, update
 from solver.rod import Array
 
 
@@ -77,3 +80,40 @@ class NewtonSystem:
         put(system.end, 6 + 12 * N, 12 * N)
         matrix = coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))).tocsr()
         return matrix, np.concatenate([system.b_start, system.b.ravel(), system.b_end])
+
+
+class StagesSystem:
+    """The system of the stages of a staggered step of `dt` from a method's state, without contact."""
+
+    def __init__(self, method: StaggeredMethod, dt: float) -> None:
+        self._method, self._dt = method, dt
+        method._drive(0.0, dt)
+        method._guess_rest()
+        spin_steadily(method.state, SCHEME.nodes, dt, method.stages)
+        self.move()
+        self.evaluate()
+
+    def move(self) -> None:
+        """All that follows from the unknown rotations."""
+        method = self._method
+        move(method.state, method.stages, SCHEME.inverse, self._dt, method.chain.h)
+
+    def evaluate(self) -> None:
+        """Residuals."""
+        method = self._method
+        evaluate(method.chain, method._loads, method.driven, method.stages, method.contact.touch, method.work)
+
+    def factor(self) -> bool:
+        """Tangents, and the real and the complex system factored."""
+        method, work = self._method, self._method.work
+        return bool(factor_both(method.chain, method._loads, method.driven, SCHEME, self._dt, method.stages, work))
+
+    def solve(self) -> None:
+        """Both systems solved for the residuals."""
+        method, work = self._method, self._method.work
+        solve_increments(method.chain, method.driven, SCHEME, self._dt, method.stages, method.contact.touch, work)
+
+    def update(self) -> None:
+        """Nothing of the increments added to the stages, at the cost of all."""
+        method = self._method
+        update(method.chain, SCHEME, 1.0, 1e-300, method.stages, method.work)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse.linalg import spsolve
 
-from benchmarks.kernels import system_of
+from benchmarks.kernels import scene_of
+from solver.methods.box.method import BoxMethod
+from validation.system import NewtonSystem
 
 
 def test_the_matrix_is_that_of_the_solve() -> None:
-    system = system_of(20)
+    system = NewtonSystem(BoxMethod(scene_of(20)), 0.1)
     system.assemble()
     assert system.factor()
     x = system.solve()

@@ -128,7 +128,7 @@ def _turn_residuals(driven: Driven, stages: Stages, R: Array, residuals: Residua
 
 
 @kernel
-def _update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: Stages,
+def update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: Stages,
             work: Work) -> tuple[float, float]:  # fmt: skip
     """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one."""
     T, frame = scheme.transform, work.tangents.R
@@ -171,7 +171,7 @@ def _update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: 
 
 
 @kernel
-def _increment(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stages: Stages, touch: Touch,
+def solve_increments(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stages: Stages, touch: Touch,
                work: Work) -> float:  # fmt: skip
     """Solve for the increments of the stages; return how much of them may be taken."""
     residuals, transformed, tangents = work.residuals, work.transformed, work.tangents
@@ -185,6 +185,16 @@ def _increment(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stages: 
                                   dt, transformed, work.real, work.pair, touch, work.coupling)  # fmt: skip
     solve_stages(chain, driven, tangents, gamma, pair, transformed, work.real, work.pair)
     return 1.0
+
+
+@kernel
+def factor_both(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, stages: Stages,
+                work: Work) -> bool:  # fmt: skip
+    """Write the tangents at the middle stage, and factor the real and the complex system; False if one is singular."""
+    segment_tangents(chain, loads, driven, stages, 1, work.tangents)
+    if not factor(chain, driven, work.tangents, scheme.gamma / dt, work.real):
+        return False
+    return bool(factor(chain, driven, work.tangents, scheme.pair / dt, work.pair))
 
 
 @kernel
@@ -203,13 +213,10 @@ def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, 
         evaluate(chain, loads, driven, stages, touch, work)
         if iteration == 1:
             work.coupling.known[0] = 0
-            segment_tangents(chain, loads, driven, stages, 1, work.tangents)
-            if not factor(chain, driven, work.tangents, scheme.gamma / dt, work.real):
+            if not factor_both(chain, loads, driven, scheme, dt, stages, work):
                 return SINGULAR, iteration
-            if not factor(chain, driven, work.tangents, scheme.pair / dt, work.pair):
-                return SINGULAR, iteration
-        fraction = _increment(chain, driven, scheme, dt, stages, touch, work)
-        turned, forced = _update(chain, scheme, unit, fraction, stages, work)
+        fraction = solve_increments(chain, driven, scheme, dt, stages, touch, work)
+        turned, forced = update(chain, scheme, unit, fraction, stages, work)
         if not max(turned, forced) < LARGEST_INCREMENT:
             return STALLED, iteration
         share = part * IN_CONTACT if touching(touch) else part

@@ -65,7 +65,10 @@ class DrivenEnd:
 
     def values(self, t: float, dt: float, gain: float) -> Array:
         """The six values (6,) at the end of the step from t to t + dt."""
-        return np.array([self._value(i, t, dt, gain) for i in range(6)])
+        values = np.where(self._held, gain * (self._travel_at_switch - self.travel), 0.0)
+        for i in self._moving:
+            values[i] = self._value(i, t, dt, gain)
+        return values
 
     def rotation_prescribed(self, t: float) -> float | None:
         """The exact rotation (rad) about a3 since t = 0, if it has been prescribed all along."""
@@ -81,8 +84,16 @@ class DrivenEnd:
         return total
 
     def _set_kinds(self) -> None:
+        self._held = np.zeros(6, np.bool_)
+        """Which components are held where they are. Free ones are worth nothing."""
+        self._moving: list[int] = []
         for i, component in enumerate(self._components):
-            load = component[self._active[i]].kind == "load"
+            condition = component[self._active[i]]
+            load = condition.kind == "load"
+            if condition.kind == "stop" or not condition.curve.is_zero:
+                self._moving.append(i)
+            else:
+                self._held[i] = not load
             if i < 3 and self.in_lab:
                 self.kinds[i] = LOAD_LAB if load else RATE_LAB
             else:

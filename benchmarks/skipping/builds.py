@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("solver", "service", "validation", "benchmarks")
 CONTACT = (("return bool(touch.present and touch.pairs.counts[0] > 0)", "return False"),
-           ("self._present = contact is not None", "self._present = False"))  # fmt: skip
+           ("self.present = contact is not None", "self.present = False"))  # fmt: skip
 FLUID = (("if loads.wet", "if False"),)
 LOADS = (("if loads.follows", "if False"), ("if loads.turns", "if False"))
 WITHOUT: dict[str, tuple[tuple[str, str], ...]] = {"": (), "contact": CONTACT, "fluid": FLUID, "loads": LOADS}

@@ -6,7 +6,7 @@ from math import inf, nan
 
 import numpy as np
 
-from solver.contact.forces import Pressing, Touch, touching
+from solver.contact.forces import Pressing, Touch
 from solver.contact.law import Law
 from solver.contact.points import Points, contact_points, place_points
 from solver.contact.search import Pairs, cannot_touch, find_pairs, largest_displacement, smallest_distance
@@ -36,7 +36,8 @@ class SelfContact:
     """
 
     def __init__(self, contact: Contact | None, rod: Rod, s: Array, stages: int) -> None:
-        self._present = contact is not None
+        self.present = contact is not None
+        """Whether the scene has contact at all."""
         self._nodes, self._stages = len(s), stages
         settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
         points = contact_points(settings, rod, s)
@@ -49,13 +50,18 @@ class SelfContact:
         """The longest next step (s)."""
 
     @property
+    def touching(self) -> bool:
+        """Whether there are pairs that may press."""
+        return self.present and bool(self.touch.pairs.counts[0] > 0)
+
+    @property
     def pressing(self) -> int:
         """Number of pairs that press on each other."""
-        return int(self.touch.pressing.many[-1]) if touching(self.touch) else 0
+        return int(self.touch.pressing.many[-1]) if self.touching else 0
 
     def prepare(self, bending: float, r: Array, velocity: Array, dt: float) -> None:
         """Before a step of dt (s) from a state: make the list of pairs good for it."""
-        if not self._present:
+        if not self.present:
             return
         points, pairs = self.touch.points, self.touch.pairs
         if cannot_touch(bending, self._farthest, self._law):
@@ -70,7 +76,7 @@ class SelfContact:
     def refusal(self, bending: float, r: Array, velocity: Array) -> str:
         """After a step to a trial state: why it cannot be trusted, or nothing."""
         self.step_limit = inf
-        if not self._present or cannot_touch(bending, self._law.cutoff, self._law):
+        if not self.present or cannot_touch(bending, self._law.cutoff, self._law):
             return ""
         points, pairs = self.touch.points, self.touch.pairs
         place_points(points, r, velocity)
@@ -88,7 +94,7 @@ class SelfContact:
 
     def smallest_gap(self, bending: float, r: Array, velocity: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
-        if not self._present or cannot_touch(bending, self._law.cutoff, self._law):
+        if not self.present or cannot_touch(bending, self._law.cutoff, self._law):
             return nan
         points = self.touch.points
         place_points(points, r, velocity)
@@ -97,7 +103,7 @@ class SelfContact:
 
     def power(self) -> Array:
         """Power (stages, 2) in W stored in contact, and dissipated by it, at the times of the last evaluation."""
-        return self.touch.pressing.power if touching(self.touch) else np.zeros((self._stages, 2))
+        return self.touch.pressing.power if self.touching else np.zeros((self._stages, 2))
 
     def compile(self) -> None:
         """Have every kernel compiled that a run in contact needs."""
@@ -127,7 +133,7 @@ class SelfContact:
         n, M = self._nodes, len(points.p)
         pairs, pressing = Pairs.empty(capacity, M, n), Pressing.empty(self._stages, capacity, M, n)
         changes = np.zeros((M, 9)), np.zeros((M, 3)), np.zeros((self._stages, n, 3))
-        self.touch = Touch(self._present, self._law, points, pairs, pressing, *changes)
+        self.touch = Touch(self.present, self._law, points, pairs, pressing, *changes)
 
 
 @kernel

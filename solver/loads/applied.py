@@ -49,6 +49,8 @@ class AppliedLoads:
         inside = tuple(load for load in scene.points if load not in at_ends)
         self._points = [(load, point_weights(load.s, centres, lengths)) for load in inside]
         self._at_ends = at_ends
+        self.has_end_loads = bool(at_ends)
+        """Whether there are point loads at the ends."""
         self._given = scene.distributed + inside
         area = 0.25 * pi * section.diameter**2
         density = fluid.density if fluid else 0.0

@@ -17,20 +17,33 @@ def energies(chain: Chain, loads: Loads, bend: Array, omega: Array, centres: Arr
              weight: Array) -> Energies:  # fmt: skip
     """The energies at a state: joints' `bend` (N + 1, 3); segments' `omega`, `tangents`, `weight` (N, 3); `centres`
     (2, N, 3), position and velocity."""
-    strain = bend / chain.span[:, None] - chain.kappa0
-    elastic = 0.5 * np.sum(chain.span[:, None] * chain.stiffness * strain**2, axis=0)
-    kinetic = np.sum(chain.mass * np.sum(centres[1] ** 2, axis=1)) + np.sum(chain.dry_inertia * omega**2)
-    across = centres[1] - loads.current
-    across = across - np.sum(across * tangents, axis=1)[:, None] * tangents
-    added = np.sum(loads.added_mass * np.sum(across**2, axis=1))
-    added = added + np.sum((chain.inertia - chain.dry_inertia) * omega**2)
-    return Energies(
-        bending=float(elastic[0] + elastic[1]),
-        torsion=float(elastic[2]),
-        kinetic=float(0.5 * chain.h * kinetic),
-        added_mass=float(0.5 * chain.h * added),
-        potential=float(-chain.h * np.sum(weight * centres[0])),
-    )
+    return Energies(*_integrate(chain, loads, bend, omega, centres, tangents, weight))
+
+
+@kernel
+def _integrate(chain: Chain, loads: Loads, bend: Array, omega: Array, centres: Array, tangents: Array,
+               weight: Array) -> tuple[float, float, float, float, float]:  # fmt: skip
+    """The energies in their order."""
+    bending, torsion, kinetic, added, potential = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(len(bend)):
+        for k in range(3):
+            strain = bend[i, k] / chain.span[i] - chain.kappa0[i, k]
+            energy = 0.5 * chain.span[i] * chain.stiffness[i, k] * strain * strain
+            if k < 2:
+                bending += energy
+            else:
+                torsion += energy
+    for j in range(len(omega)):
+        along = 0.0
+        for k in range(3):
+            along += tangents[j, k] * (centres[1, j, k] - loads.current[k])
+        for k in range(3):
+            velocity, spin = centres[1, j, k], omega[j, k] * omega[j, k]
+            across = velocity - loads.current[k] - along * tangents[j, k]
+            kinetic += chain.mass[j] * velocity * velocity + chain.dry_inertia[j, k] * spin
+            added += loads.added_mass[j] * across * across + (chain.inertia[j, k] - chain.dry_inertia[j, k]) * spin
+            potential -= weight[j, k] * centres[0, j, k]
+    return bending, torsion, 0.5 * chain.h * kinetic, 0.5 * chain.h * added, chain.h * potential
 
 
 @kernel

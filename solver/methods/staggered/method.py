@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.contact.forces import keeps_apart, touching
+from solver.contact.forces import keeps_apart
 from solver.contact.self_contact import SelfContact
 from solver.ends import DrivenEnd
 from solver.frame import Fields
@@ -70,6 +70,7 @@ class StaggeredMethod:
         follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)
         self._nodes = np.zeros((2, N + 1, 3))
         self._place_nodes(R, self.state.omega, self.state.base, self._centres)
+        self._bending = total_bending(self._bend(self.state.quaternion)[0])
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt; how it ended and the Newton iterations.
@@ -77,12 +78,12 @@ class StaggeredMethod:
         With `consistent`, from rest: an end that is set going at once gives forces that say nothing of what follows.
         """
         self._drive(t, dt)
-        self.contact.prepare(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1], dt)
+        self.contact.prepare(self._bending, self._nodes[0], self._nodes[1], dt)
         if consistent:
             self._guess_rest()
         else:
             self._guess(dt)
-            if touching(self.contact.touch) and not self._guess_keeps_apart(dt):
+            if self.contact.touching and not self._guess_keeps_apart(dt):
                 self._guess_standstill(dt)
         status, iterations = self._solve(dt)
         if consistent and iterations == LARGEST_ITERATIONS and status != CONVERGED:
@@ -104,10 +105,12 @@ class StaggeredMethod:
 
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
+        if not self.contact.present:
+            return ""
         # not into the state's own nodes: from them a refused step is tried again
         stages, (r, V) = self.stages, np.empty_like(self._nodes)
         place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
-        return self.contact.refusal(self._bending(stages.quaternion[2]), r, V)
+        return self.contact.refusal(total_bending(stages.bend[2]), r, V)
 
     def take_step(self, t: float, dt: float) -> None:
         """Make the trial the state."""
@@ -125,6 +128,7 @@ class StaggeredMethod:
         for mine, last in zip(self._centres, (stages.r[2], stages.V[2], stages.A[2]), strict=True):
             mine[:] = last
         self._place_nodes(self._R, self.state.omega, self.state.base, self._centres)
+        self._bending = total_bending(stages.bend[2])
         self._last_dt = dt
         for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
             kept[:] = now
@@ -177,7 +181,7 @@ class StaggeredMethod:
 
     def smallest_gap(self) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
-        return self.contact.smallest_gap(self._bending(self.state.quaternion), self._nodes[0], self._nodes[1])
+        return self.contact.smallest_gap(self._bending, self._nodes[0], self._nodes[1])
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""
@@ -207,10 +211,6 @@ class StaggeredMethod:
         bend_joints(self.chain, quaternion, bend, q, left, right)
         return bend, q
 
-    def _bending(self, quaternion: Array) -> float:
-        bend, _ = self._bend(quaternion)
-        return float(np.hypot(bend[:, 0], bend[:, 1]).sum())
-
     def _end_velocities(self) -> Array:
         """V (3, 2, 3) of the first and the last node at the stages, lab."""
         stages = self.stages
@@ -227,7 +227,7 @@ class StaggeredMethod:
             theta, shift, force = self._last
             extrapolate(self.trial, theta, self._last_dt, state, tableau.C, weights, ratio, stages)
             stages.shift[:] = weights @ shift - shift[2]
-            stages.F[:] = np.tensordot(tableau.quadratic_extrapolation(ratio), force, 1)
+            np.matmul(tableau.quadratic_extrapolation(ratio), force.reshape(3, -1), out=stages.F.reshape(3, -1))
             return
         tau = (tableau.C * dt)[:, None, None]
         stages.theta[:] = 0.5 * tau**2 * state.alpha
@@ -258,16 +258,22 @@ class StaggeredMethod:
         """Write what is given at the stages of a step."""
         driven = self.driven
         driven.push[:] = 0.0
+        driven.kinds[0], driven.kinds[1] = self.start.kinds, self.end.kinds
         for i, c in enumerate(tableau.C):
             self._loads = self.applied.at(t + c * dt)
             driven.lab[i], driven.material[i] = self._loads.lab, self._loads.material
             for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
-                values = end.values(t, c * dt, FEEDBACK / dt)
-                loaded = end.kinds % 2 == 1
-                values[loaded] += self.applied.at_end(t + c * dt, s, "material")[loaded]
-                driven.values[i, side] = values
-                driven.dead[i, side] = self.applied.at_end(t + c * dt, s, "lab")
-                driven.kinds[side] = end.kinds
+                driven.values[i, side] = end.values(t, c * dt, FEEDBACK / dt)
+                if self.applied.has_end_loads:
+                    following, driven.dead[i, side] = (
+                        self.applied.at_end(t + c * dt, s, frame) for frame in ("material", "lab")
+                    )
+                    driven.values[i, side] += np.where(end.kinds % 2 == 1, following, 0.0)
+
+
+def total_bending(bend: Array) -> float:
+    """int |kappa_bending| ds (rad) of joints' rotation vectors (n, 3)."""
+    return float(np.hypot(bend[:, 0], bend[:, 1]).sum())
 
 
 def orientations_at_nodes(quaternion: Array) -> Array:

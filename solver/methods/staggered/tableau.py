@@ -35,15 +35,17 @@ ERROR = np.array([-13.0 - 7.0 * ROOT, -13.0 + 7.0 * ROOT, -1.0]) / (3.0 * GAMMA)
 """Weights of the stages in the error estimate; the slope at the start of the step has 1 / GAMMA."""
 
 
+CUBIC, PARABOLA = np.array([1, 2, 3]), np.array([0, 1, 2])
+"""Powers of the polynomial through (0, 0) and the stages, and of the parabola through the stages."""
+TO_CUBIC, TO_PARABOLA = np.linalg.inv(C[:, None] ** CUBIC), np.linalg.inv(C[:, None] ** PARABOLA)
+"""From values at the stages to the coefficients of these powers."""
+
+
 def extrapolation(ratio: float) -> np.ndarray:
     """(3, 3): values of the polynomial through (0, 0) and the stages at the stages of a next step `ratio` as long."""
-    at = 1.0 + ratio * C
-    powers = np.array([[x, x**2, x**3] for x in C])
-    return np.asarray(np.array([[x, x**2, x**3] for x in at]) @ np.linalg.inv(powers))
+    return np.asarray((1.0 + ratio * C)[:, None] ** CUBIC @ TO_CUBIC)
 
 
 def quadratic_extrapolation(ratio: float) -> np.ndarray:
     """(3, 3): values of the parabola through the three stages at the stages of a next step `ratio` as long."""
-    at = 1.0 + ratio * C
-    powers = np.array([[1.0, x, x**2] for x in C])
-    return np.asarray(np.array([[1.0, x, x**2] for x in at]) @ np.linalg.inv(powers))
+    return np.asarray((1.0 + ratio * C)[:, None] ** PARABOLA @ TO_PARABOLA)

@@ -21,6 +21,7 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
 
 SMALL_TANGENT = 0.1
 """Below it eight terms of the arctangent's series are exact to rounding: 0.1^16 / 17 = 6e-18."""
@@ -105,26 +106,28 @@ def _ray(r: Array, origin: Array, direction: Array) -> float:
 
 @njit(cache=True)
 def _distances(r: Array, i: int, out: Array) -> None:
-    """Distances of vertex i from all vertices."""
-    for j in range(r.shape[1]):
-        x, y, z = r[0, j] - r[0, i], r[1, j] - r[1, i], r[2, j] - r[2, i]
-        out[j] = sqrt(x * x + y * y + z * z)
+    """Distances of vertex i from all later vertices."""
+    x, y, z, later = r[0, i + 1 :], r[1, i + 1 :], r[2, i + 1 :], out[i + 1 :]
+    for k in range(len(later)):
+        u, v, w = x[k] - r[0, i], y[k] - r[1, i], z[k] - r[2, i]
+        later[k] = sqrt(u * u + v * v + w * w)
 
 
 @njit(cache=True, inline="always")
-def _pair(r: Array, i: int, j: int, from_i: Array, from_next: Array) -> tuple[float, float]:
-    """x, y with arg(x + i y) = half the signed area of segments i and j (see the module's text).
+def _pair(start: Vector, end: Vector, first: Vector, last: Vector,
+          a: float, b: float, c: float, d: float) -> tuple[float, float]:  # fmt: skip
+    """x, y with arg(x + i y) = half the signed area of two segments (see the module's text).
 
-    The dot products are the corners' own; V is taken from the segments' vectors, so that it keeps
-    its digits when a, b, c, d are nearly parallel.
+    From `start` to `end`, and from `first` to `last`; `a`, `b`, `c`, `d` the lengths of the four vectors. The dot
+    products are the corners' own; V is taken from the segments' vectors, so that it keeps its digits when the four
+    are nearly parallel.
     """
-    ax, ay, az = r[0, j] - r[0, i], r[1, j] - r[1, i], r[2, j] - r[2, i]
-    bx, by, bz = r[0, j + 1] - r[0, i], r[1, j + 1] - r[1, i], r[2, j + 1] - r[2, i]
-    cx, cy, cz = r[0, j + 1] - r[0, i + 1], r[1, j + 1] - r[1, i + 1], r[2, j + 1] - r[2, i + 1]
-    dx, dy, dz = r[0, j] - r[0, i + 1], r[1, j] - r[1, i + 1], r[2, j] - r[2, i + 1]
-    ux, uy, uz = r[0, i + 1] - r[0, i], r[1, i + 1] - r[1, i], r[2, i + 1] - r[2, i]
-    wx, wy, wz = r[0, j + 1] - r[0, j], r[1, j + 1] - r[1, j], r[2, j + 1] - r[2, j]
-    a, b, c, d = from_i[j], from_i[j + 1], from_next[j + 1], from_next[j]
+    ax, ay, az = first[0] - start[0], first[1] - start[1], first[2] - start[2]
+    bx, by, bz = last[0] - start[0], last[1] - start[1], last[2] - start[2]
+    cx, cy, cz = last[0] - end[0], last[1] - end[1], last[2] - end[2]
+    dx, dy, dz = first[0] - end[0], first[1] - end[1], first[2] - end[2]
+    ux, uy, uz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
+    wx, wy, wz = last[0] - first[0], last[1] - first[1], last[2] - first[2]
     volume = ax * (uy * wz - uz * wy) + ay * (uz * wx - ux * wz) + az * (ux * wy - uy * wx)
     ac = ax * cx + ay * cy + az * cz
     d1 = a * b * c + (ax * bx + ay * by + az * bz) * c + (bx * cx + by * cy + bz * cz) * a + ac * b
@@ -140,18 +143,21 @@ def _arctangent(t: float) -> float:
     return t * (1.0 - p * (1 / 3 - p * (1 / 5 - p * (1 / 7 - p * series))))
 
 
-@njit(cache=True, fastmath={"reassoc", "contract"})
+@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
 def _row(r: Array, i: int, last: int, from_i: Array, from_next: Array) -> tuple[float, int]:
     """Half the area of segment i with segments i + 2 ... last - 1, and how many pairs are left out.
 
-    Left out are the near pairs, whose angle is not small: without a call or a branch the loop is
-    vectorised.
+    Left out are the near pairs, whose angle is not small. So the loop has no call and no branch (nor the one that
+    would raise for a divisor of 0, hence the error model), runs from 0 along slices, and is vectorised.
     """
-    total, left_out = 0.0, 0
-    for j in range(i + 2, last):
-        x, y = _pair(r, i, j, from_i, from_next)
-        small = abs(y) < SMALL_TANGENT * x
-        total += _arctangent(y / x) if small else 0.0
+    total, left_out, j = 0.0, 0, i + 2
+    start, end = (r[0, i], r[1, i], r[2, i]), (r[0, i + 1], r[1, i + 1], r[2, i + 1])
+    x, y, z, a, d = r[0, j:], r[1, j:], r[2, j:], from_i[j:], from_next[j:]
+    x1, y1, z1, b, c = r[0, j + 1 :], r[1, j + 1 :], r[2, j + 1 :], from_i[j + 1 :], from_next[j + 1 :]
+    for k in range(last - j):
+        p, q = _pair(start, end, (x[k], y[k], z[k]), (x1[k], y1[k], z1[k]), a[k], b[k], c[k], d[k])
+        small = abs(q) < SMALL_TANGENT * p
+        total += _arctangent(q / p) if small else 0.0
         left_out += 0 if small else 1
     return total, left_out
 
@@ -160,10 +166,12 @@ def _row(r: Array, i: int, last: int, from_i: Array, from_next: Array) -> tuple[
 def _near_pairs(r: Array, i: int, last: int, from_i: Array, from_next: Array) -> float:
     """Half the area of segment i with those segments that `_row` leaves out."""
     total = 0.0
+    start, end = (r[0, i], r[1, i], r[2, i]), (r[0, i + 1], r[1, i + 1], r[2, i + 1])
     for j in range(i + 2, last):
-        x, y = _pair(r, i, j, from_i, from_next)
-        if not abs(y) < SMALL_TANGENT * x:
-            total += _angle(x, y)
+        p, q = _pair(start, end, (r[0, j], r[1, j], r[2, j]), (r[0, j + 1], r[1, j + 1], r[2, j + 1]),
+                     from_i[j], from_i[j + 1], from_next[j + 1], from_next[j])  # fmt: skip
+        if not abs(q) < SMALL_TANGENT * p:
+            total += _angle(p, q)
     return total
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from service.cases import apply_settings, build_scene, load_case, parse_case
+from solver import simulate
 from solver.initial import nodes_at_rest
 from solver.scene import Scene
 
@@ -114,3 +115,20 @@ def test_what_a_case_leaves_out_is_absent_in_the_scene():
     assert built.distributed == ()
     assert built.points == ()
     assert built.gravity == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("method", ["box", "staggered"])
+def test_a_rod_whose_natural_shape_is_its_initial_one_stays_at_rest(method):
+    """Found among the stress test's random cases, [1, 330]: curvature sampled twice as finely was another one."""
+    angle = np.linspace(0.0, 6.0, 41)
+    raw = load_case("short-loop")
+    raw["rod"]["length"] = float(np.hypot(0.05, 0.02) * 6.0)
+    raw["initial"] = {"shape": "centreline", "a1": [1.0, 0.0, 0.0], "points": np.column_stack(
+        [0.05 * np.cos(angle), 0.05 * np.sin(angle), 0.02 * angle]).tolist()}  # fmt: skip
+    raw |= {"ends": {"start": "free", "end": "pin"}, "loads": {}, "t_end": 0.1, "output": {"interval": 0.02}}
+    raw["numerics"] = {"method": method, "intervals": 12, "dt_max": 0.02}
+    del raw["contact"]
+    built = build_scene(parse_case(raw))
+    unit = float(built.rod.stiffness[0](np.zeros(1))[0]) / built.rod.length
+    for frame in simulate(built):
+        assert frame.energy_bending + frame.energy_torsion + frame.energy_kinetic < 1e-20 * unit

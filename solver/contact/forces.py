@@ -136,7 +136,7 @@ def keeps_apart(touch: Touch, r: Array) -> bool:
         now, before = 0.0, 0.0
         for k in range(3):
             now += (points.p[a, k] - points.p[b, k]) ** 2
-            before += pairs.before[pair, k] ** 2
+            before += (points.start[a, k] - points.start[b, k]) ** 2
         radius = 0.25 * (points.diameter[a] + points.diameter[b])
         gap = np.sqrt(before) - radius
         if np.sqrt(now) - radius < (1.0 - LARGEST_FORESEEN) * gap and gap > 0.0:

@@ -25,7 +25,8 @@ class Points(NamedTuple):
 
     Fixed: `first` (M,), the first of the four nodes a point hangs on; `weights`, `slopes` (M, 4), their shares in its
     position and in its tangent; `mass` rho_c A and `diameter` (M,); `spacing` (m). At the current iterate, lab: `p`
-    position, `t` tangent, `w` velocity, each (M, 3). `checked` (M, 3): positions at the last search.
+    position, `t` tangent, `w` velocity, each (M, 3). `start` and `checked` (M, 3): positions at the start of the
+    step, and at the last search.
     """
 
     first: Array
@@ -37,6 +38,7 @@ class Points(NamedTuple):
     p: Array
     t: Array
     w: Array
+    start: Array
     checked: Array
 
 
@@ -51,7 +53,7 @@ def contact_points(contact: Contact, rod: Rod, s: Array) -> Points:
     place = ((1 + 2 * x) * (1 - x) ** 2, x * (1 - x) ** 2, x**2 * (3 - 2 * x), x**2 * (x - 1))
     along = (6 * x * (x - 1), (1 - x) * (1 - 3 * x), 6 * x * (1 - x), x * (3 * x - 2))
     weights, slopes = (_shares(interval, first, last, *hermite) for hermite in (place, along))
-    vectors = [np.zeros((count, 3)) for _ in range(4)]
+    vectors = [np.zeros((count, 3)) for _ in range(5)]
     return Points(first, weights, slopes / h, np.asarray(rod.mass(at)), np.asarray(rod.diameter(at)), float(at[1]),
                   *vectors)  # fmt: skip
 

@@ -25,20 +25,19 @@ class Pairs(NamedTuple):
     """Pairs of points that may touch, until the next search.
 
     `counts` (2,): pairs that are listed, and that did not fit; `first`, `second` (capacity,) their points; `members`
-    that take part; `before` (capacity, 3): separations at the start of the step.
+    that take part.
     """
 
     counts: Array
     first: Array
     second: Array
     members: Members
-    before: Array
 
     @classmethod
     def empty(cls, capacity: int, points: int, nodes: int) -> Pairs:
         """No pairs, with room for `capacity`."""
         return cls(np.zeros(2, np.int64), np.zeros(capacity, np.int64), np.zeros(capacity, np.int64),
-                   Members.none(points, nodes), np.zeros((capacity, 3)))  # fmt: skip
+                   Members.none(points, nodes))  # fmt: skip
 
 
 def cannot_touch(bending: float, distance: float, law: Law) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 
 from solver.contact.forces import Pressing, Touch
 from solver.contact.law import Law
+from solver.contact.links import links_meet, links_reach
 from solver.contact.points import Points, contact_points, place_points
 from solver.contact.search import Pairs, cannot_touch, find_pairs, largest_displacement, smallest_distance
 from solver.kernel import kernel
@@ -15,7 +16,7 @@ from solver.rod import Array, Rod
 from solver.scene import Contact
 
 SKIN = (0.1, 1.5)
-"""In cutoffs: how much farther than the cutoff a search looks, at least and at the most."""
+"""In reaches: how much farther than what must be known a search looks, at least and at the most."""
 FORESEEN = 7.5
 """Steps for which the fastest point may go on within what a search has looked at."""
 LARGEST_APPROACH = 0.35
@@ -42,7 +43,9 @@ class SelfContact:
         settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
         points = contact_points(settings, rod, s)
         self._law = Law.of(settings, points.spacing)
-        self._farthest = (1.0 + SKIN[1]) * self._law.cutoff
+        # pairs that press, and those whose links may meet
+        self._reach = max(self._law.cutoff, links_reach(points))
+        self._farthest = (1.0 + SKIN[1]) * self._reach
         self._slack = 0.0
         self._looked = False
         self._make_room(points, 1024 if contact else 1)
@@ -71,17 +74,17 @@ class SelfContact:
         place_points(points, r, velocity)
         if not self._looked or largest_displacement(points) > 0.25 * self._slack:
             self._search(dt)
-        keep_separations(self.touch.points, self.touch.pairs)
+        points.start[:] = points.p
 
     def refusal(self, bending: float, r: Array, velocity: Array) -> str:
         """After a step to a trial state: why it cannot be trusted, or nothing."""
         self.step_limit = inf
-        if not self.present or cannot_touch(bending, self._law.cutoff, self._law):
+        if not self.present or cannot_touch(bending, self._reach, self._law):
             return ""
         points, pairs = self.touch.points, self.touch.pairs
         place_points(points, r, velocity)
         if not self._looked:
-            near = smallest_distance(points, self._law.skip, self._farthest) <= self._law.cutoff
+            near = smallest_distance(points, self._law.skip, self._farthest) <= self._reach
             return "the rod came near itself within one step" if near else ""
         if largest_displacement(points) > 0.5 * self._slack:
             return "the rod moved farther than the contact search looked"
@@ -90,7 +93,11 @@ class SelfContact:
         self.step_limit = TIME_TO_TOUCH * time_to_touch
         if speed > 0.0:
             self.step_limit = min(self.step_limit, LARGEST_SHIFT * self._slack / speed)
-        return "two parts of the rod could have passed through each other" if approach > LARGEST_APPROACH else ""
+        if approach > LARGEST_APPROACH:
+            return "two parts of the rod could have passed through each other"
+        if links_meet(points, pairs):
+            return "two parts of the rod slipped into each other between contact points"
+        return ""
 
     def smallest_gap(self, bending: float, r: Array, velocity: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
@@ -111,37 +118,29 @@ class SelfContact:
         place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
         self._search(0.0)
         smallest_distance(self.touch.points, self._law.skip, 0.0)
-        keep_separations(self.touch.points, self.touch.pairs)
         approaches(self.touch.points, self.touch.pairs)
+        links_meet(self.touch.points, self.touch.pairs)
         fastest(self.touch.points)
         largest_displacement(self.touch.points)
 
     def _search(self, dt: float) -> None:
         """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
-        points, law = self.touch.points, self._law
+        points, skip, reach = self.touch.points, self._law.skip, self._reach
         points.checked[:] = points.p
         self._looked = True
-        self._slack = min(max(FORESEEN * fastest(points) * dt, SKIN[0] * law.cutoff), SKIN[1] * law.cutoff)
-        find_pairs(points, law.skip, law.cutoff + self._slack, self.touch.pairs)
+        self._slack = min(max(FORESEEN * fastest(points) * dt, SKIN[0] * reach), SKIN[1] * reach)
+        find_pairs(points, skip, reach + self._slack, self.touch.pairs)
         if self.touch.pairs.counts[1] > 0:
             self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))
-            find_pairs(points, law.skip, law.cutoff + self._slack, self.touch.pairs)
+            find_pairs(points, skip, reach + self._slack, self.touch.pairs)
         if self.touch.pairs.counts[0] == 0:
-            self._slack = smallest_distance(points, law.skip, 2.0 * self._farthest) - law.cutoff
+            self._slack = smallest_distance(points, skip, 2.0 * self._farthest) - reach
 
     def _make_room(self, points: Points, capacity: int) -> None:
         n, M = self._nodes, len(points.p)
         pairs, pressing = Pairs.empty(capacity, M, n), Pressing.empty(self._stages, capacity, M, n)
         changes = np.zeros((M, 9)), np.zeros((M, 3)), np.zeros((self._stages, n, 3))
         self.touch = Touch(self.present, self._law, points, pairs, pressing, *changes)
-
-
-@kernel
-def keep_separations(points: Points, pairs: Pairs) -> None:
-    """Remember the pairs' separations at the start of a step."""
-    for pair in range(pairs.counts[0]):
-        for k in range(3):
-            pairs.before[pair, k] = points.p[pairs.first[pair], k] - points.p[pairs.second[pair], k]
 
 
 @kernel
@@ -162,8 +161,9 @@ def approaches(points: Points, pairs: Pairs) -> tuple[float, float]:
         change, before, square, closing = 0.0, 0.0, 0.0, 0.0
         for k in range(3):
             now = points.p[a, k] - points.p[b, k]
-            change += (now - pairs.before[pair, k]) ** 2
-            before += pairs.before[pair, k] ** 2
+            then = points.start[a, k] - points.start[b, k]
+            change += (now - then) ** 2
+            before += then * then
             square += now * now
             closing -= now * (points.w[a, k] - points.w[b, k])
         largest = max(largest, change / before)

@@ -213,21 +213,20 @@ def test_strands_that_approach_limit_the_next_step_to_part_of_the_time_to_touch(
 
 
 def test_a_step_that_is_refused_is_tried_again_from_where_it_began() -> None:
-    """The second trial's separations are compared with those of the state, not with those of the first trial."""
+    """The second trial's points are compared with those of the state, not with those of the first trial."""
     numerics = replace(fixed_steps(INTERVALS, 0.02), method="staggered")
     simulation = Simulation(replace(looped(replace(CONTACT, k1=3e-6), 0.02), numerics=numerics))
     while simulation.t < 0.3:
         simulation.advance()
     method = simulation._method
     assert isinstance(method, StaggeredMethod)
-    pairs = method.contact.touch.pairs
+    points = method.contact.touch.points
     method.try_step(simulation.t, 0.01)
-    count = pairs.counts[0]
-    before = pairs.before[:count].copy()
-    assert count > 0
+    before = points.start.copy()
+    assert method.contact.touch.pairs.counts[0] > 0
     method.refusal()
     method.try_step(simulation.t, 0.005)
-    assert np.array_equal(pairs.before[:count], before)
+    assert np.array_equal(points.start, before)
 
 
 def test_a_guess_that_closes_more_than_half_of_a_gap_is_told_from_one_that_does_not() -> None:

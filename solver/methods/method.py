@@ -41,6 +41,9 @@ class Method(Protocol):
     def strain(self) -> float:
         """By what part of its length an interval of the trial has stretched at the most: the exact rod cannot."""
 
+    def turn(self) -> float:
+        """The largest rotation (rad) of the trial within an interval: from pi on it does not say how the rod lies."""
+
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
 

@@ -186,6 +186,19 @@ def test_a_rod_that_curls_up_between_two_nodes_is_refused_by_name(method: Litera
     assert caught.value.outcome is Outcome.MESH_TOO_COARSE
 
 
+@pytest.mark.parametrize("method", ["box", "staggered"])
+def test_a_rod_that_curls_up_between_two_frames_is_refused_when_it_does(method: Literal["box", "staggered"]) -> None:
+    """Found among the stress test's random cases, [1, 210]: past half a turn a relative rotation looks small again."""
+    turn = turned_clamp(Condition("position", Curve.table([0.0, 1.0], [0.0, 40.0])))
+    scene = Scene(ARC_ROD, ARC, End.clamp(), turn, 1.0, 1.0, damping=5.0,
+                  numerics=Numerics(method=method, intervals=5, dt_max=0.05))  # fmt: skip
+    with pytest.raises(RunFailed, match="rad within an interval") as caught:
+        list(simulate(scene))
+    assert caught.value.outcome is Outcome.MESH_TOO_COARSE
+    # five intervals and as much again as the arc bends: half a turn each, but waves on the way from the end
+    assert 0.1 < caught.value.t < 5 * np.pi / 40.0
+
+
 @pytest.mark.parametrize("outcome", [o for o in Outcome if o is not Outcome.COMPLETED])
 def test_every_outcome_that_is_no_success_has_a_remedy(outcome: Outcome) -> None:
     assert REMEDY[outcome] in str(RunFailed(outcome, 1.25, 7, "why"))

@@ -124,6 +124,10 @@ class BoxMethod:
         """The trial's largest stretch of an interval, over its length."""
         return float(np.abs(self._trial_stretch).max()) / self.h
 
+    def turn(self) -> float:
+        """The largest rotation (rad) of the trial within an interval."""
+        return float(np.linalg.norm(self.trial.Y[:, KAPPA : KAPPA + 3], axis=1).max()) * self.h
+
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
         return self.contact.refusal(*self._centreline(self.trial))

@@ -48,6 +48,23 @@ def bend_joints(chain: Chain, quaternion: Array, bend: Array, moment: Array, lef
 
 
 @kernel
+def largest_turn(before: Array, after: Array) -> float:
+    """The largest rotation (rad) of joints with the rotation vectors (n, 3) before and after a step.
+
+    A rotation vector is shorter than pi. One that was to become longer points the other way instead: it has leapt.
+    """
+    largest = 0.0
+    for i in range(len(after)):
+        square, leap = 0.0, 0.0
+        for k in range(3):
+            square += after[i, k] ** 2
+            leap += (after[i, k] - before[i, k]) ** 2
+        angle = np.sqrt(square)
+        largest = max(largest, 2.0 * np.pi - angle if leap > np.pi**2 else angle)
+    return largest
+
+
+@kernel
 def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back: Array) -> None:
     """Write B and the tangents of B q and B^t q by Theta.
 

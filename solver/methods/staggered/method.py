@@ -15,7 +15,7 @@ from solver.methods.staggered.chain import Stages, State
 from solver.methods.staggered.coupling import place_nodes
 from solver.methods.staggered.energies import energies, stage_powers, twist
 from solver.methods.staggered.initial import chain_of, lay_out
-from solver.methods.staggered.joints import bend_joints
+from solver.methods.staggered.joints import bend_joints, largest_turn
 from solver.methods.staggered.motion import extrapolate, follow_segments, move, spin_steadily
 from solver.methods.staggered.newton import LARGEST_ITERATIONS, Scheme, Work, estimate_error, finish, step
 from solver.methods.staggered.segments import Driven
@@ -63,6 +63,7 @@ class StaggeredMethod:
         self._last_dt = 0.0
         self._last = (np.zeros_like(self.stages.theta), np.zeros((3, 3)), np.zeros_like(self.stages.F))
         self._powers = np.zeros((3, 3))
+        self._joints = self._bend(self.state.quaternion)[0]
         R = np.zeros((N + 2, 3, 3))
         for quaternion, matrix in zip(self.state.quaternion, R, strict=True):
             matrix_of(quaternion, matrix)
@@ -103,6 +104,10 @@ class StaggeredMethod:
         """None: segments are rigid."""
         return 0.0
 
+    def turn(self) -> float:
+        """The largest rotation (rad) of the trial within a joint."""
+        return float(largest_turn(self._joints, self.stages.bend[2]))
+
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
         if not self.contact.present:
@@ -125,6 +130,7 @@ class StaggeredMethod:
         finish(self.state, stages, self.trial)
         self.state, self.trial = self.trial, self.state
         self._R[:] = stages.R[2]
+        self._joints[:] = stages.bend[2]
         for mine, last in zip(self._centres, (stages.r[2], stages.V[2], stages.A[2]), strict=True):
             mine[:] = last
         self._place_nodes(self._R, self.state.omega, self.state.base, self._centres)

@@ -49,6 +49,16 @@ class DrivenEnd:
                     times.append(condition.since + condition.within)
         return times
 
+    def jolts(self) -> list[float]:
+        """Times at which the end's rate may jump: a rod that cannot stretch loses energy there, as in a collision."""
+        times: list[float] = []
+        for component in self._components:
+            for condition in component:
+                curve, start = condition.curve, condition.since
+                times += [start] if start > 0.0 or (condition.kind == "rate" and curve.value(start) != 0.0) else []
+                times += curve.corners if condition.kind in ("rate", "position") else ()
+        return times
+
     def follow(self, shift: Array, turned: Array) -> None:
         """Add a step's displacement along, and rotation about, the axes, (3,) each."""
         self.travel[:3] += shift

@@ -16,6 +16,7 @@ class Outcome(StrEnum):
     MESH_TOO_COARSE = "mesh_too_coarse"
     ROD_STRETCHED = "rod_stretched"
     ENERGY_MADE = "energy_made"
+    ENERGY_LOST = "energy_lost"
     SHOOTING_LOST_DIGITS = "shooting_lost_digits"
     SINGULAR_SYSTEM = "singular_system"
     EQUILIBRIUM_LOST = "equilibrium_lost"
@@ -49,6 +50,10 @@ REMEDY: dict[Outcome, str] = {
     Outcome.ENERGY_MADE: (
         "the equations keep energy, but the numbers made it: use more intervals where the section varies, a smaller "
         "dt_max or increment_tolerance, a smaller rho_inf, or the other method"
+    ),
+    Outcome.ENERGY_LOST: (
+        "the equations keep energy, but the steps took it from waves that they are too long for: use a smaller dt_max "
+        "or increment_tolerance, a larger rho_inf, or more intervals; or give the rod damping, if it is to come to rest"
     ),
     Outcome.SHOOTING_LOST_DIGITS: (
         "shooting cannot resolve this rod at this step: use linear_solver block_elimination, or a larger dt_max"

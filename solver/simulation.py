@@ -24,7 +24,7 @@ FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
 LARGEST_STRAIN = 0.1
 """Beyond this the rod that is computed is another one."""
 LARGEST_MADE = 0.1
-"""Part of the energy that changed its form or hands: a run that made more of it says nothing of the rod."""
+"""Part of the energy that changed its form or hands: a run that made or lost more of it says nothing of the rod."""
 
 METHODS: dict[str, type[BoxMethod] | type[StaggeredMethod]] = {"box": BoxMethod, "staggered": StaggeredMethod}
 
@@ -75,9 +75,12 @@ class Simulation(Run):
         if self.t < output:
             return None
         frame = self._accounts.frame(output)
-        if self._accounts.made > LARGEST_MADE:
-            told = f"{self._accounts.made:.2g} of all that changed hands"
+        made = self._accounts.made
+        told = f"{abs(made):.2g} of all that changed hands"
+        if made > LARGEST_MADE:
             raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, told)
+        if made < -LARGEST_MADE and output == self._outputs[-1]:  # much of what was at first may be little of all
+            raise RunFailed(Outcome.ENERGY_LOST, self.t, self.statistics.steps, told)
         before, self._turns = self._turns, frame.Tw + frame.Wr - frame.Lk
         if self._scene.contact is not None and abs(self._turns - before) > 1.0:
             # a rod that passes through itself makes Tw + Wr - Lk jump by 2

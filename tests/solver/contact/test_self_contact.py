@@ -183,9 +183,9 @@ def state_of(line: Callable[[Array], Array], s: Array) -> tuple[float, Array, Ar
     return float(np.hypot(kappa[:, 0], kappa[:, 1]).mean() * s[-1]), r, np.zeros_like(r)
 
 
-def contact_of_the_loop() -> tuple[SelfContact, Array]:
+def contact_of_the_loop(contact: Contact = CONTACT) -> tuple[SelfContact, Array]:
     s = np.linspace(0.0, LENGTH, INTERVALS + 1)
-    return SelfContact(CONTACT, Rod.circular(LENGTH, DIAMETER, 5e7, 2e7, 1500.0), s, stages=1), s
+    return SelfContact(contact, Rod.circular(LENGTH, DIAMETER, 5e7, 2e7, 1500.0), s, stages=1), s
 
 
 def test_a_step_that_swaps_the_strands_is_refused() -> None:
@@ -193,6 +193,14 @@ def test_a_step_that_swaps_the_strands_is_refused() -> None:
     contact.prepare(*state_of(loop(RISE), s), 0.01)
     assert contact.refusal(*state_of(loop(RISE), s)) == ""
     assert contact.refusal(*state_of(loop(-RISE), s)) != ""
+
+
+def test_a_step_in_which_strands_slip_into_each_other_between_points_is_refused() -> None:
+    """Found under stress. The strands are 0.19 m times the rise apart; D/4 is 1 mm."""
+    contact, s = contact_of_the_loop(replace(CONTACT, spacing=5e-3, cutoff=2e-3))
+    contact.prepare(*state_of(loop(0.0058), s), 0.01)
+    assert contact.refusal(*state_of(loop(0.0056), s)) == ""
+    assert "between contact points" in contact.refusal(*state_of(loop(0.0049), s))
 
 
 def test_a_step_that_brings_a_straight_rod_to_touch_itself_is_refused() -> None:

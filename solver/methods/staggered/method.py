@@ -71,7 +71,6 @@ class StaggeredMethod:
         follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)
         self._nodes = np.zeros((2, N + 1, 3))
         self._place_nodes(R, self.state.omega, self.state.base, self._centres)
-        self._bending = total_bending(self._bend(self.state.quaternion)[0])
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt; how it ended and the Newton iterations.
@@ -79,7 +78,7 @@ class StaggeredMethod:
         With `consistent`, from rest: an end that is set going at once gives forces that say nothing of what follows.
         """
         self._drive(t, dt)
-        self.contact.prepare(self._bending, self._nodes[0], self._nodes[1], dt)
+        self.contact.prepare(total_bending(self._joints), self._nodes[0], self._nodes[1], dt)
         if consistent:
             self._guess_rest()
         else:
@@ -134,7 +133,6 @@ class StaggeredMethod:
         for mine, last in zip(self._centres, (stages.r[2], stages.V[2], stages.A[2]), strict=True):
             mine[:] = last
         self._place_nodes(self._R, self.state.omega, self.state.base, self._centres)
-        self._bending = total_bending(stages.bend[2])
         self._last_dt = dt
         for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
             kept[:] = now
@@ -187,7 +185,7 @@ class StaggeredMethod:
 
     def smallest_gap(self) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
-        return self.contact.smallest_gap(self._bending, self._nodes[0], self._nodes[1])
+        return self.contact.smallest_gap(total_bending(self._joints), self._nodes[0], self._nodes[1])
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""

@@ -10,6 +10,8 @@ from solver.frame import Frame, Statistics
 from solver.measures.accounts import Accounts
 from solver.methods.box.method import BoxMethod
 from solver.methods.method import Method
+from solver.methods.one_axis.axis import axis_of
+from solver.methods.one_axis.method import OneAxisMethod
 from solver.methods.staggered.method import StaggeredMethod
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
@@ -34,12 +36,21 @@ def tolerated_increment(numerics: Numerics) -> float:
     return numerics.increment_tolerance or METHODS[numerics.method].increment_tolerance
 
 
+def discretized(scene: Scene) -> Method:
+    """The method that a scene asks for; where it turns about one axis only, the same solution for less."""
+    if scene.numerics.method == "staggered":
+        axis = axis_of(scene)
+        if axis is not None:
+            return OneAxisMethod(scene, axis)
+    return METHODS[scene.numerics.method](scene)
+
+
 class Simulation(Run):
     """Motion, by steps in time."""
 
     def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
         super().__init__(scene, statistics)
-        self._method: Method = METHODS[scene.numerics.method](scene)
+        self._method = discretized(scene)
         self._accounts = Accounts(scene, self._method)
         ends = self._method.start.corners() + self._method.end.corners()
         self._control = StepControl(
@@ -60,7 +71,7 @@ class Simulation(Run):
 
     def warm(self) -> None:
         """Have every kernel compiled."""
-        warm(self._scene.numerics.method)
+        _compile(self._scene.numerics.method, touching=not isinstance(self._method, OneAxisMethod))
 
     def _first_frame(self) -> Frame:
         frame = self._accounts.frame(0.0)
@@ -157,14 +168,22 @@ class Simulation(Run):
         self._accounts.after_step(dt, iterations)
 
 
-@cache
 def warm(method: str = Numerics.method) -> None:
-    """Compile every kernel of a method, or load it from the cache, by a step of a tiny scene; once per process."""
+    """Compile every kernel of a method, or load it from the cache; once per process."""
+    _compile(method, touching=True)
+    if method == "staggered":
+        _compile(method, touching=False)
+
+
+@cache
+def _compile(method: str, touching: bool) -> None:
+    """Compile a method's kernels by a step of a tiny scene, which turns about one axis where it cannot touch itself."""
+    contact = Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05)
     scene = Scene(
         rod=Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), initial=Initial.straight(), start=End.clamp(), end=End.free(),
         t_end=1e-3, output_interval=1e-3, fluid=Fluid(1000.0),
         numerics=Numerics(method=method, intervals=4, dt_max=1e-3),  # type: ignore[arg-type]
-        contact=Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05),
+        contact=contact if touching else None,
     )  # fmt: skip
     simulation = Simulation(scene)
     simulation._begin()

@@ -66,7 +66,8 @@ class AppliedLoads:
             current=np.array(fluid.current if fluid else (0.0, 0.0, 0.0), dtype=float),
             wet=fluid is not None,
         )
-        self._steady = all(_is_steady(load) for load in self._given)
+        self.steady = all(_is_steady(load) for load in self._given)
+        """Whether the loads are the same at all times."""
         self._fill(0.0)
 
     def corners(self) -> list[float]:
@@ -86,7 +87,7 @@ class AppliedLoads:
 
     def at(self, t: float) -> Loads:
         """The loads at time t; the arrays are the same ones at every call."""
-        if not self._steady:
+        if not self.steady:
             self._fill(t)
         return self._loads
 

@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from solver import Condition, Curve, End, Fluid, Frame, Numerics, Scene, VerifiedFrame, simulate
+from solver import Condition, Curve, DistributedLoad, End, Fluid, Frame, Numerics, Scene, VerifiedFrame, simulate
 from solver.scene import FIXED
 from tests.solver.bent import bent_cantilever
 from tests.solver.contact.test_self_contact import CONTACT, looped
@@ -42,6 +42,16 @@ def staggered() -> Scene:
     """The switched scene by the staggered method."""
     numerics = Numerics(method="staggered", intervals=20, dt_max=0.05, increment_tolerance=1e-3)
     return replace(switched(), numerics=numerics)
+
+
+def about_one_axis() -> Scene:
+    """In the plane: a clamp that is turned, let go and stopped, and a load that follows."""
+    growth = Curve.table([0.0, 0.3, 1.0], [0.0, 1e-3, 1e-3], "smoothstep")
+    load = DistributedLoad((growth, Curve.constant(0.0), growth), frame="material", schedule=growth)
+    turned = (Condition("rate", growth), Condition("load", since=0.3), Condition("stop", since=0.5, within=0.1))
+    start = End((FIXED, FIXED, FIXED), (FIXED, turned, FIXED))
+    end = End((FIXED, FIXED, STOPPED), (FIXED, FIXED, FIXED))
+    return replace(staggered(), start=start, end=end, distributed=(load,))
 
 
 def staggered_pressed() -> Scene:
@@ -87,7 +97,8 @@ def assert_same(one: list[Frame], other: list[Frame]) -> None:
         assert_same(*errors)
 
 
-@pytest.mark.parametrize("make", [switched, shot, pressed, staggered, staggered_pressed, balanced, verified])
+@pytest.mark.parametrize("make", [switched, shot, pressed, staggered, about_one_axis, staggered_pressed, balanced,
+                                  verified])  # fmt: skip
 @pytest.mark.parametrize("after", [1, 3, 10])
 def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], Scene], after: int) -> None:
     assert_same(list(simulate(make())), interrupted(make(), after))

@@ -6,63 +6,34 @@ import numpy as np
 
 from solver.contact.forces import keeps_apart
 from solver.contact.self_contact import SelfContact
-from solver.ends import DrivenEnd
 from solver.frame import Fields
-from solver.loads.applied import AppliedLoads, Loads
 from solver.measures.energies import Energies
 from solver.methods.staggered import tableau
 from solver.methods.staggered.chain import Stages, State
 from solver.methods.staggered.coupling import place_nodes
 from solver.methods.staggered.energies import energies, stage_powers, twist
-from solver.methods.staggered.initial import chain_of, lay_out
 from solver.methods.staggered.joints import bend_joints, largest_turn
 from solver.methods.staggered.motion import extrapolate, follow_segments, move, spin_steadily
-from solver.methods.staggered.newton import LARGEST_ITERATIONS, Scheme, Work, estimate_error, finish, step
+from solver.methods.staggered.newton import Work, estimate_error, finish, step
+from solver.methods.staggered.radau import SCHEME, RadauMethod
 from solver.methods.staggered.segments import Driven
-from solver.methods.status import CONVERGED
-from solver.rod import Array, sample
+from solver.rod import Array
 from solver.rotation import matrix_of, rotate_back
 from solver.scene import Scene
 
-SCHEME = Scheme(
-    tableau.C, tableau.INVERSE, tableau.TRANSFORM, tableau.BACK, tableau.GAMMA, tableau.LAMBDA, tableau.ERROR
-)
-NEWTON_PART = 1e-3
-"""Of the tolerance of a step's error: what Newton's iteration may leave. (Nothing where steps are of fixed length.)"""
-FEEDBACK = 0.5
-"""Part of an end's lag behind its prescribed place that a step takes back."""
-SMALL_MOTION = 1e-7
-"""Rotation (rad) and displacement (rod lengths) in a step below which it is not shortened."""
 
-
-class StaggeredMethod:
+class StaggeredMethod(RadauMethod):
     """Rigid segments joined at the nodes; Radau IIA of order 5 in time."""
 
-    increment_order = 4.0
-    increment_tolerance = 0.01
-    easy_iterations = 4
-    shortest_step = 0.0
-
     def __init__(self, scene: Scene) -> None:
-        N, length = scene.numerics.intervals, float(scene.rod.length)
-        self.s = np.linspace(0.0, length, N + 1)
-        middles = 0.5 * (self.s[1:] + self.s[:-1])
-        section = sample(scene.rod, middles)
-        self.applied = AppliedLoads(scene, section, middles, (middles, np.full(N, length / N)))
-        self._loads: Loads = self.applied.at(0.0)
-        self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
-        self.chain = chain_of(scene.rod, section, self._loads.added_mass, self.s)
-        self.state, self._offset = lay_out(scene.initial, self.chain, self.s)
+        super().__init__(scene)
+        N = scene.numerics.intervals
+        self.chain, self.state, self._offset = self._lay_out(scene)
         self.trial = State.empty(N)
         self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=3)
         self.stages, self.driven = Stages.empty(N), Driven.empty(N)
         self.work = Work.empty(N, scene.contact is not None)
-        tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
-        self._newton_part = NEWTON_PART * tolerance if tolerance < 1.0 else 0.0
-        self._unit = float(self.chain.stiffness[:, :2].mean()) / length**2
-        self._last_dt = 0.0
         self._last = (np.zeros_like(self.stages.theta), np.zeros((3, 3)), np.zeros_like(self.stages.F))
-        self._powers = np.zeros((3, 3))
         self._joints = self._bend(self.state.quaternion)[0]
         R = np.zeros((N + 2, 3, 3))
         for quaternion, matrix in zip(self.state.quaternion, R, strict=True):
@@ -85,23 +56,7 @@ class StaggeredMethod:
             self._guess(dt)
             if self.contact.touching and not self._guess_keeps_apart(dt):
                 self._guess_standstill(dt)
-        status, iterations = self._solve(dt)
-        if consistent and iterations == LARGEST_ITERATIONS and status != CONVERGED:
-            # an end that is let go turns at once, however short the step: go on from there, with new tangents
-            status, more = self._solve(dt)
-            iterations += more
-        return status, iterations
-
-    def relative_increment(self, dt: float) -> float:
-        """The embedded estimate of the trial's error relative to its motion, the larger of rotation and place."""
-        turn_error, turned, move_error, moved = estimate_error(
-            self.chain, self.driven, SCHEME, dt, self.state, self._centres, self.stages, self.work
-        )
-        return max(turn_error / (turned + SMALL_MOTION), move_error / (moved + SMALL_MOTION * float(self.s[-1])))
-
-    def strain(self) -> float:
-        """None: segments are rigid."""
-        return 0.0
+        return self._solve_anew(dt, consistent)
 
     def turn(self) -> float:
         """The largest rotation (rad) of the trial within a joint."""
@@ -175,9 +130,8 @@ class StaggeredMethod:
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""
-        bend, _ = self._bend(self.state.quaternion)
-        return energies(self.chain, self._loads, bend, self.state.omega[1:-1], self._centres[:2], self._R[1:-1, :, 2],
-                        self.applied.weight)  # fmt: skip
+        return energies(self.chain, self._loads, self._joints, self.state.omega[1:-1], self._centres[:2],
+                        self._R[1:-1, :, 2], self.applied.weight)  # fmt: skip
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
@@ -205,6 +159,13 @@ class StaggeredMethod:
             self.contact.touch, self.work,
         )  # fmt: skip
         return int(status), int(iterations)
+
+    def _errors(self, dt: float) -> tuple[float, float, float, float]:
+        """Of the trial: rotation (rad), error and motion; position (m) likewise."""
+        errors: tuple[float, float, float, float] = estimate_error(
+            self.chain, self.driven, SCHEME, dt, self.state, self._centres, self.stages, self.work
+        )
+        return errors
 
     def _place_nodes(self, R: Array, omega: Array, base: Array, centres: Array) -> None:
         place_nodes(self.chain, R, omega, base, centres[0], centres[1], self._nodes[0], self._nodes[1])
@@ -262,17 +223,12 @@ class StaggeredMethod:
         """Write what is given at the stages of a step."""
         driven = self.driven
         driven.push[:] = 0.0
-        driven.kinds[0], driven.kinds[1] = self.start.kinds, self.end.kinds
         for i, c in enumerate(tableau.C):
             self._loads = self.applied.at(t + c * dt)
             driven.lab[i], driven.material[i] = self._loads.lab, self._loads.material
-            for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
-                driven.values[i, side] = end.values(t, c * dt, FEEDBACK / dt)
-                if self.applied.has_end_loads:
-                    following, driven.dead[i, side] = (
-                        self.applied.at_end(t + c * dt, s, frame) for frame in ("material", "lab")
-                    )
-                    driven.values[i, side] += np.where(end.kinds % 2 == 1, following, 0.0)
+            for side, end, values, dead in self._ends_at(t, c * dt, dt):
+                driven.values[i, side], driven.dead[i, side] = values, dead
+                driven.kinds[side] = end.kinds
 
 
 def total_bending(bend: Array) -> float:

@@ -129,8 +129,8 @@ def move(state: State, stages: Stages, inverse: Array, dt: float, h: float) -> f
 
     `inverse` is A^-1: theta_t = A^-1 theta / dt, theta_tt = A^-1 theta_t / dt.
     """
-    _differentiate(inverse, dt, stages.theta, stages.theta_t)
-    _differentiate(inverse, dt, stages.theta_t, stages.theta_tt)
+    differentiate(inverse, dt, stages.theta, stages.theta_t)
+    differentiate(inverse, dt, stages.theta_t, stages.theta_tt)
     for i in range(STAGES):
         for k in range(3):
             stages.base[i, 0, k] = state.base[0, k] + stages.shift[i, k]
@@ -149,9 +149,9 @@ def move(state: State, stages: Stages, inverse: Array, dt: float, h: float) -> f
 
 
 @kernel
-def _differentiate(inverse: Array, dt: float, values: Array, rates: Array) -> None:
+def differentiate(inverse: Array, dt: float, values: Array, rates: Array) -> None:
     """rates = A^-1 values / dt, stages first."""
-    count = values.shape[1] * values.shape[2]
+    count = values.size // STAGES
     source, target = values.reshape(STAGES, count), rates.reshape(STAGES, count)
     for i in range(STAGES):
         a, b, c = inverse[i, 0] / dt, inverse[i, 1] / dt, inverse[i, 2] / dt

@@ -66,13 +66,14 @@ class Work(NamedTuple):
 
 
 @kernel
-def _mix(weights: Array, source: Array, target: Array) -> None:
+def mix(weights: Array, source: Array, target: Array) -> None:
     """target[i] = sum over j of weights[i, j] source[j], stages first."""
-    for m in range(source.shape[1]):
-        for k in range(source.shape[2]):
-            a, b, c = source[0, m, k], source[1, m, k], source[2, m, k]
-            for i in range(STAGES):
-                target[i, m, k] = weights[i, 0] * a + weights[i, 1] * b + weights[i, 2] * c
+    count = source.size // STAGES
+    given, mixed = source.reshape(STAGES, count), target.reshape(STAGES, count)
+    for m in range(count):
+        a, b, c = given[0, m], given[1, m], given[2, m]
+        for i in range(STAGES):
+            mixed[i, m] = weights[i, 0] * a + weights[i, 1] * b + weights[i, 2] * c
 
 
 @kernel
@@ -176,9 +177,9 @@ def solve_increments(chain: Chain, driven: Driven, scheme: Scheme, dt: float, st
     """Solve for the increments of the stages; return how much of them may be taken."""
     residuals, transformed, tangents = work.residuals, work.transformed, work.tangents
     _turn_residuals(driven, stages, tangents.R, residuals)
-    _mix(scheme.back, residuals.rotation, transformed.rotation)
-    _mix(scheme.back, residuals.translation, transformed.translation)
-    _mix(scheme.back, residuals.ends, transformed.ends)
+    mix(scheme.back, residuals.rotation, transformed.rotation)
+    mix(scheme.back, residuals.translation, transformed.translation)
+    mix(scheme.back, residuals.ends, transformed.ends)
     gamma, pair = scheme.gamma / dt, scheme.pair / dt
     if touching(touch):
         return solve_with_contact(chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma, pair,

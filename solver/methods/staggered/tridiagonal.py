@@ -45,7 +45,7 @@ class Factors(NamedTuple):
 
 
 @kernel
-def _invert3(P: Array, X: Array) -> bool:
+def invert3(P: Array, X: Array) -> bool:
     """Write P^-1 (3, 3) into X; False if P is singular."""
     a = P[1, 1] * P[2, 2] - P[1, 2] * P[2, 1]
     b = P[1, 2] * P[2, 0] - P[1, 0] * P[2, 2]
@@ -72,7 +72,7 @@ def _translate(chain: Chain, tangents: Tangents, eigenvalue: complex, P: Array, 
         for k in range(3):
             for m in range(3):
                 P[k, m] = tangents.M[j, k, m] * square + tangents.C[j, k, m] * eigenvalue
-        _invert3(P, factors.X[j])
+        invert3(P, factors.X[j])
         X, Y = factors.X[j], factors.Y[j]
         for k in range(3):
             for m in range(3):
@@ -210,7 +210,7 @@ def _invert6(D: Array, scratch: Array, inverse: Array) -> bool:
     for k in range(3):
         for m in range(3):
             E[k, m] = D[3 + k, 3 + m]
-    if not _invert3(E, P):
+    if not invert3(E, P):
         return False
     # (P C) into the lower left block, (B P) into the upper right one, for now
     _times(scratch, 3, 0, D, 3, 0, inverse, 3, 0)
@@ -220,7 +220,7 @@ def _invert6(D: Array, scratch: Array, inverse: Array) -> bool:
             E[k, m] = D[k, m]
     _subtract_times(D, 0, 3, inverse, 3, 0, scratch, 0, 0)
     S = inverse[0:3, 0:3]
-    if not _invert3(E, S):
+    if not invert3(E, S):
         return False
     # S B P into scratch, then P + P C (S B P)
     _times(inverse, 0, 0, inverse, 0, 3, scratch, 0, 3)

@@ -1,0 +1,215 @@
+"""The staggered method about one axis as the simulation sees it: what it tells is of space, as everywhere."""
+
+from __future__ import annotations
+
+from math import inf, nan
+
+import numpy as np
+
+from solver.ends import LOAD, DrivenEnd
+from solver.frame import Fields
+from solver.measures.energies import Energies
+from solver.methods.one_axis.axis import Axis, Plane
+from solver.methods.one_axis.chain import Stages, State, about_axis
+from solver.methods.one_axis.energies import energies, stage_powers
+from solver.methods.one_axis.motion import follow_segments
+from solver.methods.one_axis.newton import Work, estimate_error, step
+from solver.methods.one_axis.segments import Driven
+from solver.methods.staggered import tableau
+from solver.methods.staggered.radau import SCHEME, RadauMethod
+from solver.rod import Array
+from solver.scene import Scene
+
+
+class OneAxisMethod(RadauMethod):
+    """The rigid segments and the steps of `StaggeredMethod` for a scene that turns about `axis`: the same solution."""
+
+    def __init__(self, scene: Scene, axis: Axis) -> None:
+        super().__init__(scene)
+        N = scene.numerics.intervals
+        chain, state, offset = self._lay_out(scene)
+        self._axis, self._offset = axis, offset[:, axis.index].copy()
+        self.chain, self.state = about_axis(axis, chain, state)
+        self._origin = state.base[0] - axis.in_lab(self.state.base[0])
+        self.trial, self.stages, self.driven = State.empty(N), Stages.empty(N), Driven.empty(N)
+        self.work = Work.empty(N)
+        self._weight = self.applied.weight @ axis.lab
+        self.driven.current[:] = self._loads.current @ axis.lab
+        self._condition_ends()
+        for i in range(3):
+            self._load(0.0, i)
+        self._last = (np.zeros_like(self.stages.theta), np.zeros(3, complex), np.zeros_like(self.stages.F))
+        self._centres = np.zeros((3, N), complex)
+        follow_segments(self.chain, self._tangents(), self.state.omega, self.state.alpha, self.state.base,
+                        *self._centres)  # fmt: skip
+
+    def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
+        """Try to go from t to t + dt; how it ended and the Newton iterations. With `consistent`, from rest."""
+        self._drive(t, dt)
+        if consistent:
+            self.stages.theta[:], self.stages.shift[:], self.stages.F[:] = 0.0, 0.0, 0.0
+        else:
+            self._guess(dt)
+        return self._solve_anew(dt, consistent)
+
+    def refusal(self) -> str:
+        """Nothing: there is no contact."""
+        return ""
+
+    def take_step(self, t: float, dt: float) -> None:
+        """Make the trial the state."""
+        stages, weights = self.stages, tableau.A[2] * dt
+        stage_powers(self.chain, self._loads, self.driven, stages, self._weight, self._powers)
+        swing = 0.5j * self.chain.h * self.chain.swing * stages.T[:, -2] * stages.omega[:, -2]
+        for end, frame, V in ((self.start, 0, stages.base[:, 1]), (self.end, -1, stages.V[:, -1] + swing)):
+            if end.in_lab:
+                shift = self._axis.in_lab(weights @ V)
+            else:
+                shift = self._axis.in_material(weights @ (V / stages.T[:, frame]))
+            end.follow(shift, self._axis.about(weights @ stages.omega[:, frame]))
+        ended = (stages.phi, stages.omega, stages.alpha, stages.base, stages.F)
+        for mine, series in zip((*self.trial, *self._centres), (*ended, stages.r, stages.V, stages.A), strict=True):
+            mine[:] = series[-1]
+        self.state, self.trial = self.trial, self.state
+        self._last_dt = dt
+        for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
+            kept[:] = now
+
+    def switch_ends(self, t: float) -> None:
+        """Put in force the end conditions that hold from t on."""
+        (_, V), T = self._nodes(), self._tangents()
+        for end, i in ((self.start, 0), (self.end, -1)):
+            velocity = self._axis.in_lab(V[i]) if end.in_lab else self._axis.in_material(V[i] / T[i])
+            end.switch(t, np.concatenate([velocity, self._axis.about(self.state.omega[i])]))
+        self._condition_ends()
+        self._last_dt = 0.0
+
+    def turn(self) -> float:
+        """The largest rotation (rad) of the trial within a joint."""
+        return float(np.abs(np.diff(self.stages.phi[-1])).max())
+
+    def step_limit(self) -> float:
+        """None."""
+        return inf
+
+    def flows(self, dt: float) -> Array:
+        """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, none into contact.
+
+        By Radau's own quadrature, of order 5.
+        """
+        return np.append(dt * tableau.A[2] @ self._powers, 0.0)
+
+    def fields(self) -> Fields:
+        """The state along the rod, at the nodes."""
+        axis, (r, V) = self._axis, self._nodes()
+        phi, omega = at_nodes(self.state.phi), at_nodes(self.state.omega)
+        back = np.exp(-1j * self.chain.swing * phi)
+        bend = np.diff(self.state.phi) / self.chain.span
+        return Fields(
+            v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(self.state.F * back),
+            kappa=axis.about(bend - self._offset), q=axis.about(self.chain.stiffness * (bend - self.chain.kappa0)),
+            r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
+        )  # fmt: skip
+
+    def energies(self) -> Energies:
+        """The energies of the state."""
+        found = energies(self.chain, self._loads, complex(self.driven.current[0]), self._weight, self.state.phi,
+                         self.state.omega[1:-1], self._centres[:2])  # fmt: skip
+        away = self.chain.h * float(np.sum(self.applied.weight @ self._origin))
+        return found._replace(potential=found.potential - away)
+
+    def twist(self) -> float:
+        """Tw of the state, in turns."""
+        turned = float(self.state.phi[-1] - self.state.phi[0])
+        return (1.0 - self.chain.swing) * turned / (2 * np.pi)
+
+    def smallest_gap(self) -> float:
+        """NaN: there is no contact."""
+        return nan
+
+    def pressing(self) -> int:
+        """None."""
+        return 0
+
+    def compile(self) -> None:
+        """Have every kernel compiled that a run may need."""
+        self.relative_increment(1.0)
+
+    def _solve(self, dt: float) -> tuple[int, int]:
+        """Iterate on the stages from where they are; how it ended and the iterations."""
+        status, iterations = step(self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self._newton_part,
+                                  self.state, self.stages, self.work)  # fmt: skip
+        return int(status), int(iterations)
+
+    def _errors(self, dt: float) -> tuple[float, float, float, float]:
+        """Of the trial: rotation (rad), error and motion; position (m) likewise."""
+        errors: tuple[float, float, float, float] = estimate_error(
+            self.chain, self.driven, SCHEME, dt, self.state, self._centres, self.stages, self.work
+        )
+        return errors
+
+    def _tangents(self) -> Plane:
+        """T (N + 2,) of the orientations."""
+        return np.asarray(np.exp(1j * self.chain.swing * self.state.phi))
+
+    def _nodes(self) -> tuple[Plane, Plane]:
+        """Places and velocities (N + 1,) of the nodes."""
+        T, h = self._tangents()[1:-1], self.chain.h
+        swing = 0.5j * h * self.chain.swing * self.state.omega[1:-1] * T
+        r, V = self._centres[0] + 0.5 * h * T, self._centres[1] + swing
+        return np.append(self.state.base[0], r), np.append(self.state.base[1], V)
+
+    def _guess(self, dt: float) -> None:
+        """The motion of the last step goes on; after a start, that of the state."""
+        stages, state, before = self.stages, self.state, self.trial
+        tau = tableau.C * dt
+        if self._last_dt > 0.0:
+            ratio = dt / self._last_dt
+            weights = tableau.extrapolation(ratio)
+            theta, shift, force = self._last
+            since = self._last_dt + tau[:, None]
+            stages.theta[:] = before.phi - state.phi + since * before.omega - tau[:, None] * state.omega
+            stages.theta[:] += weights @ theta
+            stages.shift[:] = weights @ shift - shift[2]
+            stages.F[:] = tableau.quadratic_extrapolation(ratio) @ force
+            return
+        stages.theta[:] = 0.5 * tau[:, None] ** 2 * state.alpha
+        stages.shift[:] = tau * state.base[1] + 0.5 * tau**2 * state.base[2]
+        stages.F[:] = state.F
+
+    def _drive(self, t: float, dt: float) -> None:
+        """Write what is given at the stages of a step."""
+        driven, axis = self.driven, self._axis
+        for i, c in enumerate(tableau.C):
+            if not self.applied.steady:
+                self._load(t + c * dt, i)
+            for side, end, values, dead in self._ends_at(t, c * dt, dt):
+                driven.values[i, side] = values[self._components(end)]
+                driven.dead[i, side], driven.couple[i, side] = dead[:3] @ axis.lab, dead[3:] @ axis.n
+
+    def _load(self, t: float, i: int) -> None:
+        """Write the loads at time t, those of stage i."""
+        driven, axis = self.driven, self._axis
+        self._loads = self.applied.at(t)
+        lab, material = self._loads.lab, self._loads.material
+        driven.force[i], driven.following[i] = lab[:, :3] @ axis.lab, material[:, :3] @ axis.material
+        driven.moment[i] = lab[:, 3:] @ axis.n + material[:, 3 + axis.index]
+
+    def _components(self, end: DrivenEnd) -> list[int]:
+        """Which of an end's six conditions are not fulfilled by themselves."""
+        return [*self._axis.spanning["lab" if end.in_lab else "material"], 3 + self._axis.index]
+
+    def _condition_ends(self) -> None:
+        """Write the kinds and directions of the ends' conditions."""
+        axis, driven = self._axis, self.driven
+        for side, end in enumerate((self.start, self.end)):
+            components = self._components(end)
+            driven.kinds[side] = end.kinds[components]
+            driven.direction[side] = (axis.lab if end.in_lab else axis.material)[components[:2]]
+            if axis.index == 2:  # nothing happens across the rod, whoever holds it there
+                driven.kinds[side, 1] = LOAD
+
+
+def at_nodes(x: Array) -> Array:
+    """Values (N + 1,) at the nodes of what (N + 2,) belongs to orientations: means, and those of the ends."""
+    return np.concatenate([x[:1], 0.5 * (x[1:-2] + x[2:-1]), x[-1:]])

@@ -106,7 +106,12 @@ class Simulation(Run):
             self.statistics.newton_iterations += iterations
             if status == CONVERGED:
                 self._take(0.0, dt, iterations)
-                return self._advance(dt, dt, 2 * dt, consistent=True)
+                try:
+                    return self._advance(dt, dt, 2 * dt, consistent=True)
+                except RunFailed as failure:
+                    if failure.outcome is not Outcome.STEP_TOO_SMALL:
+                        raise
+                    raise RunFailed(Outcome.NO_CONSISTENT_START, 0.0, 0, failure.detail) from failure
             self.statistics.failed_steps += 1
         refusal, outcome = self._judge(status, 0.0)
         raise RunFailed(outcome if outcome in FATAL else Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)

@@ -95,26 +95,25 @@ def axis_of(scene: Scene) -> Axis | None:
     return None
 
 
-def _direction(quaternion: Array, index: int) -> Array:
-    """The axis a_index of an orientation, lab."""
-    directions: Array = rotate(quaternion[None], np.eye(3)[index][None])
-    return directions.reshape(3)
-
-
 def _axis(index: int, first: Array) -> Axis:
-    """The axis a_index of the orientation `first`. The plane lies along the lab's axes where it can."""
-    n, tangent = _direction(first, index), _direction(first, 2)
-    k = int(np.argmax(np.abs(n)))
-    across = np.eye(3)[(k + 1) % 3] - n[(k + 1) % 3] * n
-    across /= np.linalg.norm(across)
-    angle, material = 0.0, np.array((0.0, -1j, 1.0) if index == 0 else (1j, 0.0, 1.0))
+    """The axis a_index of the orientation `first`, and a plane along the lab's axes where there is one.
+
+    Its real axis is the one nearest to the tangent, so that the force along a straight rod falls apart exactly.
+    """
+    R, material = np.zeros((3, 3)), np.array((0.0, -1j, 1.0) if index == 0 else (1j, 0.0, 1.0))
+    matrix_of(first, R)
+    n, k = R[:, index].copy(), int(np.argmax(np.abs(R[:, index])))
+    turned, phi = np.zeros(4), 0.0
     if index == 2:
-        lab, pair = n + 1j * across, (k, (k + 1) % 3)
+        lab, pair = R @ material, (k, (k + 1) % 3)
     else:
-        lab, pair = across + 1j * np.cross(n, across), ((k + 1) % 3, (k + 2) % 3)
-        angle = float(np.angle(tangent @ lab))
-    turned, back = np.zeros(4), np.zeros(4)
-    back[0], back[1 + index] = np.cos(0.5 * angle), -np.sin(0.5 * angle)
+        j = int(np.argmax(np.abs(R[:, 2])))
+        along = np.sign(R[j, 2]) * (np.eye(3)[j] - n[j] * n)
+        along /= np.linalg.norm(along)
+        lab, pair = along + 1j * np.cross(n, along), ((k + 1) % 3, (k + 2) % 3)
+        phi = float(np.angle(R[:, 2] @ lab))
+    back = np.array([np.cos(0.5 * phi), 0.0, 0.0, 0.0])
+    back[1 + index] = -np.sin(0.5 * phi)
     multiply(first, back, turned)
     return Axis(index, n, turned, lab, material, {"lab": pair, "material": (2, 1 if index == 0 else 0)})
 

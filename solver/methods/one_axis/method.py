@@ -207,7 +207,7 @@ class OneAxisMethod(RadauMethod):
             driven.kinds[side] = end.kinds[components]
             driven.direction[side] = (axis.lab if end.in_lab else axis.material)[components[:2]]
             if axis.index == 2:  # nothing happens across the rod, whoever holds it there
-                driven.kinds[side, 1] = LOAD
+                driven.kinds[side, 1], driven.direction[side, 1] = LOAD, 1j
 
 
 def at_nodes(x: Array) -> Array:

@@ -6,17 +6,22 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from benchmarks.skipping.builds import WITHOUT, Build, build
-from benchmarks.skipping.scenes import SCENES
+from benchmarks.skipping.scenes import ONE_AXIS, SCENES
 from validation.provenance import provenance
 
 RESULTS = Path(__file__).parents[1] / "results" / "skipping.md"
-LACKING = {"contact": tuple(SCENES), "fluid": tuple(SCENES)[2:], "loads": tuple(SCENES)[2:]}
-"""The scenes that do not need a feature."""
-AIM = 1.02
+BOTH = ("box", "staggered")
+LACKING: dict[str, tuple[tuple[str, ...], tuple[str, ...], float]] = {
+    "contact": (tuple(SCENES), BOTH, 1.02), "fluid": (tuple(SCENES)[2:], BOTH, 1.02),
+    "loads": (tuple(SCENES)[2:], BOTH, 1.02), "turning in space": (tuple(ONE_AXIS), BOTH[1:], 0.7),
+}  # fmt: skip
+"""By feature the scenes that do not need it, the methods, and the largest ratio that is aimed at."""
 REPEATS = 25
 HOW = """\
 A feature is left out by making its tests false in a copy of the sources, which the compiler then drops. Both builds
-run in turn, and the least CPU time of either counts; frames, energies and the smallest gap are included."""
+run in turn, and the least CPU time of either counts; frames, energies and the smallest gap are included. Turning in
+space is what the whole build leaves out by itself, where a scene turns about one axis: there the other build does more,
+and a ratio below 1 is what is saved."""
 
 
 def ratio(whole: Build, without: Build, scene: str, method: str) -> tuple[float, float]:
@@ -32,11 +37,11 @@ def main() -> None:
     print("\n".join(lines), flush=True)
     with ExitStack() as cleanup:
         builds = {without: cleanup.enter_context(build(without)) for without in WITHOUT}
-        for feature, scenes in LACKING.items():
+        for feature, (scenes, methods, aim) in LACKING.items():
             for scene in scenes:
-                for method in ("box", "staggered"):
+                for method in methods:
                     cpu, found = ratio(builds[""], builds[feature], scene, method)
-                    lines.append(f"| {feature} | {scene} | {method} | {cpu:.3f} | {found:.3f} | {AIM} |")
+                    lines.append(f"| {feature} | {scene} | {method} | {cpu:.3f} | {found:.3f} | {aim} |")
                     print(lines[-1], flush=True)
     told = [f"- {line}" for line in provenance()]
     RESULTS.write_text("\n".join(["# What is not needed", "", *told, "", HOW, "", *lines, ""]), encoding="utf-8")

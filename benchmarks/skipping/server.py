@@ -6,15 +6,16 @@ import json
 import sys
 from time import process_time
 
-from benchmarks.skipping.scenes import SCENES
+from benchmarks.skipping.scenes import ONE_AXIS, SCENES
 from solver import simulate
 
 
 def main() -> None:
     """Until the input ends."""
+    scenes = SCENES | ONE_AXIS
     for line in sys.stdin:
         name, method = json.loads(line)
-        scene = SCENES[name](method)
+        scene = scenes[name](method)
         started = process_time()
         for _ in simulate(scene):
             pass

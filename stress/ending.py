@@ -13,7 +13,8 @@ class Ending(StrEnum):
     CORRECT = "correct"
     NAMED = "named outcome"
     OUT_OF_BUDGET = "out of budget"
-    """Still at it, and right so far, when its steps or CPU seconds were spent: as a job, its limit ends it by name."""
+    """Still at it, and right so far, when its steps or CPU seconds were spent: as a job, its limit ends it by name.
+    (What it has lost of its energy the solver judges at the end.)"""
     LOST_ENERGY = "lost energy"
     MADE_ENERGY = "made energy"
     STRETCHED = "stretched"

@@ -37,8 +37,7 @@ def run(task: Task) -> Result:
     if watch is not None and ending is not Ending.EXCEPTION:
         watch.books.close()
         fault = watch.books.fault
-        # a run that fails by name does not claim that its frames are right, only that they are frames
-        if fault is not None and (ending is not Ending.NAMED or fault[0] in SEVERE):
+        if fault is not None and not _excused(ending, fault[0]):
             ending, detail = fault[0], f"{detail} {fault[1]}".strip()
     if watch is None:
         return Result(task.group, task.at, ending, outcome, detail, cpu=process_time() - started, case=task.case)
@@ -48,6 +47,17 @@ def run(task: Task) -> Result:
         process_time() - started, books.balance, books.stretch, books.turns, r=watch.centreline(),
         case=task.case if ending in FAILURES else None,
     )  # fmt: skip
+
+
+def _excused(ending: Ending, fault: Ending) -> bool:
+    """Whether a fault is none, as the run does not claim otherwise.
+
+    One that fails by name claims that its frames are frames, not that they are right. One that was cut off has not come
+    to where the solver judges how much energy was lost.
+    """
+    if ending is Ending.OUT_OF_BUDGET:
+        return fault is Ending.LOST_ENERGY
+    return ending is Ending.NAMED and fault not in SEVERE
 
 
 def _named(failure: RunFailed) -> tuple[Ending, str, str]:

@@ -12,8 +12,9 @@ from solver.methods.method import Method
 from solver.rotation import rotate
 from solver.scene import Scene
 
-NOISE = 0.5e-6
-"""In the rod's own energy EJ/L: that of a bend by 1e-3 rad, as errors of the mesh may be worth where nothing moves."""
+MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
+"""In the rod's own energy EJ/L: what the balance may be off by where nothing moves. A mesh's errors may be worth a bend
+by 1e-3 rad, which a rod at rest may lose; it must not make as much."""
 
 
 class Accounts:
@@ -28,7 +29,8 @@ class Accounts:
         thrown = any((*scene.initial.velocity, *scene.initial.angular_velocity))
         self._jolts = [*([0.0] if thrown else []), *method.start.jolts(), *method.end.jolts()]
         s = np.linspace(0.0, scene.rod.length, 11)
-        self._turnover = NOISE * float(np.mean([EJ(s) for EJ in scene.rod.stiffness[:2]])) / scene.rod.length
+        self._unit = float(np.mean([EJ(s) for EJ in scene.rod.stiffness[:2]])) / scene.rod.length
+        self._turnover = 0.0
         self._Lk_at_start = 0.0
 
     def after_step(self, dt: float, iterations: int) -> None:
@@ -69,7 +71,8 @@ class Accounts:
 
         Negative where energy went nowhere. What an end's jolt took does not count.
         """
-        return self._missing / self._turnover
+        floor = MADE_OF_NOTHING if self._missing > 0.0 else LOST_AT_REST
+        return self._missing / (self._turnover + floor * self._unit)
 
     def _settle(self, t: float, balance: float) -> None:
         """Enter the balance (J) at time t."""

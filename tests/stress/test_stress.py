@@ -165,3 +165,9 @@ def test_the_same_seed_draws_the_same_cases():
 def test_a_random_case_ends_right_or_by_name(task):
     result = drawn.draw_and_run(task)
     assert result.ending not in FAILURES, (result.detail, result.case)
+
+
+def test_a_rod_that_hardly_moves_does_not_make_energy_unnamed():
+    """Found among random cases: little energy beside the rod's own EJ/L, but a third of it came from nowhere."""
+    task = drawn.tasks(2658, 1)[-1]
+    assert drawn.draw_and_run(task).ending not in FAILURES

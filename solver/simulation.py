@@ -106,12 +106,7 @@ class Simulation(Run):
             self.statistics.newton_iterations += iterations
             if status == CONVERGED:
                 self._take(0.0, dt, iterations)
-                try:
-                    return self._advance(dt, dt, 2 * dt, consistent=True)
-                except RunFailed as failure:
-                    if failure.outcome is not Outcome.STEP_TOO_SMALL:
-                        raise
-                    raise RunFailed(Outcome.NO_CONSISTENT_START, 0.0, 0, failure.detail) from failure
+                return self._advance(dt, dt, 2 * dt, consistent=True)
             self.statistics.failed_steps += 1
         refusal, outcome = self._judge(status, 0.0)
         raise RunFailed(outcome if outcome in FATAL else Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
@@ -127,6 +122,8 @@ class Simulation(Run):
                 break
             self.statistics.failed_steps += 1
             if outcome in FATAL or 0.5 * dt < self._control.smallest:
+                if consistent and outcome is Outcome.STEP_TOO_SMALL:
+                    raise RunFailed(Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
                 raise RunFailed(outcome, t, self.statistics.steps, refusal)
             self._control.rejected(dt)
             dt *= 0.5

@@ -114,6 +114,6 @@ class StagesSystem:
         solve_increments(method.chain, method.driven, SCHEME, self._dt, method.stages, method.contact.touch, work)
 
     def update(self) -> None:
-        """Nothing of the increments added to the stages, at the cost of all."""
+        """A vanishing part of the increments added to the stages, at the cost of all."""
         method = self._method
-        update(method.chain, SCHEME, 1.0, 1e-300, method.stages, method.work)
+        update(method.chain, SCHEME, 1.0, 1e-30, method.stages, method.work)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.contact.points import Points
-from solver.contact.search import Pairs, longest_spacing
+from solver.contact.search import Pairs, largest_displacement, longest_spacing
 from solver.kernel import kernel
 from solver.rod import Array
 
@@ -43,24 +43,13 @@ def link_distance(p: Array, a: int, b: int) -> float:
 
 
 @kernel
-def _moved(points: Points) -> float:
-    """The largest displacement (m) of a point in the step."""
-    largest = 0.0
-    for i in range(len(points.p)):
-        square = 0.0
-        for k in range(3):
-            square += (points.p[i, k] - points.start[i, k]) ** 2
-        largest = max(largest, square)
-    return float(np.sqrt(largest))
-
-
-@kernel
 def links_meet(points: Points, pairs: Pairs) -> bool:
     """Whether two links that begin at a listed pair may have met in the step, or are within each other.
 
     Those with no more than D of the rod between them are neighbours, and do not count.
     """
-    M, pitch, moved = len(points.p), longest_spacing(points), _moved(points)
+    M, pitch = len(points.p), longest_spacing(points)
+    moved = largest_displacement(points, points.start)
     for pair in range(pairs.counts[0]):
         a, b = pairs.first[pair], pairs.second[pair]
         D = 0.5 * (points.diameter[a] + points.diameter[b])

@@ -75,13 +75,13 @@ def smallest_distance(points: Points, skip: float, enough: float) -> float:
 
 
 @kernel
-def largest_displacement(points: Points) -> float:
-    """How far (m) some point has moved since the last search."""
+def largest_displacement(points: Points, since: Array) -> float:
+    """How far (m) some point has moved since the points lay at `since` (M, 3)."""
     largest = 0.0
     for i in range(len(points.p)):
         square = 0.0
         for k in range(3):
-            square += (points.p[i, k] - points.checked[i, k]) ** 2
+            square += (points.p[i, k] - since[i, k]) ** 2
         largest = max(largest, square)
     return float(np.sqrt(largest))
 

@@ -54,7 +54,7 @@ class SelfContact:
 
     @property
     def touching(self) -> bool:
-        """Whether there are pairs that may press."""
+        """Whether there are pairs that may press: as `forces.touching`, without unpacking all arrays for a kernel."""
         return self.present and bool(self.touch.pairs.counts[0] > 0)
 
     @property
@@ -72,7 +72,7 @@ class SelfContact:
             self._looked = False
             return
         place_points(points, r, velocity)
-        if not self._looked or largest_displacement(points) > 0.25 * self._slack:
+        if not self._looked or largest_displacement(points, points.checked) > 0.25 * self._slack:
             self._search(dt)
         points.start[:] = points.p
 
@@ -86,7 +86,7 @@ class SelfContact:
         if not self._looked:
             near = smallest_distance(points, self._law.skip, self._farthest) <= self._reach
             return "the rod came near itself within one step" if near else ""
-        if largest_displacement(points) > 0.5 * self._slack:
+        if largest_displacement(points, points.checked) > 0.5 * self._slack:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
         speed = fastest(points)
@@ -121,7 +121,7 @@ class SelfContact:
         approaches(self.touch.points, self.touch.pairs)
         links_meet(self.touch.points, self.touch.pairs)
         fastest(self.touch.points)
-        largest_displacement(self.touch.points)
+        largest_displacement(self.touch.points, self.touch.points.checked)
 
     def _search(self, dt: float) -> None:
         """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""

@@ -16,7 +16,15 @@ from solver.methods.one_axis.segments import Driven, Tangents, along, balance, t
 from solver.methods.one_axis.tridiagonal import Factors, factor, load_rows, solve, solve_pair, solve_real
 from solver.methods.staggered.chain import STAGES
 from solver.methods.staggered.motion import LARGEST_TURN
-from solver.methods.staggered.newton import LARGEST_INCREMENT, LARGEST_ITERATIONS, TOLERANCE, Scheme, mix
+from solver.methods.staggered.newton import (
+    LARGEST_INCREMENT,
+    LARGEST_ITERATIONS,
+    TOLERANCE,
+    Scheme,
+    diverges,
+    is_enough,
+    mix,
+)
 from solver.methods.status import CONVERGED, SINGULAR, STALLED
 from solver.rod import Array
 
@@ -115,13 +123,12 @@ def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, 
         if not size < LARGEST_INCREMENT:
             return STALLED, iteration
         size /= max(TOLERANCE, part * _largest(stages.theta[STAGES - 1]))
-        rate = size / before if before > 0.0 else 1.0
-        if size < 1.0 or (before > 0.0 and rate < 1.0 and size * rate / (1.0 - rate) < 1.0):
+        if is_enough(size, before):
             move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
             for i in range(STAGES):
                 bend_joints(chain, stages.phi[i], stages.q[i])
             return CONVERGED, iteration
-        if iteration > 2 and before > 0.0 and rate > 2.0:
+        if diverges(iteration, size, before):
             return STALLED, iteration
         before = size
     return STALLED, LARGEST_ITERATIONS

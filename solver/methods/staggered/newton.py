@@ -12,7 +12,7 @@ import numpy as np
 
 from solver.contact.forces import Touch, touching
 from solver.ends import LOAD, RATE
-from solver.kernel import kernel
+from solver.kernel import inlined, kernel
 from solver.loads.applied import Loads
 from solver.methods.staggered.chain import STAGES, Chain, Residuals, Stages, State
 from solver.methods.staggered.coupling import Coupling, press_stages, solve_with_contact
@@ -198,6 +198,19 @@ def factor_both(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: 
     return bool(factor(chain, driven, work.tangents, scheme.pair / dt, work.pair))
 
 
+@inlined
+def is_enough(size: float, before: float) -> bool:
+    """Whether an increment, or the sum of those that would follow it at its rate, is below 1."""
+    rate = size / before if before > 0.0 else 1.0
+    return size < 1.0 or (rate < 1.0 and size * rate / (1.0 - rate) < 1.0)
+
+
+@inlined
+def diverges(iteration: int, size: float, before: float) -> bool:
+    """Whether an increment is more than twice the one before it, after the first two."""
+    return iteration > 2 and before > 0.0 and size > 2.0 * before
+
+
 @kernel
 def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, unit: float, part: float,
          state: State, stages: Stages, touch: Touch, work: Work) -> tuple[int, int]:  # fmt: skip
@@ -224,12 +237,11 @@ def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, 
         enough = max(TOLERANCE, share * largest_departure(stages))
         # contact's forces are as large as they are whatever the step: what counts is their own relative error
         size = max(turned / enough, forced / (max(enough, share) if touching(touch) else enough))
-        rate = size / before if before > 0.0 else 1.0
-        if size < 1.0 or (before > 0.0 and rate < 1.0 and size * rate / (1.0 - rate) < 1.0):
+        if is_enough(size, before):
             move(state, stages, scheme.inverse, dt, chain.h)
             join_stages(chain, driven, stages, touch, work)
             return CONVERGED, iteration
-        if iteration > 2 and before > 0.0 and rate > 2.0 and not touching(touch):
+        if diverges(iteration, size, before) and not touching(touch):
             return STALLED, iteration
         before = size if fraction == 1.0 else 0.0
     return STALLED, LARGEST_ITERATIONS

@@ -61,8 +61,9 @@ def swept(sweep: Sweep) -> list[Result]:
     """The runs of a sweep or map, with their errors against the references."""
     tasks = list(sweep.tasks())
     found = {result.at: result for result in follow(tasks)}
-    known = references.References(follow(list(references.tasks(tasks))))
-    return [known.measured(task, found[task.at]) for task in tasks]
+    pairs = [(task, found[task.at]) for task in tasks]
+    known = references.found(pairs, follow)
+    return [known.measured(task, result) for task, result in pairs]
 
 
 def follow(tasks: Sequence[Task], work: Work = run) -> list[Result]:

@@ -7,7 +7,7 @@ discretization, or in statics on two meshes. Where the two agree, the second is 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from math import nan
 from typing import Any
@@ -35,24 +35,34 @@ def physics(task: Task) -> str:
     return json.dumps({key: part for key, part in task.case.items() if key != "numerics"}, sort_keys=True)
 
 
-def tasks(sweeps: Iterable[Task]) -> Iterator[Task]:
-    """Two fine runs for every physics among the tasks."""
-    for known in dict.fromkeys(physics(task) for task in sweeps):
-        case = json.loads(known)
-        for i, numerics in enumerate(FINE[case.get("analysis", "dynamic")]):
-            steps = {"dt_max": case["t_end"] / 100} if case.get("analysis") != "static" else {}
-            fine = case | {"numerics": {**steps, **numerics}}
-            yield Task(GROUP, (known, i), apply_settings(fine, {"output.topology": False}), 20_000, BUDGET)
+def found(pairs: Iterable[tuple[Task, Result]], follow: Callable[[Sequence[Task]], list[Result]]) -> References:
+    """The references of the physics that some run came to the end of; `follow` runs tasks.
+
+    The second of two fine runs is made where the first one came to its end.
+    """
+    wanted = dict.fromkeys(physics(task) for task, result in pairs if result.ending is Ending.CORRECT)
+    first = follow([_fine(known, 0) for known in wanted])
+    second = follow([_fine(result.at[0], 1) for result in first if result.ending is Ending.CORRECT])
+    return References([*first, *second])
+
+
+def _fine(known: str, which: int) -> Task:
+    """One of the two fine runs of some physics."""
+    case = json.loads(known)
+    static = case.get("analysis") == "static"
+    steps = {} if static else {"dt_max": case["t_end"] / 100}
+    fine = case | {"numerics": {**steps, **FINE["static" if static else "dynamic"][which]}}
+    return Task(GROUP, (known, which), apply_settings(fine, {"output.topology": False}), 20_000, BUDGET)
 
 
 class References:
     """The places where converged runs ended, by physics."""
 
     def __init__(self, results: Iterable[Result]) -> None:
-        found: dict[str, dict[int, Result]] = {}
+        pairs: dict[str, dict[int, Result]] = {}
         for result in results:
-            found.setdefault(result.at[0], {})[result.at[1]] = result
-        self._known = {known: np.array(pair[1].r) for known, pair in found.items() if _agree(pair)}
+            pairs.setdefault(result.at[0], {})[result.at[1]] = result
+        self._known = {known: np.array(pair[1].r) for known, pair in pairs.items() if _agree(pair)}
 
     def measured(self, task: Task, result: Result) -> Result:
         """The result with its distance from the reference over the rod's length, if both came to the end."""
@@ -63,9 +73,9 @@ class References:
 
 
 def _agree(pair: dict[int, Result]) -> bool:
-    first, second = pair[0], pair[1]
-    if any(one.ending is not Ending.CORRECT for one in (first, second)):
+    if len(pair) < 2 or pair[1].ending is not Ending.CORRECT:
         return False
+    first, second = pair[0], pair[1]
     length = json.loads(first.at[0])["rod"]["length"]
     return bool(_apart(np.array(first.r), np.array(second.r)) < AGREE * length)
 

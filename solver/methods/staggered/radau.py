@@ -12,7 +12,7 @@ from solver.loads.applied import AppliedLoads, Loads
 from solver.methods.staggered import tableau
 from solver.methods.staggered.chain import Chain, State
 from solver.methods.staggered.initial import chain_of, lay_out
-from solver.methods.staggered.newton import LARGEST_ITERATIONS, Scheme
+from solver.methods.staggered.newton import LARGEST_ITERATIONS, TOLERANCE, Scheme
 from solver.methods.status import CONVERGED
 from solver.rod import Array, sample
 from solver.scene import Scene
@@ -26,7 +26,8 @@ FEEDBACK = 0.5
 """Part of an end's lag behind its prescribed place that a step takes back."""
 NO_LOAD = np.zeros(6)
 SMALL_MOTION = 1e-7
-"""Rotation (rad) and displacement (rod lengths) in a step below which it is not shortened."""
+"""Rotation (rad) and displacement (rod lengths) in a step below which it is not shortened; or, if that is more, those
+of which the tolerated part is what Newton's iteration leaves: no shorter step has a smaller error."""
 
 
 class RadauMethod(ABC):
@@ -46,13 +47,15 @@ class RadauMethod(ABC):
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._newton_part = NEWTON_PART * tolerance if tolerance < 1.0 else 0.0
+        self._small_motion = max(SMALL_MOTION, TOLERANCE / tolerance)
         self._last_dt = 0.0
         self._powers = np.zeros((3, 3))
 
     def relative_increment(self, dt: float) -> float:
         """The embedded estimate of the trial's error relative to its motion, the larger of rotation and place."""
         turn_error, turned, move_error, moved = self._errors(dt)
-        return max(turn_error / (turned + SMALL_MOTION), move_error / (moved + SMALL_MOTION * float(self.s[-1])))
+        small = self._small_motion
+        return max(turn_error / (turned + small), move_error / (moved + small * float(self.s[-1])))
 
     def strain(self) -> float:
         """None: segments are rigid."""

@@ -152,3 +152,12 @@ def test_a_run_that_loses_much_of_its_energy_ends_by_name() -> None:
         list(simulate(let_go(5.0, 0.32, 480.0, 8, Initial.straight())))
     assert caught.value.outcome is Outcome.ENERGY_LOST
     assert caught.value.t == 0.02
+
+
+def test_a_tight_tolerance_does_not_shorten_steps_without_end() -> None:
+    """What Newton's iteration leaves is no error of the step: beside less motion it only looks larger."""
+    numerics = staggered(80, 1e-3, 1e-7)
+    scene = Scene(ARC_ROD, ARC, End.clamp(), End.free(), 2e-3, 2e-3, gravity=(3.0, 5.0, 1.0), numerics=numerics)
+    simulation = simulate(scene)
+    assert len(list(simulation)) == 2
+    assert simulation.statistics.steps < 200

@@ -6,8 +6,9 @@
   What is lost where an end jolts is not counted: an inextensible rod that is caught loses energy for real.
 - Length: the chord of an interval is its arc, but for its curvature: (kappa ds)^2 / 8 at most, and `STRETCH`.
 - Topology: Tw + Wr = Lk + constant between ends that do not swing, within `TURNS` and what the box method's mean
-  curvature may miss, (kappa ds)^2 / 8 of the turns. A pass-through changes it by 2.
-- Statics: forces and moments on the whole rod are in equilibrium, within `FORCE` of the largest, and (kappa ds)^2.
+  curvature may miss, (kappa ds)^2 / 8 of the turns. A pass-through changes it by 2. An end behind the start is let be.
+- Statics: forces and moments on the whole rod are in equilibrium, within `FORCE` of the largest, and twice (kappa ds)^2
+  at the ends: a moment is told at a node, and borne by the segments beside it (the defect was seen to fall with ds^2).
 """
 
 from __future__ import annotations
@@ -102,7 +103,7 @@ class Books:
             self._found(Ending.STRETCHED, f"by {self.stretch:.2g} at t = {frame.t:g} s")
 
     def _enter_turns(self, frame: Frame, bend: Array) -> None:
-        if not self._turning or isnan(frame.Lk):
+        if not self._turning or isnan(frame.Lk) or _has_passed(frame):
             return
         defect = frame.Tw + frame.Wr - frame.Lk
         if self._before is None:
@@ -152,8 +153,14 @@ class Books:
         worst = max(float(np.abs(force).max()), float(np.abs(moment).max()) / span)
         self.force = max(self.force, worst / (largest + NOISE / FORCE * self._force))
         turned = float(np.linalg.norm(frame.kappa[[0, -1]] * ds, axis=1).max())
-        if self.force > FORCE + turned**2:
+        if self.force > FORCE + 2.0 * turned**2:
             self._found(Ending.OUT_OF_BALANCE, f"by {self.force:.2g} of the largest force at {frame.parameter:g} s")
+
+
+def _has_passed(frame: Frame) -> bool:
+    """Whether the end is behind the start, so that the rays that close the curve for Wr meet: it has no Wr then."""
+    tangents = rotate(frame.orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2))
+    return bool((tangents @ (frame.r[-1] - frame.r[0]) < 0.0).all())
 
 
 def jolts(scene: Scene) -> list[float]:

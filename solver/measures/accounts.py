@@ -13,8 +13,8 @@ from solver.rotation import rotate
 from solver.scene import Scene
 
 MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
-"""In the rod's own energy EJ/L: what the balance may be off by where nothing moves. A mesh's errors may be worth a bend
-by 1e-3 rad, which a rod at rest may lose; it must not make as much."""
+"""In the rod's own energy EJ/L, of the softer axis: what the balance may be off by where nothing moves. A mesh's errors
+may be worth a bend by 1e-3 rad, which a rod at rest may lose; it must not make as much."""
 
 
 class Accounts:
@@ -29,7 +29,7 @@ class Accounts:
         thrown = any((*scene.initial.velocity, *scene.initial.angular_velocity))
         self._jolts = [*([0.0] if thrown else []), *method.start.jolts(), *method.end.jolts()]
         s = np.linspace(0.0, scene.rod.length, 11)
-        self._unit = float(np.mean([EJ(s) for EJ in scene.rod.stiffness[:2]])) / scene.rod.length
+        self._unit = float(np.min([EJ(s) for EJ in scene.rod.stiffness[:2]], axis=0).mean()) / scene.rod.length
         self._turnover = 0.0
         self._Lk_at_start = 0.0
 

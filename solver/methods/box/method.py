@@ -56,6 +56,7 @@ class BoxMethod:
         self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
         self._gain = STRETCH_FEEDBACK / scene.t_end
+        self._strain = 0.0
         self._stretch, self._stretch_before, self._trial_stretch = np.zeros((3, numerics.intervals, 3))
         self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space),
                                scene.contact is not None)  # fmt: skip
@@ -87,7 +88,7 @@ class BoxMethod:
             self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt),
             self._scales, self.contact.touch, self.work,
         )  # fmt: skip
-        measure_stretch(self.trial, self.h, self._trial_stretch)
+        self._strain = float(measure_stretch(self.trial, self.h, self._trial_stretch))
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> None:
@@ -121,8 +122,8 @@ class BoxMethod:
         return dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1]))
 
     def strain(self) -> float:
-        """The trial's largest stretch of an interval, over its length."""
-        return float(np.abs(self._trial_stretch).max()) / self.h
+        """The trial's largest strain of an interval."""
+        return self._strain
 
     def turn(self) -> float:
         """The largest rotation (rad) of the trial within an interval."""

@@ -29,7 +29,8 @@ def parse(body: bytes) -> Any:
     try:
         told = json.loads(body.decode(), parse_constant=_refuse, parse_float=_finite,
                           object_pairs_hook=_without_doubles)
-        json.dumps(told, ensure_ascii=False).encode()  # half a surrogate pair is not text
+        if b"\\u" in body:
+            json.dumps(told, ensure_ascii=False).encode()  # half a surrogate pair is not text
     except RecursionError:
         raise Problem(400, "malformed_json", "the body is nested too deeply") from None
     except ValueError as error:  # of the text, of the JSON, of a number with too many digits

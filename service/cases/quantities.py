@@ -112,15 +112,10 @@ ProfileTriple = tuple[Profile, Profile, Profile]
 ScheduleTriple = tuple[Schedule, Schedule, Schedule]
 
 
+@lru_cache(256)
 def curve(given: float | ProfileTable | ScheduleTable) -> Curve:
-    """A profile or schedule as the solver's curve."""
-    return Curve.constant(given) if isinstance(given, (int, float)) else _table(given)
-
-
-@lru_cache(64)
-def _table(given: ProfileTable | ScheduleTable) -> Curve:
-    """A table's curve; those used last are kept, as the cases of a sweep share most of theirs."""
-    return given.curve()
+    """A profile or schedule as the solver's curve; those used last are kept, as cases share most of theirs."""
+    return Curve.constant(given + 0.0) if isinstance(given, (int, float)) else given.curve()  # -0.0 is kept as 0.0
 
 
 def curves(given: ProfileTriple | ScheduleTriple) -> Vector:

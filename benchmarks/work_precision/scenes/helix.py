@@ -3,7 +3,8 @@
 Gazzola et al., R. Soc. Open Sci. 5 (2018) 171628, 3.4.1. The envelope is that of the homoclinic solution, van der
 Heijden & Thompson, Nonlinear Dynamics 21 (2000) 71, with M L/B and T L^2/B that satisfy the end rotation and the end
 shortening of van der Heijden et al., Int. J. Mech. Sci. 45 (2003) 161. MuJoCo's cable is a tree and could hold its far
-end by soft constraints only: not run.
+end by soft constraints only: not run. The hump forms of two that creep together, which the box method's errors pin
+where they are at these meshes and steps (docs/decisions/0002).
 """
 
 from __future__ import annotations

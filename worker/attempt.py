@@ -88,8 +88,12 @@ class Attempt:
 
     def _compute(self, simulation: Run, scene: Scene, writer: DatasetWriter) -> None:
         self._due = time.monotonic() + self._interval
+        under_way = False
         while not simulation.finished:
             frame = simulation.advance()
+            if not under_way:
+                under_way = True
+                log.info("under way", extra={"t": simulation.t, "steps": simulation.statistics.steps})
             if frame is not None:
                 self._keep(writer, frame)
             steps = simulation.statistics.steps

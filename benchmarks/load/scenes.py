@@ -7,6 +7,7 @@ import json
 import secrets
 import time
 from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 from benchmarks.load.clients import connect, listen, poll, submit_all
@@ -47,24 +48,33 @@ async def submissions(host: str, port: int, many: int = SUBMITTED) -> tuple[floa
     return rate, latencies
 
 
-async def first_step(host: str, port: int) -> tuple[list[float], list[float]]:
-    """From the request to the claim of an idle worker, and to the end of a job of one step.
+async def first_step(host: str, port: int, log: Path) -> tuple[list[float], list[float], list[float]]:
+    """From the request to the claim of an idle worker, to its first step, and to the end of a job of one step.
 
     The first job is not counted: the worker may still compile or load its kernels.
     """
     connection = await Connection.open(host, port)
-    claimed, ended = [], []
+    sent: dict[str, float] = {}
+    jobs = []
     for number in range(TIMES + 1):
         text = connection.text("POST", "/v1/jobs", json.dumps(case(number)).encode())
-        sent = time.time()
+        now = time.time()
         job = json.loads((await connection.ask(text)).body)
+        sent[job["id"]] = now
         while job["status"] in ("accepted", "running"):
             await asyncio.sleep(0.02)
             job = json.loads((await connection.ask(connection.text("GET", f"/v1/jobs/{job['id']}"))).body)
-        claimed.append(_unix(job["started"]) - sent)
-        ended.append(_unix(job["finished"]) - sent)
+        jobs.append(job)
     connection.close()
-    return claimed[1:], ended[1:]
+    stepped = under_way(log)
+    claimed, ended = ([_unix(job[name]) - sent[job["id"]] for job in jobs[1:]] for name in ("started", "finished"))
+    return claimed, [stepped[job["id"]] - sent[job["id"]] for job in jobs[1:]], ended
+
+
+def under_way(log: Path) -> dict[str, float]:
+    """When (Unix s) the worker had taken the first steps of each job, by its log."""
+    lines = [json.loads(line) for line in log.read_text().splitlines() if line.startswith("{")]
+    return {line["job"]: _unix(line["time"]) for line in lines if line["message"] == "under way"}
 
 
 async def events(host: str, port: int) -> list[float]:

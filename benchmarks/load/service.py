@@ -9,6 +9,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from urllib.parse import urlsplit
 
 import httpx
@@ -20,15 +21,15 @@ APIS = 2
 
 
 @contextmanager
-def whole() -> Iterator[tuple[str, int]]:
-    """`hockle serve` with one worker; host and port."""
+def whole() -> Iterator[tuple[str, int, Path]]:
+    """`hockle serve` with one worker; host and port, and the file that the worker's log goes to."""
     with tempfile.TemporaryDirectory(prefix="hockle-load-") as data:
         command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", data]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | ENVIRONMENT)
         try:
             assert process.stdout is not None
             address = urlsplit(process.stdout.readline().split()[3].rstrip(","))
-            yield address.hostname or "", address.port or 0
+            yield address.hostname or "", address.port or 0, Path(data) / "logs" / "worker.log"
         finally:
             process.terminate()
             process.wait(120)

@@ -15,7 +15,7 @@ from benchmarks.load.connection import Connection
 from service.cases import apply_settings, load_case
 
 POLLERS, FOR = 1000, 15.0
-SUBMITTERS, SUBMITTED = 32, 3000
+SUBMITTERS, SUBMITTED = (8, 32), 3000
 LISTENERS, ROUNDS, TIMES = 200, 5, 40
 ONE_STEP = {"t_end": 0.01, "output.interval": 0.01, "numerics.dt_max": 0.01, "numerics.intervals": 50}
 
@@ -36,9 +36,9 @@ async def statuses(host: str, port: int, unchanged: bool) -> list[float]:
     return latencies
 
 
-async def submissions(host: str, port: int, many: int = SUBMITTED) -> tuple[float, list[float]]:
+async def submissions(host: str, port: int, clients: int, many: int = SUBMITTED) -> tuple[float, list[float]]:
     """Submissions as fast as they are answered: how many a second, and their latencies."""
-    connections = await connect(host, port, SUBMITTERS)
+    connections = await connect(host, port, clients)
     cases = [case(number) for number in range(many)]
     start = time.perf_counter()
     _, latencies = await submit_all(connections, cases)

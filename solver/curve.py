@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator, PPoly
 
 Interpolation = Literal["linear", "smoothstep", "pchip", "cubic"]
+Number = TypeVar("Number", float, NDArray[np.float64])
 
 
 class Curve:
@@ -107,10 +108,18 @@ class Curve:
     def __call__(self, x: ArrayLike) -> NDArray[np.float64]:
         """The values at an array of x, of the same shape."""
         xs = np.asarray(x, dtype=float)
-        return np.array([self.value(float(u)) for u in xs.ravel()]).reshape(xs.shape)
+        if not self._pieces:
+            return np.full(xs.shape, self._first)
+        knots, pieces = np.array(self._knots), np.array(self._pieces)
+        inside = np.clip(xs, knots[0], knots[-1])
+        i = np.minimum(np.searchsorted(knots, inside, side="right"), len(pieces)) - 1
+        a, b, c, d = np.moveaxis(pieces[i], -1, 0)
+        values = _cubic((a, b, c, d), inside - knots[i])
+        return np.where(xs <= knots[0], self._first, np.where(xs >= knots[-1], self._last, values))
 
 
-def _cubic(piece: tuple[float, float, float, float], u: float) -> float:
+def _cubic(piece: tuple[Number, Number, Number, Number], u: Number) -> Number:
+    """The polynomial of one piece at u, or of as many pieces as there are u."""
     a, b, c, d = piece
     return ((a * u + b) * u + c) * u + d
 

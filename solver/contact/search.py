@@ -9,7 +9,7 @@ somebody has moved by half of it.
 
 from __future__ import annotations
 
-from math import cos, pi
+from math import acos
 from typing import NamedTuple
 
 import numpy as np
@@ -40,9 +40,9 @@ class Pairs(NamedTuple):
                    Members.none(points, nodes))  # fmt: skip
 
 
-def cannot_touch(bending: float, distance: float, law: Law) -> bool:
-    """Whether total curvature `bending` keeps all pairs more than law.skip of arc apart beyond `distance`."""
-    return bending < pi and law.skip * cos(0.5 * bending) > distance
+def harmless_bending(distance: float, law: Law) -> float:
+    """The total curvature (rad) below which all pairs more than law.skip of arc apart are beyond `distance` (m)."""
+    return 2.0 * acos(distance / law.skip) if distance < law.skip else 0.0
 
 
 @kernel

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf, nan
 
 import numpy as np
@@ -10,7 +11,7 @@ from solver.contact.forces import Pressing, Touch
 from solver.contact.law import Law
 from solver.contact.links import links_meet, links_reach
 from solver.contact.points import Points, contact_points, place_points
-from solver.contact.search import Pairs, cannot_touch, find_pairs, largest_displacement, smallest_distance
+from solver.contact.search import Pairs, find_pairs, harmless_bending, largest_displacement, smallest_distance
 from solver.kernel import kernel
 from solver.rod import Array, Rod
 from solver.scene import Contact
@@ -46,6 +47,10 @@ class SelfContact:
         # pairs that press, and those whose links may meet
         self._reach = max(self._law.cutoff, links_reach(points))
         self._farthest = (1.0 + SKIN[1]) * self._reach
+        distances = (self._farthest, self._reach, self._law.cutoff)
+        self._not_to_be_searched, self._not_to_be_checked, self._without_a_gap = (
+            harmless_bending(distance, self._law) if contact else inf for distance in distances
+        )
         self._slack = 0.0
         self._looked = False
         self._make_room(points, 1024 if contact else 1)
@@ -55,7 +60,7 @@ class SelfContact:
     @property
     def touching(self) -> bool:
         """Whether there are pairs that may press: as `forces.touching`, without unpacking all arrays for a kernel."""
-        return self.present and bool(self.touch.pairs.counts[0] > 0)
+        return self._looked and bool(self.touch.pairs.counts[0] > 0)
 
     @property
     def pressing(self) -> int:
@@ -64,25 +69,24 @@ class SelfContact:
 
     def prepare(self, bending: float, r: Array, velocity: Array, dt: float) -> None:
         """Before a step of dt (s) from a state: make the list of pairs good for it."""
-        if not self.present:
+        if bending < self._not_to_be_searched:
+            if self._looked:
+                self.touch.pairs.counts[:] = 0
+                self._looked = False
             return
-        points, pairs = self.touch.points, self.touch.pairs
-        if cannot_touch(bending, self._farthest, self._law):
-            pairs.counts[:] = 0
-            self._looked = False
-            return
+        points = self.touch.points
         place_points(points, r, velocity)
         if not self._looked or largest_displacement(points, points.checked) > 0.25 * self._slack:
             self._search(dt)
         points.start[:] = points.p
 
-    def refusal(self, bending: float, r: Array, velocity: Array) -> str:
-        """After a step to a trial state: why it cannot be trusted, or nothing."""
+    def refusal(self, bending: float, nodes: Callable[[], tuple[Array, Array]]) -> str:
+        """After a step to a trial state: why it cannot be trusted, or nothing. `nodes` places and moves them."""
         self.step_limit = inf
-        if not self.present or cannot_touch(bending, self._reach, self._law):
+        if bending < self._not_to_be_checked:
             return ""
         points, pairs = self.touch.points, self.touch.pairs
-        place_points(points, r, velocity)
+        place_points(points, *nodes())
         if not self._looked:
             near = smallest_distance(points, self._law.skip, self._farthest) <= self._reach
             return "the rod came near itself within one step" if near else ""
@@ -101,7 +105,7 @@ class SelfContact:
 
     def smallest_gap(self, bending: float, r: Array, velocity: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
-        if not self.present or cannot_touch(bending, self._law.cutoff, self._law):
+        if bending < self._without_a_gap:
             return nan
         points = self.touch.points
         place_points(points, r, velocity)

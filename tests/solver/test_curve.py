@@ -111,6 +111,12 @@ def test_calling_a_curve_keeps_the_shape(table: Curve) -> None:
     assert table(2.0).shape == ()
 
 
+def test_calling_a_curve_gives_its_values_to_the_bit(table: Curve) -> None:
+    for curve in (table, Curve.constant(2.5)):
+        everywhere = np.concatenate([EVERYWHERE, KNOTS])
+        assert curve(everywhere).tolist() == [curve.value(float(x)) for x in everywhere]
+
+
 @pytest.mark.parametrize(
     ("curve", "zero"),
     [

@@ -131,7 +131,8 @@ class BoxMethod:
 
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
-        return self.contact.refusal(*self._centreline(self.trial))
+        trial = self.trial
+        return self.contact.refusal(total_bending(trial.Y, self.h), lambda: (trial.r, trial.Y))
 
     def step_limit(self) -> float:
         """The longest next step (s) that contact allows."""

@@ -106,3 +106,12 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
                 for n in range(3):
                     target[i, 0, m, n] = -(h0 * B[n, 0] + h1 * B[n, 1] + h2 * B[n, 2])
                     target[i, 1, m, n] = h0 * B[0, n] + h1 * B[1, n] + h2 * B[2, n]
+
+
+@kernel
+def total_bending(bend: Array) -> float:
+    """int |kappa_bending| ds (rad) of joints' rotation vectors (n, 3)."""
+    total = 0.0
+    for j in range(len(bend)):
+        total += np.sqrt(bend[j, 0] * bend[j, 0] + bend[j, 1] * bend[j, 1])
+    return total

@@ -12,7 +12,7 @@ from solver.methods.staggered import tableau
 from solver.methods.staggered.chain import Stages, State
 from solver.methods.staggered.coupling import place_nodes
 from solver.methods.staggered.energies import energies, stage_powers, twist
-from solver.methods.staggered.joints import bend_joints, largest_turn
+from solver.methods.staggered.joints import bend_joints, largest_turn, total_bending
 from solver.methods.staggered.motion import extrapolate, follow_segments, move, spin_steadily
 from solver.methods.staggered.newton import Work, estimate_error, finish, step
 from solver.methods.staggered.radau import SCHEME, RadauMethod
@@ -66,10 +66,13 @@ class StaggeredMethod(RadauMethod):
         """Why contact does not let the trial be trusted, or nothing."""
         if not self.contact.present:
             return ""
+        return self.contact.refusal(total_bending(self.stages.bend[2]), self._trial_nodes)
+
+    def _trial_nodes(self) -> tuple[Array, Array]:
         # not into the state's own nodes: from them a refused step is tried again
         stages, (r, V) = self.stages, np.empty_like(self._nodes)
         place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
-        return self.contact.refusal(total_bending(stages.bend[2]), r, V)
+        return r, V
 
     def take_step(self, t: float, dt: float) -> None:
         """Make the trial the state."""
@@ -229,11 +232,6 @@ class StaggeredMethod(RadauMethod):
             for side, end, values, dead in self._ends_at(t, c * dt, dt):
                 driven.values[i, side], driven.dead[i, side] = values, dead
                 driven.kinds[side] = end.kinds
-
-
-def total_bending(bend: Array) -> float:
-    """int |kappa_bending| ds (rad) of joints' rotation vectors (n, 3)."""
-    return float(np.hypot(bend[:, 0], bend[:, 1]).sum())
 
 
 def orientations_at_nodes(quaternion: Array) -> Array:

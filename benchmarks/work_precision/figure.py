@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import ceil
+from math import ceil, floor, log10
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from benchmarks.work_precision.measure import AS_IT_COMES, BOX, METHODS, PAPER, PYELASTICA, STAGGERED, STATICS, Point
 from benchmarks.work_precision.table import panels
@@ -29,6 +30,10 @@ def draw(points: Iterable[Point], file: Path) -> None:
             theirs = sorted((p.cpu, p.error) for p in all_points if p.solver == solver and not p.missing)
             if theirs:
                 handles[solver] = axis.loglog(*zip(*theirs, strict=True), **style)[0]
+        for one in (axis.xaxis, axis.yaxis):  # whole decades, and only they are named
+            low, high = (log10(value) for value in one.get_data_interval())
+            one.axes.set(**{f"{one.axis_name}lim": (10.0 ** floor(low), 10.0 ** ceil(high))})
+            one.set_minor_formatter(NullFormatter())
         axis.set_title(f"{scene}: {quantity}", fontsize=10)
         axis.set_xlabel("CPU s")
         axis.set_ylabel("error")

@@ -16,7 +16,7 @@ from service.cases import apply_settings, load_case
 
 POLLERS, FOR = 1000, 15.0
 SUBMITTERS, SUBMITTED = (8, 32), 3000
-LISTENERS, ROUNDS, TIMES = 200, 5, 40
+LISTENERS, ROUNDS, TIMES = 200, 5, 200
 ONE_STEP = {"t_end": 0.01, "output.interval": 0.01, "numerics.dt_max": 0.01, "numerics.intervals": 50}
 
 

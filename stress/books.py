@@ -8,7 +8,8 @@
 - Topology: Tw + Wr = Lk + constant between ends that do not swing, within `TURNS` and what the box method's mean
   curvature may miss, (kappa ds)^2 / 8 of the turns. A pass-through changes it by 2. An end behind the start is let be.
 - Statics: forces and moments on the whole rod are in equilibrium, within `FORCE` of the largest, and twice (kappa ds)^2
-  at the ends: a moment is told at a node, and borne by the segments beside it (the defect was seen to fall with ds^2).
+  at the ends and (ds / L)^2: a moment is told at a node, and borne by the segments beside it. (The defect was seen to
+  fall with ds^2 and to be the same part of any load.)
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ class Books:
         self._before: Frame | None = None
         self._turnover, self._missing, self._made, self._lost = 0.0, 0.0, 0.0, 0.0
         self._defect = 0.0
-        self.stretch, self.turns, self.force = 0.0, 0.0, 0.0
+        self.stretch, self.turns = 0.0, 0.0
         self.fault: tuple[Ending, str] | None = None
 
     @property
@@ -151,10 +152,10 @@ class Books:
         largest = max(float(np.abs(F).max()), float(np.abs(weights).sum()), float(np.abs(Q).max()) / self._length)
         span = self._length + float(np.abs(frame.r).max())
         worst = max(float(np.abs(force).max()), float(np.abs(moment).max()) / span)
-        self.force = max(self.force, worst / (largest + NOISE / FORCE * self._force))
+        off = worst / (largest + NOISE / FORCE * self._force)
         turned = float(np.linalg.norm(frame.kappa[[0, -1]] * ds, axis=1).max())
-        if self.force > FORCE + 2.0 * turned**2:
-            self._found(Ending.OUT_OF_BALANCE, f"by {self.force:.2g} of the largest force at {frame.parameter:g} s")
+        if off > FORCE + 2.0 * (turned**2 + (ds / self._length) ** 2):
+            self._found(Ending.OUT_OF_BALANCE, f"by {off:.2g} of the largest force at {frame.parameter:g} s")
 
 
 def _has_passed(frame: Frame) -> bool:

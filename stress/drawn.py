@@ -220,7 +220,10 @@ def cases(draw: Draw) -> Part:
 
 
 def tasks(count: int, first: int) -> list[Task]:
-    """`count` random cases, the same for the same seed `first`; each is drawn where it runs."""
+    """`count` random cases, the same for the same seed `first` and sources; each is drawn where it runs.
+
+    Hypothesis takes some of its values from the constants of the sources that are loaded, so what fails is kept whole.
+    """
     return [Task(GROUP, (first, i), {}, STEPS, CPU) for i in range(count)]
 
 

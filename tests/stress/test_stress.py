@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import os
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -169,14 +171,16 @@ def test_a_random_case_ends_right_or_by_name(task):
 
 ONCE_WRONG = {
     2657: "a rod that hardly moves made a third of its little energy",
-    4381: "statics: the moments that the ends were told to bear were off by 1.6 (kappa ds)^2",
+    4381: "statics: the moments that the ends were told to bear were off by 1.4 (ds / L)^2",
     4930: "a rod 700 times as stiff about one axis lost a tenth of its energy: little beside the stiff axis's own",
     5325: "the box method's chords were a tenth too short for its curvature, not for its nodes' tangents",
     9969: "statics: an end slid past the other one, where the rays that close the curve meet and Wr is half its jump",
 }
+"""By number in the draws of seed 1; the cases lie beside this file, for other sources make other draws."""
+CASES = json.loads(Path(__file__).with_name("once_wrong.json").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("number", ONCE_WRONG)
 def test_a_random_case_that_was_once_wrong_ends_right_or_by_name(number):
-    task = drawn.tasks(number + 1, 1)[-1]
-    assert drawn.draw_and_run(task).ending not in FAILURES
+    result = run(Task("", (), CASES[str(number)], steps=1000, cpu=60.0))
+    assert result.ending in (Ending.CORRECT, Ending.NAMED), result.detail

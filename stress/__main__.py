@@ -18,7 +18,7 @@ os.environ.update(SINGLE)  # before numpy, which reads them when it is imported
 
 from solver import warm  # noqa: E402
 from stress import drawn, references  # noqa: E402
-from stress.ending import FAILURES, Ending, Result, Task  # noqa: E402
+from stress.ending import FAILURES, Result, Task  # noqa: E402
 from stress.kept import Kept  # noqa: E402
 from stress.pool import PROCESSES, Work, results  # noqa: E402
 from stress.run import run  # noqa: E402
@@ -67,15 +67,10 @@ def swept(sweep: Sweep) -> list[Result]:
 
 
 def follow(tasks: Sequence[Task], work: Work = run) -> list[Result]:
-    """Run the tasks, and tell of those that failed. What hangs is run once more: it may be the machine that stood."""
-    found, hung = [], []
-    for task, result in results(work, tasks):
-        if result.ending is Ending.HANG:
-            hung.append(task)
-        else:
-            found.append(result)
-    found += [result for _, result in results(work, hung)]
-    for result in found:
+    """Run the tasks, and tell of those that failed."""
+    found = []
+    for _, result in results(work, tasks):
+        found.append(result)
         if result.ending in FAILURES and result.group != references.GROUP:
             told = f"{result.ending.value} {result.detail.strip()[-100:]}"
             print(f"  {result.group} {list(result.at)}: {told}", flush=True)

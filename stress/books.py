@@ -7,9 +7,8 @@
 - Length: the chord of an interval is its arc, but for its curvature: (kappa ds)^2 / 8 at most, and `STRETCH`.
 - Topology: Tw + Wr = Lk + constant between ends that do not swing, within `TURNS` and what the box method's mean
   curvature may miss, (kappa ds)^2 / 8 of the turns. A pass-through changes it by 2. An end behind the start is let be.
-- Statics: forces and moments on the whole rod are in equilibrium, within `FORCE` of the largest, and twice (kappa ds)^2
-  at the ends and (ds / L)^2: a moment is told at a node, and borne by the segments beside it. (The defect was seen to
-  fall with ds^2 and to be the same part of any load.)
+- Statics: forces and moments on the whole rod are in equilibrium, within `FORCE` of the largest, and (kappa ds)^2 at
+  the ends, now or in the initial shape: segments that are laid along a curve are turned against its frames by as much.
 """
 
 from __future__ import annotations
@@ -153,9 +152,15 @@ class Books:
         span = self._length + float(np.abs(frame.r).max())
         worst = max(float(np.abs(force).max()), float(np.abs(moment).max()) / span)
         off = worst / (largest + NOISE / FORCE * self._force)
-        turned = float(np.linalg.norm(frame.kappa[[0, -1]] * ds, axis=1).max())
-        if off > FORCE + 2.0 * (turned**2 + (ds / self._length) ** 2):
+        turned = max(float(np.linalg.norm(frame.kappa[[0, -1]] * ds, axis=1).max()), self._turned_at_start(ds))
+        if off > FORCE + turned**2:
             self._found(Ending.OUT_OF_BALANCE, f"by {off:.2g} of the largest force at {frame.parameter:g} s")
+
+    def _turned_at_start(self, ds: float) -> float:
+        """The larger angle (rad) by which the initial shape turns within an interval at its ends."""
+        s = ds * np.arange(3.0)
+        shapes = (self._scene.initial.centreline(at) for at in (s, self._length - s))
+        return max(float(np.linalg.norm(np.diff(np.diff(r, axis=0), axis=0))) / ds for r in shapes)
 
 
 def _has_passed(frame: Frame) -> bool:

@@ -10,7 +10,6 @@ import secrets
 import time
 from dataclasses import dataclass, field
 from functools import cached_property
-from hashlib import blake2b
 from typing import Any
 
 from service.jobs.lifecycle import Status
@@ -144,6 +143,6 @@ def new_id() -> str:
 
     They are drawn without asking the system each time: a thread that does waits for its turn behind all others.
     """
-    drawn = blake2b(b"%d %d" % (os.getpid(), next(_DRAWN)), key=_SECRET, digest_size=10).digest()
+    drawn = hashlib.blake2b(b"%d %d" % (os.getpid(), next(_DRAWN)), key=_SECRET, digest_size=10).digest()
     number = (time.time_ns() // 1_000_000) << 80 | int.from_bytes(drawn)
     return "".join(CROCKFORD[number >> shift & 31] for shift in range(125, -5, -5))

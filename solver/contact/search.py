@@ -64,13 +64,13 @@ def smallest_distance(points: Points, skip: float, enough: float) -> float:
     apart = int(np.ceil(skip / points.spacing))
     best = enough
     for a in range(M):
-        b = a + apart
-        while b < M:
+        b = M - 1  # from the far end, so that a rod that is not folded is passed in one leap
+        while b >= a + apart:
             d = np.sqrt((points.p[a, 0] - points.p[b, 0]) ** 2 + (points.p[a, 1] - points.p[b, 1]) ** 2
                         + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
             if d < best:
                 best = d
-            b += max(1, int((d - best) / pitch))
+            b -= max(1, int((d - best) / pitch))
     return best
 
 
@@ -93,8 +93,8 @@ def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None
     apart = int(np.ceil(skip / points.spacing))
     found = 0
     for a in range(M):
-        b = a + apart
-        while b < M:
+        b = M - 1
+        while b >= a + apart:
             d = np.sqrt((points.p[a, 0] - points.p[b, 0]) ** 2 + (points.p[a, 1] - points.p[b, 1]) ** 2
                         + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
             if d < radius:
@@ -102,9 +102,9 @@ def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None
                     pairs.first[found] = a
                     pairs.second[found] = b
                 found += 1
-                b += 1
+                b -= 1
             else:
-                b += max(1, int((d - radius) / pitch))
+                b -= max(1, int((d - radius) / pitch))
     pairs.counts[0] = min(found, len(pairs.first))
     pairs.counts[1] = found - pairs.counts[0]
     dismiss(pairs.members)

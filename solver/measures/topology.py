@@ -114,25 +114,24 @@ def _distances(r: Array, i: int, out: Array) -> None:
 
 
 @njit(cache=True, inline="always")
-def _pair(start: Vector, end: Vector, first: Vector, last: Vector,
+def _pair(start: Vector, end: Vector, first: Vector, last: Vector, other: float,
           a: float, b: float, c: float, d: float) -> tuple[float, float]:  # fmt: skip
     """x, y with arg(x + i y) = half the signed area of two segments (see the module's text).
 
-    From `start` to `end`, and from `first` to `last`; `a`, `b`, `c`, `d` the lengths of the four vectors. The dot
-    products are the corners' own; V is taken from the segments' vectors, so that it keeps its digits when the four
-    are nearly parallel.
+    From `start` to `end`, and from `first` to `last`, whose length's square is `other`; `a`, `b`, `c`, `d` the lengths
+    of the four vectors. D is taken from the lengths, by 2 a . b = a^2 + b^2 - |a - b|^2: all its terms are of the size
+    of D itself. V is taken from the segments' vectors, so that it keeps its digits when the four are nearly parallel.
     """
     ax, ay, az = first[0] - start[0], first[1] - start[1], first[2] - start[2]
-    bx, by, bz = last[0] - start[0], last[1] - start[1], last[2] - start[2]
     cx, cy, cz = last[0] - end[0], last[1] - end[1], last[2] - end[2]
-    dx, dy, dz = first[0] - end[0], first[1] - end[1], first[2] - end[2]
     ux, uy, uz = end[0] - start[0], end[1] - start[1], end[2] - start[2]
     wx, wy, wz = last[0] - first[0], last[1] - first[1], last[2] - first[2]
-    volume = ax * (uy * wz - uz * wy) + ay * (uz * wx - ux * wz) + az * (ux * wy - uy * wx)
-    ac = ax * cx + ay * cy + az * cz
-    d1 = a * b * c + (ax * bx + ay * by + az * bz) * c + (bx * cx + by * cy + bz * cz) * a + ac * b
-    d2 = a * c * d + ac * d + (cx * dx + cy * dy + cz * dz) * a + (dx * ax + dy * ay + dz * az) * c
-    return d1 * d2 - volume * volume, volume * (d1 + d2)
+    own = ux * ux + uy * uy + uz * uz
+    twice_volume = 2.0 * (ax * (uy * wz - uz * wy) + ay * (uz * wx - ux * wz) + az * (ux * wy - uy * wx))
+    twice_ac = 2.0 * (ax * cx + ay * cy + az * cz)
+    twice_d1 = c * ((a + b) * (a + b) - other) + a * (b * b + c * c - own) + twice_ac * b
+    twice_d2 = a * ((c + d) * (c + d) - other) + c * (d * d + a * a - own) + twice_ac * d
+    return twice_d1 * twice_d2 - twice_volume * twice_volume, twice_volume * (twice_d1 + twice_d2)
 
 
 @njit(cache=True, inline="always")
@@ -144,7 +143,7 @@ def _arctangent(t: float) -> float:
 
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
-def _row(r: Array, i: int, last: int, from_i: Array, from_next: Array) -> tuple[float, int]:
+def _row(r: Array, i: int, last: int, squares: Array, from_i: Array, from_next: Array) -> tuple[float, int]:
     """Half the area of segment i with segments i + 2 ... last - 1, and how many pairs are left out.
 
     Left out are the near pairs, whose angle is not small. So the loop has no call and no branch (nor the one that
@@ -154,8 +153,9 @@ def _row(r: Array, i: int, last: int, from_i: Array, from_next: Array) -> tuple[
     start, end = (r[0, i], r[1, i], r[2, i]), (r[0, i + 1], r[1, i + 1], r[2, i + 1])
     x, y, z, a, d = r[0, j:], r[1, j:], r[2, j:], from_i[j:], from_next[j:]
     x1, y1, z1, b, c = r[0, j + 1 :], r[1, j + 1 :], r[2, j + 1 :], from_i[j + 1 :], from_next[j + 1 :]
+    other = squares[j:]
     for k in range(last - j):
-        p, q = _pair(start, end, (x[k], y[k], z[k]), (x1[k], y1[k], z1[k]), a[k], b[k], c[k], d[k])
+        p, q = _pair(start, end, (x[k], y[k], z[k]), (x1[k], y1[k], z1[k]), other[k], a[k], b[k], c[k], d[k])
         small = abs(q) < SMALL_TANGENT * p
         total += _arctangent(q / p) if small else 0.0
         left_out += 0 if small else 1
@@ -163,13 +163,13 @@ def _row(r: Array, i: int, last: int, from_i: Array, from_next: Array) -> tuple[
 
 
 @njit(cache=True)
-def _near_pairs(r: Array, i: int, last: int, from_i: Array, from_next: Array) -> float:
+def _near_pairs(r: Array, i: int, last: int, squares: Array, from_i: Array, from_next: Array) -> float:
     """Half the area of segment i with those segments that `_row` leaves out."""
     total = 0.0
     start, end = (r[0, i], r[1, i], r[2, i]), (r[0, i + 1], r[1, i + 1], r[2, i + 1])
     for j in range(i + 2, last):
         p, q = _pair(start, end, (r[0, j], r[1, j], r[2, j]), (r[0, j + 1], r[1, j + 1], r[2, j + 1]),
-                     from_i[j], from_i[j + 1], from_next[j + 1], from_next[j])  # fmt: skip
+                     squares[j], from_i[j], from_i[j + 1], from_next[j + 1], from_next[j])  # fmt: skip
         if not abs(q) < SMALL_TANGENT * p:
             total += _angle(p, q)
     return total
@@ -179,15 +179,17 @@ def _near_pairs(r: Array, i: int, last: int, from_i: Array, from_next: Array) ->
 def _segment_pairs(r: Array, closed: bool) -> float:
     """Half the signed area of all pairs of segments of `r` (3, n); neighbours lie in one plane."""
     n = r.shape[1]
-    from_i, from_next = np.empty(n), np.empty(n)
+    from_i, from_next, squares = np.empty(n), np.empty(n), np.empty(n - 1)
+    for i in range(n - 1):
+        squares[i] = (r[0, i + 1] - r[0, i]) ** 2 + (r[1, i + 1] - r[1, i]) ** 2 + (r[2, i + 1] - r[2, i]) ** 2
     _distances(r, 0, from_next)
     total = 0.0
     for i in range(n - 3):
         from_i, from_next = from_next, from_i
         _distances(r, i + 1, from_next)
         last = n - 2 if closed and i == 0 else n - 1
-        row, left_out = _row(r, i, last, from_i, from_next)
+        row, left_out = _row(r, i, last, squares, from_i, from_next)
         total += row
         if left_out > 0:
-            total += _near_pairs(r, i, last, from_i, from_next)
+            total += _near_pairs(r, i, last, squares, from_i, from_next)
     return total

@@ -94,9 +94,10 @@ def _load_node(j: int, state: State, nodes: Nodes, section: Section, loads: Load
         at[0, i], at[1, i] = velocity, omega
         at[2, i] = loads.lab[j, i] - weight[j, i]
         at[3, i] = loads.material[j, 3 + i]
-        for k in range(3):
-            at[2, i] += R[i, k] * loads.material[j, k]
-            at[3, i] += R[k, i] * loads.lab[j, 3 + k]
+        if loads.follows:
+            at[2, i] += R[i, 0] * loads.material[j, 0] + R[i, 1] * loads.material[j, 1] + R[i, 2] * loads.material[j, 2]
+        if loads.turns:
+            at[3, i] += R[0, i] * loads.lab[j, 3] + R[1, i] * loads.lab[j, 4] + R[2, i] * loads.lab[j, 5]
         at[4, i] = loads.damping * section.mass[j] * velocity
         at[5, i] = loads.damping * section.inertia[j, i] * omega
     if loads.wet:

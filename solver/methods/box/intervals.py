@@ -18,42 +18,13 @@ frames does work on the rod, and raised the error of Wr(32 s) in the paper's sce
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.kernel import inlined, kernel
-from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, State, V
+from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, V
 from solver.methods.box.space import SpaceScheme
 from solver.rod import Array, Section
-from solver.rotation import tangent_of
 
 MEANS = 5
 """Means over an interval: kappa, omega, F (lab), q, and a3 x R_m^t F_m."""
-
-
-@kernel
-def measure_stretch(state: State, h: float, stretch: Array) -> float:
-    """Write Delta r - h T_m (N, 3), lab: what inextensibility has lost to the scheme in space and to time.
-
-    Gives the largest strain of an interval: what was written, over h, or by how much the chord is longer than h or
-    shorter than by 1 - (kappa h)^2 / 8.
-    """
-    left, right = np.empty(3), np.empty(3)
-    strain, bend = 0.0, h * h * (state.Y[0, KAPPA] ** 2 + state.Y[0, KAPPA + 1] ** 2)
-    tangent_of(state.quaternion[0], right)
-    for j in range(len(stretch)):
-        for i in range(3):
-            left[i] = right[i]
-        tangent_of(state.quaternion[j + 1], right)
-        for i in range(3):
-            stretch[j, i] = state.r[j + 1, i] - state.r[j, i] - 0.5 * h * (left[i] + right[i])
-            strain = max(strain, abs(stretch[j, i]) / h)
-        square = 0.0
-        for i in range(3):
-            square += (state.r[j + 1, i] - state.r[j, i]) ** 2
-        chord = np.sqrt(square) / h
-        before, bend = bend, h * h * (state.Y[j + 1, KAPPA] ** 2 + state.Y[j + 1, KAPPA + 1] ** 2)
-        strain = max(strain, chord - 1.0, 1.0 - max(before, bend) / 8.0 - chord)
-    return strain
 
 
 @kernel

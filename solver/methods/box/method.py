@@ -17,9 +17,9 @@ from solver.methods.box.coupling import total_bending
 from solver.methods.box.energies import energies, powers
 from solver.methods.box.fields import KAPPA, OMEGA, F, State, V
 from solver.methods.box.generalized_alpha import BACKWARD_EULER, Scheme, rescale_aux
-from solver.methods.box.intervals import measure_stretch
 from solver.methods.box.newton import EndValues, Scales, Work, step
 from solver.methods.box.space import SpaceScheme
+from solver.methods.box.trial import Trial, measure_trial
 from solver.rod import Array, Section, sample
 from solver.rotation import relative_rotation, rotate_back, tangents_of
 from solver.scene import Initial, Scene
@@ -56,7 +56,7 @@ class BoxMethod:
         self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
         self._gain = STRETCH_FEEDBACK / scene.t_end
-        self._strain = 0.0
+        self._measured = Trial(0.0, 0.0, 0.0, 0.0)
         self._stretch, self._stretch_before, self._trial_stretch = np.zeros((3, numerics.intervals, 3))
         self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space),
                                scene.contact is not None)  # fmt: skip
@@ -88,7 +88,7 @@ class BoxMethod:
             self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt),
             self._scales, self.contact.touch, self.work,
         )  # fmt: skip
-        self._strain = float(measure_stretch(self.trial, self.h, self._trial_stretch))
+        self._measured = Trial(*measure_trial(self.state, self.trial, self.h, self._trial_stretch))
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> None:
@@ -117,17 +117,16 @@ class BoxMethod:
 
     def relative_increment(self, dt: float) -> float:
         """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|."""
-        change = float(np.abs(self.trial.rate[:, :3] - self.state.rate[:, :3]).max())
-        motion = float(np.abs(self.trial.r - self.state.r).max())
+        change, motion = self._measured.acceleration, self._measured.motion
         return dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1]))
 
     def strain(self) -> float:
         """The trial's largest strain of an interval."""
-        return self._strain
+        return self._measured.strain
 
     def turn(self) -> float:
         """The largest rotation (rad) of the trial within an interval."""
-        return float(np.linalg.norm(self.trial.Y[:, KAPPA : KAPPA + 3], axis=1).max()) * self.h
+        return self._measured.turn
 
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""

@@ -27,6 +27,10 @@ APIS = 2
 
 DEATHS, WITHIN = 5, 60.0
 
+ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "2"}
+"""One job, one core; and small matrices are slower on more. Two heaps, where glibc would give the threads of an API
+process sixteen on two cores, each as large as the largest answer that some thread ever made in it."""
+
 
 class Services:
     """The processes of the service, as a context: inside it they run, after it none is left."""
@@ -92,8 +96,7 @@ class Services:
         self.settings.make_directories()
         self._hold_data_directory()
         self._start_broker()
-        # One job, one core; and small matrices are slower on more.
-        environment = self.settings.environment() | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        environment = self.settings.environment() | ENVIRONMENT
         apis = [f"api-{number}" for number in range(1, APIS + 1)]
         for name, listening in zip(apis, sockets, strict=True):
             api = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]

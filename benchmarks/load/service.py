@@ -14,9 +14,10 @@ from urllib.parse import urlsplit
 
 import httpx
 
+from hockle.supervisor import ENVIRONMENT
 from service.api.listening import listen
 
-ENVIRONMENT = {"REDIS_URL": "", "HOCKLE_QUOTA": "1000000", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+TOLD = ENVIRONMENT | {"REDIS_URL": "", "HOCKLE_QUOTA": "1000000"}
 APIS = 2
 
 
@@ -25,7 +26,7 @@ def whole() -> Iterator[tuple[str, int, Path]]:
     """`hockle serve` with one worker; host and port, and the file that the worker's log goes to."""
     with tempfile.TemporaryDirectory(prefix="hockle-load-") as data:
         command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", data]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | ENVIRONMENT)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | TOLD)
         try:
             assert process.stdout is not None
             address = urlsplit(process.stdout.readline().split()[3].rstrip(","))
@@ -43,7 +44,7 @@ def without_workers() -> Iterator[tuple[str, int]]:
         sockets = [cleanup.enter_context(listening) for listening in listen("127.0.0.1", 0, many=APIS)]
         for listening in sockets:
             command = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
-            process = subprocess.Popen(command, env=os.environ | ENVIRONMENT | {"HOCKLE_DATA": data},
+            process = subprocess.Popen(command, env=os.environ | TOLD | {"HOCKLE_DATA": data},
                                        pass_fds=[listening.fileno()])  # fmt: skip
             cleanup.callback(process.wait, 60)
             cleanup.callback(process.terminate)

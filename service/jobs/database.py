@@ -22,10 +22,6 @@ from service.jobs.turn import turn
 BUSY = 20.0
 """Seconds for which a write waits for another one, or for a connection."""
 
-PAGES_TO_CHECKPOINT = 10_000
-"""Pages of the log after which whoever commits moves them into the database, some tens of ms for all who wait: after
-SQLite's own 1000, in a rush of submissions, one commit in twenty would."""
-
 PRIMARY = 0xFF
 """The part of SQLite's error codes that says what, not why: another process may also be recovering the log."""
 
@@ -118,7 +114,6 @@ def _set_up_sqlite(connection: Any, _record: object) -> None:
     connection.isolation_level = None  # the driver shall begin nothing by itself
     _patiently(connection.execute, "PRAGMA journal_mode=WAL")
     connection.execute("PRAGMA synchronous=FULL")  # a 202 outlives a power cut
-    connection.execute(f"PRAGMA wal_autocheckpoint={PAGES_TO_CHECKPOINT}")
 
 
 def _begin_sqlite(connection: Connection) -> None:

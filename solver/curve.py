@@ -53,7 +53,7 @@ class Curve:
         """The function through the points (x, y).
 
         `linear`; `smoothstep` (x^2 (3 - 2 x) from each value to the next, flat at every point);
-        `pchip` (monotone, C1); `cubic` (natural-ended not-a-knot spline, C2).
+        `pchip` (monotone, C1); `cubic` (not-a-knot spline, C2).
 
         Raises ValueError unless x increases strictly, both are finite and of one length >= 2.
         """

@@ -67,7 +67,7 @@ class DrivenEnd:
     def switch(self, t: float, rates: Array) -> None:
         """Put in force the conditions that hold from `t` on; `rates` (6,): the end's velocity and omega now."""
         for i, component in enumerate(self._components):
-            while self._active[i] + 1 < len(component) and component[self._active[i] + 1].since <= t + 1e-12:
+            while self._active[i] + 1 < len(component) and component[self._active[i] + 1].since <= t:
                 self._active[i] += 1
                 self._stopping_from[i] = float(rates[i])
                 self._travel_at_switch[i] = self.travel[i]

@@ -1,4 +1,5 @@
-"""How every compiled kernel is compiled: single-threaded, cached on disk, no bounds checks, no NaN swallowed.
+"""How every kernel of a step is compiled: single-threaded, cached on disk, no bounds checks, no NaN swallowed. (Those
+of the writhe, in measures/, choose for each function what may be reordered: their sums must be exact to rounding.)
 
 Numba's cache does not see that a kernel called from another file has changed. So the cache lives in a folder
 named by a digest of the whole solver: another version of the code has another cache, and nothing compiles twice.
@@ -8,12 +9,16 @@ from __future__ import annotations
 
 import hashlib
 import os
+import subprocess
+import sys
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba.core.registry import cpu_target
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -21,6 +26,9 @@ _OPTIONS: dict[str, Any] = {
     "cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "fastmath": {"contract", "arcp"},
 }  # fmt: skip
 """`arcp`: divisions by constants and by what does not change in a loop become multiplications."""
+
+APART = "HOCKLE_COMPILES"
+"""The environment variable that tells a process that it is the one that compiles."""
 
 
 @cache
@@ -40,6 +48,38 @@ def cache_folder() -> Path:
 
 if "NUMBA_CACHE_DIR" not in os.environ:
     numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+
+
+def compile_apart(name: str, statement: str) -> None:
+    """Have `statement` compile kernels in a process of its own, once for each cache; `name` says which.
+
+    What is compiled here and now is inlined otherwise than what is loaded, so that results differ in their last bits.
+    If everybody loads, a run is the same to the bit in each process, and goes on so in the next one. Where it cannot be
+    done, kernels are compiled when they are called, as ever.
+    """
+    done = Path(numba.config.CACHE_DIR) / f"{name}-{_good_for()}.compiled"  # type: ignore[attr-defined]
+    if done.exists() or os.environ.get(APART):
+        return
+    path = os.pathsep.join([str(_sources()), *filter(None, [os.environ.get("PYTHONPATH")])])
+    environment = os.environ | {"PYTHONPATH": path, APART: "1"}
+    ended = subprocess.run([sys.executable, "-c", statement], env=environment, check=False)
+    if ended.returncode == 0:
+        with suppress(OSError):
+            done.touch()
+
+
+def _sources() -> Path:
+    """The folder from which this solver is imported."""
+    return Path(__file__).absolute().parent.parent
+
+
+@cache
+def _good_for() -> str:
+    """A digest of all by which numba tells whether a kernel in a cache is the one that is called: the code and its
+    place, numba's and Python's versions, the CPU."""
+    cpu = cpu_target.target_context.codegen().magic_tuple()
+    told = (code_digest(), str(_sources()), numba.__version__, sys.version_info[:2], cpu)
+    return hashlib.sha256(repr(told).encode()).hexdigest()[:16]
 
 
 def kernel(function: Function) -> Function:

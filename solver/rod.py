@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import pi
 from typing import NamedTuple
 
@@ -90,10 +90,6 @@ class Rod:
             diameter=width,
             kappa0=kappa0,
         )
-
-    def with_properties(self, **properties: object) -> Rod:
-        """The same rod with some of its properties given directly."""
-        return replace(self, **properties)  # type: ignore[arg-type]
 
 
 class Section(NamedTuple):

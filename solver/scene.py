@@ -190,7 +190,7 @@ class Fluid:
 
 @dataclass(frozen=True)
 class Contact:
-    """Self-contact after eq. (6): rho_c A (k1/(d - D/2)^k2 + (k3/d) d_t |d_t|^k4).
+    """Self-contact after eq. (6): rho_c A (k1/(d - D/2)^k2 - (k3/d) d_t |d_t|^k4).
 
     Between points `spacing` (m) apart along the centreline, nearer than `cutoff` (m), more than
     `skip` (m) of arc apart, each within the other's aperture (full angle `aperture`, rad). `sum`
@@ -283,7 +283,7 @@ class Scene:
     contact: Contact | None = None
     numerics: Numerics = field(default_factory=Numerics)
     topology: bool = True
-    """Whether the frames carry Wr and Lk (O(N^2) each)."""
+    """Whether the frames carry Wr and Lk."""
     analysis: Literal["dynamic", "static"] = "dynamic"
     """"static": a branch of equilibria, with time as the parameter of loads and ends."""
 

@@ -7,6 +7,7 @@ from functools import cache
 from math import pi
 
 from solver.frame import Frame, Statistics
+from solver.kernel import compile_apart
 from solver.measures.accounts import Accounts
 from solver.methods.box.method import BoxMethod
 from solver.methods.method import Method
@@ -81,9 +82,9 @@ class Simulation(Run):
         return replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
 
     def _next_frame(self, output: float) -> Frame | None:
-        if self.t < output:
+        if not self._control.reached(output, self.t):
             self.t = self._advance(self.t, *self._control.step_from(self.t, self._method.step_limit()))
-        if self.t < output:
+        if not self._control.reached(output, self.t):
             return None
         frame = self._accounts.frame(output)
         made = self._accounts.made
@@ -102,6 +103,9 @@ class Simulation(Run):
         """Two tiny steps that find consistent accelerations and forces; return the time they reach."""
         for part in CONSISTENT_STEPS:
             dt = max(min(part * self._scene.numerics.dt_max, 0.1 * self._outputs[0]), self._method.shortest_step)
+            if 2.0 * dt > self._outputs[0]:
+                refusal = f"the first frame comes sooner than two steps of {dt:.3g} s; rho_inf_space bears none shorter"
+                raise RunFailed(Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
             status, iterations = self._method.try_step(0.0, dt, consistent=True)
             self.statistics.newton_iterations += iterations
             if status == CONVERGED:
@@ -134,9 +138,8 @@ class Simulation(Run):
             if self._control.stuck:
                 detail = "the motion is faster than the steps, however short"
                 raise RunFailed(Outcome.STEP_TOO_SMALL, self.t, self.statistics.steps, detail)
-        if self._switches and self._switches[0] <= target + 1e-12:
-            self._switches.pop(0)
-            self._method.switch_ends(target)
+        if self._switches and self._control.reached(self._switches[0], target):
+            self._method.switch_ends(max(self._switches.pop(0), target))
             self._control.restart()
         return target
 
@@ -171,7 +174,7 @@ class Simulation(Run):
 
 
 def warm(method: str = Numerics.method) -> None:
-    """Compile every kernel of a method, or load it from the cache; once per process."""
+    """Load every kernel of a method from the cache, after another process has compiled what is not there; once."""
     _compile(method, touching=True)
     if method == "staggered":
         _compile(method, touching=False)
@@ -179,7 +182,13 @@ def warm(method: str = Numerics.method) -> None:
 
 @cache
 def _compile(method: str, touching: bool) -> None:
-    """Compile a method's kernels by a step of a tiny scene, which turns about one axis where it cannot touch itself."""
+    name = f"{method}-touching" if touching else method
+    compile_apart(name, f"from solver.simulation import exercise; exercise({method!r}, {touching})")
+    exercise(method, touching)
+
+
+def exercise(method: str, touching: bool) -> None:
+    """Call a method's kernels by a step of a tiny scene, which turns about one axis where it cannot touch itself."""
     contact = Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05)
     scene = Scene(
         rod=Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), initial=Initial.straight(), start=End.clamp(), end=End.free(),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from math import ceil
 
 SMALLEST_STEP = 2.0**-22
@@ -20,7 +20,7 @@ class StepControl:
     """Chooses steps that end exactly on every corner and output time."""
 
     def __init__(self, dt_max: float, tolerance: float, order: float, easy: int, shortest: float,
-                 corners: Iterable[float], outputs: Iterable[float]) -> None:  # fmt: skip
+                 corners: Iterable[float], outputs: Sequence[float]) -> None:  # fmt: skip
         """`tolerance`: relative increment aimed at; `order`: power of the step with which it falls; `easy`: iterations
         of an easy step."""
         self._exponent, self._easy = 1.0 / order, easy
@@ -31,11 +31,15 @@ class StepControl:
         self._wanted = self._first
         self._events = sorted(set(corners) | set(outputs))
         self._next = 0
+        self._near = max(1e-9 * min([dt_max, *outputs]), 1e-15 * max(outputs, default=0.0))
+
+    def reached(self, event: float, t: float) -> bool:
+        """Whether an event's time has come at t: a corner and an output of the same time may differ by rounding."""
+        return event <= t + self._near
 
     def step_from(self, t: float, limit: float) -> tuple[float, float]:
         """The next step from t, and where it ends: equal steps up to the next event, each at most `limit`."""
-        tiny = 1e-9 * self._dt_max
-        while self._next < len(self._events) and self._events[self._next] <= t + tiny:
+        while self._next < len(self._events) and self.reached(self._events[self._next], t):
             self._next += 1
         wanted = min(self._wanted, self._dt_max, limit)
         if self._next == len(self._events):

@@ -1,10 +1,9 @@
 """Which pairs of points may touch, and when nobody need look.
 
 Three proofs, each cheaper than the next search: an arc of length l and total curvature K has a chord of at least
-l cos(K/2) (Schur), so while the rod's total curvature is small no pair can be near; neighbouring
-points are at most `longest_spacing` apart, so a search marches by (d - radius) / longest_spacing points;
-and a gap once measured holds until
-somebody has moved by half of it.
+l cos(K/2) (Schur), so while the rod's total curvature is small no pair can be near; neighbouring points are at most
+`longest_spacing` apart, so a search marches by (d - radius) / longest_spacing points; and a gap once measured holds
+until somebody has moved by half of it.
 """
 
 from __future__ import annotations
@@ -71,6 +70,22 @@ def smallest_distance(points: Points, skip: float, enough: float) -> float:
             if d < best:
                 best = d
             b -= max(1, int((d - best) / pitch))
+    return best
+
+
+@kernel
+def smallest_gap(points: Points, skip: float) -> float:
+    """The smallest distance (m) of the surfaces at two points more than `skip` of arc apart; inf if there are none."""
+    M, pitch, widest = len(points.p), longest_spacing(points), np.max(points.diameter)
+    apart = int(np.ceil(skip / points.spacing))
+    best = np.inf
+    for a in range(M):
+        b = M - 1
+        while b >= a + apart:
+            d = np.sqrt((points.p[a, 0] - points.p[b, 0]) ** 2 + (points.p[a, 1] - points.p[b, 1]) ** 2
+                        + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
+            best = min(best, d - 0.5 * (points.diameter[a] + points.diameter[b]))
+            b -= max(1, int((d - widest - best) / pitch))
     return best
 
 

@@ -11,7 +11,14 @@ from solver.contact.forces import Pressing, Touch
 from solver.contact.law import Law
 from solver.contact.links import links_meet, links_reach
 from solver.contact.points import Points, contact_points, place_points
-from solver.contact.search import Pairs, find_pairs, harmless_bending, largest_displacement, smallest_distance
+from solver.contact.search import (
+    Pairs,
+    find_pairs,
+    harmless_bending,
+    largest_displacement,
+    smallest_distance,
+    smallest_gap,
+)
 from solver.kernel import kernel
 from solver.rod import Array, Rod
 from solver.scene import Contact
@@ -20,7 +27,7 @@ SKIN = (0.1, 1.5)
 """In reaches: how much farther than what must be known a search looks, at least and at the most."""
 FORESEEN = 7.5
 """Steps for which the fastest point may go on within what a search has looked at."""
-LARGEST_APPROACH = 0.35
+LARGEST_PASSAGE = 0.35
 """Part of its distance that a pair may move in a step: too little to leap from where the force is weak to where the
 aperture hides it (points nearer to each other than they are spaced see each other along the rod)."""
 LARGEST_SHIFT = 0.2
@@ -97,7 +104,7 @@ class SelfContact:
         self.step_limit = TIME_TO_TOUCH * time_to_touch
         if speed > 0.0:
             self.step_limit = min(self.step_limit, LARGEST_SHIFT * self._slack / speed)
-        if approach > LARGEST_APPROACH:
+        if approach > LARGEST_PASSAGE:
             return "two parts of the rod could have passed through each other"
         if links_meet(points, pairs):
             return "two parts of the rod slipped into each other between contact points"
@@ -109,8 +116,8 @@ class SelfContact:
             return nan
         points = self.touch.points
         place_points(points, r, velocity)
-        distance = smallest_distance(points, self._law.skip, inf)
-        return float(distance - points.diameter.max()) if distance < inf else nan
+        gap = smallest_gap(points, self._law.skip)
+        return float(gap) if gap < inf else nan
 
     def power(self) -> Array:
         """Power (stages, 2) in W stored in contact, and dissipated by it, at the times of the last evaluation."""
@@ -122,6 +129,7 @@ class SelfContact:
         place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
         self._search(0.0)
         smallest_distance(self.touch.points, self._law.skip, 0.0)
+        smallest_gap(self.touch.points, self._law.skip)
         approaches(self.touch.points, self.touch.pairs)
         links_meet(self.touch.points, self.touch.pairs)
         fastest(self.touch.points)

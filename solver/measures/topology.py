@@ -14,11 +14,14 @@ D = |a||b||c| + (a.b)|c| + (b.c)|a| + (c.a)|b|. Both triangles have the same V, 
 
 from __future__ import annotations
 
-from math import atan2, pi, sqrt
+from math import pi, sqrt
 
 import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
+
+from solver.measures.shortening import shorten
+from solver.measures.spherical import angle, half_area
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -36,12 +39,12 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
 
     Raises ValueError for another shape or a zero tangent; NaN in gives NaN out.
     """
-    columns = _columns(r, 2)
     outward_start, outward_end = -_unit(start_tangent), _unit(end_tangent)
-    quarter = _segment_pairs(columns, False)
+    columns, quarter = shorten(_columns(r, 2), -outward_start, outward_end)
+    quarter += _segment_pairs(columns, False)
     quarter += _ray(columns, columns[:, -1], outward_end) - _ray(columns, columns[:, 0], outward_start)
     across = columns[:, -1] - columns[:, 0]
-    quarter -= _triangle(across, outward_end, -outward_start)
+    quarter -= half_area(across, outward_end, -outward_start)
     return -quarter / pi
 
 
@@ -67,29 +70,6 @@ def _unit(direction: ArrayLike) -> Array:
 
 
 @njit(cache=True)
-def _triangle(a: Array, b: Array, c: Array) -> float:
-    """Half the signed area of the spherical triangle of directions a, b, c (3,)."""
-    volume = (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        + a[1] * (b[2] * c[0] - b[0] * c[2])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    )
-    la = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
-    lb = sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2])
-    lc = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
-    ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    bc = b[0] * c[0] + b[1] * c[1] + b[2] * c[2]
-    ca = c[0] * a[0] + c[1] * a[1] + c[2] * a[2]
-    return _angle(la * lb * lc + ab * lc + bc * la + ca * lb, volume)
-
-
-@njit(cache=True, inline="always")
-def _angle(x: float, y: float) -> float:
-    """arg(x + i y), but 0 for a pair in one plane, whose area is none wherever its corners lie."""
-    return 0.0 if y == 0.0 else atan2(y, x)
-
-
-@njit(cache=True)
 def _ray(r: Array, origin: Array, direction: Array) -> float:
     """Half the signed area of all segments of `r` (3, n) with the ray from one of its ends.
 
@@ -100,7 +80,7 @@ def _ray(r: Array, origin: Array, direction: Array) -> float:
     for i in range(r.shape[1] - 1):
         a, d = origin - r[:, i], origin - r[:, i + 1]
         if a.any() and d.any():
-            total += _triangle(a, direction, d)
+            total += half_area(a, direction, d)
     return total
 
 
@@ -119,8 +99,9 @@ def _pair(start: Vector, end: Vector, first: Vector, last: Vector, other: float,
     """x, y with arg(x + i y) = half the signed area of two segments (see the module's text).
 
     From `start` to `end`, and from `first` to `last`, whose length's square is `other`; `a`, `b`, `c`, `d` the lengths
-    of the four vectors. D is taken from the lengths, by 2 a . b = a^2 + b^2 - |a - b|^2: all its terms are of the size
-    of D itself. V is taken from the segments' vectors, so that it keeps its digits when the four are nearly parallel.
+    of the four vectors. D is taken from the lengths, by 2 a . b = a^2 + b^2 - |a - b|^2, which loses digits only where
+    the two are nearer to each other than they are long, as many as that makes. V is taken from the segments' vectors,
+    so that it keeps its digits when the four are nearly parallel.
     """
     ax, ay, az = first[0] - start[0], first[1] - start[1], first[2] - start[2]
     cx, cy, cz = last[0] - end[0], last[1] - end[1], last[2] - end[2]
@@ -171,7 +152,7 @@ def _near_pairs(r: Array, i: int, last: int, squares: Array, from_i: Array, from
         p, q = _pair(start, end, (r[0, j], r[1, j], r[2, j]), (r[0, j + 1], r[1, j + 1], r[2, j + 1]),
                      squares[j], from_i[j], from_i[j + 1], from_next[j + 1], from_next[j])  # fmt: skip
         if not abs(q) < SMALL_TANGENT * p:
-            total += _angle(p, q)
+            total += angle(p, q)
     return total
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -24,7 +25,7 @@ ROD = Rod.circular(LENGTH, DIAMETER, YOUNGS_MODULUS, SHEAR_MODULUS, DENSITY)
 
 BEND = 2.0
 """Angle (rad) by which the arc turns."""
-ARC_ROD = ROD.with_properties(kappa0=(Curve.constant(0.0), Curve.constant(BEND / LENGTH), Curve.constant(0.0)))
+ARC_ROD = replace(ROD, kappa0=(Curve.constant(0.0), Curve.constant(BEND / LENGTH), Curve.constant(0.0)))
 """The same rod, free of stress as an arc: unlike a straight one it may be held or moved at both ends."""
 
 

@@ -82,6 +82,39 @@ def test_the_state_of_a_frame_is_that_of_its_time() -> None:
     assert_allclose(first.r[0], 0.0, atol=1e-15)
 
 
+@pytest.mark.parametrize("corner", [0.3, 3 * 0.1, 0.3 + 1e-12, 0.7])
+@pytest.mark.parametrize("dt_max", [0.05, 0.5])
+@pytest.mark.parametrize("method", ["box", "staggered"])
+def test_a_frame_is_of_its_time_where_that_differs_from_a_corner_by_rounding(
+    corner: float, dt_max: float, method: Literal["box", "staggered"]
+) -> None:
+    """3 * 0.1 is the next number after 0.3: a step that ends on one of the two has reached the other one."""
+    bent = Curve.table([0.0, corner, 2.0], [0.0, 1e-12, 0.0])
+    scene = cantilever(
+        initial=Initial.straight(velocity=(0.0, 0.0, 1.0)), start=End.free(), t_end=1.0, output_interval=0.1,
+        points=(PointLoad(LENGTH, (bent, Curve.constant(0.0), Curve.constant(0.0))),),
+        numerics=Numerics(method=method, intervals=10, dt_max=dt_max),
+    )  # fmt: skip
+    frames = list(simulate(scene))
+    assert_allclose([frame.r[0, 2] for frame in frames], [frame.t for frame in frames], atol=1e-9)
+
+
+def test_a_frame_sooner_than_the_shortest_steps_is_refused_by_name() -> None:
+    numerics = replace(fixed_steps(10, 0.1), rho_inf_space=0.5)
+    with pytest.raises(RunFailed, match=r"no_consistent_start.*the first frame comes sooner"):
+        list(simulate(cantilever(numerics=numerics, t_end=1e-4, output_interval=1e-4)))
+
+
+@pytest.mark.parametrize("since", [0.3, 3 * 0.1])
+@pytest.mark.parametrize("interval", [0.1, 0.3])
+def test_an_end_is_switched_though_a_frame_is_due_an_instant_before(since: float, interval: float) -> None:
+    let_go = (Condition("rate", Curve.constant(0.0)), Condition("load", Curve.constant(0.0), since=since))
+    hold = End((let_go,) * 3, (let_go,) * 3)
+    scene = cantilever(start=hold, gravity=(0.0, 0.0, -1.0), t_end=1.3, output_interval=interval)
+    *_, frame = simulate(scene)
+    assert frame.r[0, 2] == pytest.approx(-0.5 * (1.3 - since) ** 2, rel=0.02)
+
+
 def test_the_first_frame_of_a_spinning_rod_is_its_start_with_the_force_that_holds_it_together() -> None:
     spin = 3.0
     initial = Initial.straight(velocity=(0.5, 0.0, -1.0), angular_velocity=(0.0, spin, 0.0))
@@ -241,7 +274,7 @@ def wavy(s: Array) -> Array:
 def test_a_rod_of_uneven_curvature_that_is_free_of_stress_stays_at_rest() -> None:
     """Its curvature is known from a spline eight times finer than the nodes: to kappa'' (ds/8)^2 / 12."""
     intervals = 20
-    rod = ROD.with_properties(kappa0=(ZERO, wavy_curvature, ZERO))
+    rod = replace(ROD, kappa0=(ZERO, wavy_curvature, ZERO))
     scene = cantilever(rod=rod, initial=Initial(wavy), numerics=fixed_steps(intervals, 0.05), damping=2.0)
     unknown = 18 * WAVY * (LENGTH / intervals / 8) ** 2 / 12
     first, *frames = list(simulate(scene))

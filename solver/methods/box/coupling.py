@@ -11,7 +11,7 @@ from solver.contact.krylov import Krylov, begin, combine, follow, set_out, unsol
 from solver.contact.members import Members
 from solver.kernel import inlined, kernel
 from solver.methods.box.elimination import solve
-from solver.methods.box.fields import KAPPA, Linear, Nodes, State, V
+from solver.methods.box.fields import Linear, Nodes, State, V
 from solver.rod import Array
 
 SOLVED = 1e-6
@@ -34,17 +34,6 @@ class Coupling(NamedTuple):
         n = intervals + 1
         moves = np.zeros((n, 3)), np.zeros((n, 3))
         return cls(Krylov.empty(3 * n), np.zeros((intervals, 12)), np.zeros((n, 12)), *moves)
-
-
-@kernel
-def total_bending(Y: Array, h: float) -> float:
-    """K = int |kappa_bending| ds (rad)."""
-    total = 0.0
-    for j in range(len(Y) - 1):
-        one = 0.5 * (Y[j, KAPPA] + Y[j + 1, KAPPA])
-        two = 0.5 * (Y[j, KAPPA + 1] + Y[j + 1, KAPPA + 1])
-        total += np.sqrt(one * one + two * two)
-    return h * total
 
 
 @inlined

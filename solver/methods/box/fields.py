@@ -16,7 +16,6 @@ from solver.rod import Array
 
 V, OMEGA, KAPPA, F = 0, 3, 6, 9
 """First column of each unknown in Y (n, 12)."""
-UNKNOWNS = 12
 
 
 class State(NamedTuple):
@@ -36,11 +35,6 @@ class State(NamedTuple):
     def empty(cls, n: int) -> State:
         """A state of zeros with n nodes."""
         return cls(np.zeros((n, 12)), np.zeros((n, 9)), np.zeros((n, 15)), np.zeros((n, 3)), np.zeros((n, 4)))
-
-    def copy_to(self, other: State) -> None:
-        """Overwrite `other` with this state."""
-        for mine, theirs in zip(self, other, strict=True):
-            theirs[...] = mine
 
 
 class Nodes(NamedTuple):

@@ -13,13 +13,12 @@ from solver.frame import Fields
 from solver.initial import nodes_at_rest
 from solver.loads.applied import AppliedLoads, Loads
 from solver.measures.energies import Energies
-from solver.methods.box.coupling import total_bending
 from solver.methods.box.energies import energies, powers
 from solver.methods.box.fields import KAPPA, OMEGA, F, State, V
 from solver.methods.box.generalized_alpha import BACKWARD_EULER, Scheme, rescale_aux
 from solver.methods.box.newton import EndValues, Scales, Work, step
 from solver.methods.box.space import SpaceScheme
-from solver.methods.box.trial import Trial, measure_trial
+from solver.methods.box.trial import Measured, measure_trial, total_bending
 from solver.rod import Array, Section, sample
 from solver.rotation import relative_rotation, rotate_back, tangents_of
 from solver.scene import Initial, Scene
@@ -56,7 +55,8 @@ class BoxMethod:
         self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
                               numerics.linear_solver == "shooting")  # fmt: skip
         self._gain = STRETCH_FEEDBACK / scene.t_end
-        self._measured = Trial(0.0, 0.0, 0.0, 0.0)
+        self._measured = Measured(0.0, 0.0, 0.0, 0.0, 0.0)
+        self._bending = total_bending(self.state.Y, self.h)
         self._stretch, self._stretch_before, self._trial_stretch = np.zeros((3, numerics.intervals, 3))
         self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space),
                                scene.contact is not None)  # fmt: skip
@@ -83,12 +83,12 @@ class BoxMethod:
         self.loads = self.applied.at(t + dt)
         self.work.feedback[:] = gain * (self._stretch + ahead * (self._stretch - self._stretch_before))
         self._guess(dt, consistent)
-        self.contact.prepare(*self._centreline(self.state), dt)
+        self.contact.prepare(self._bending, self.state.r, self.state.Y, dt)
         status, iterations = step(
             self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt),
             self._scales, self.contact.touch, self.work,
         )  # fmt: skip
-        self._measured = Trial(*measure_trial(self.state, self.trial, self.h, self._trial_stretch))
+        self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> None:
@@ -100,7 +100,7 @@ class BoxMethod:
             shift = new.r[node : node + 1] - old.r[node : node + 1]
             turned = self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0
             end.follow(shift[0] if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift)[0], turned)
-        self.state, self.trial, self._taken_dt = new, old, dt
+        self.state, self.trial, self._taken_dt, self._bending = new, old, dt, self._measured.bending
         self._stretch_before, self._stretch, self._trial_stretch = (
             self._stretch, self._trial_stretch, self._stretch_before
         )  # fmt: skip
@@ -131,7 +131,7 @@ class BoxMethod:
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
         trial = self.trial
-        return self.contact.refusal(total_bending(trial.Y, self.h), lambda: (trial.r, trial.Y))
+        return self.contact.refusal(self._measured.bending, lambda: (trial.r, trial.Y))
 
     def step_limit(self) -> float:
         """The longest next step (s) that contact allows."""
@@ -172,7 +172,7 @@ class BoxMethod:
 
     def smallest_gap(self) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
-        return self.contact.smallest_gap(*self._centreline(self.state))
+        return self.contact.smallest_gap(self._bending, self.state.r, self.state.Y)
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""
@@ -182,9 +182,6 @@ class BoxMethod:
         """Have every kernel compiled that a run may need."""
         self.contact.compile()
         rescale_aux(self.state, 1.0)
-
-    def _centreline(self, state: State) -> tuple[float, Array, Array]:
-        return total_bending(state.Y, self.h), state.r, state.Y
 
     def _guess(self, dt: float, consistent: bool) -> None:
         self.trial.Y[:] = self.state.Y

@@ -42,7 +42,7 @@ class EndValues(NamedTuple):
 
 
 class Scales(NamedTuple):
-    """Natural units: length L (m), stiffness EJ (N m^2); and the largest growth that shooting may have."""
+    """Natural units: length L (m), stiffness EJ (N m^2); and whether the linear system is solved by shooting."""
 
     length: float
     stiffness: float

@@ -12,18 +12,20 @@ from solver.rod import Array
 from solver.rotation import tangent_of
 
 
-class Trial(NamedTuple):
+class Measured(NamedTuple):
     """The largest strain of an interval, rotation (rad) within one, change of a component of dV/dt (m/s^2) and
-    displacement along an axis (m) in the step. A number that is not finite makes them all NaN."""
+    displacement along an axis (m) in the step; and K = int |kappa_bending| ds (rad). A number that is not finite makes
+    them all NaN."""
 
     strain: float
     turn: float
     acceleration: float
     motion: float
+    bending: float
 
 
 @kernel
-def measure_trial(old: State, new: State, h: float, stretch: Array) -> Trial:
+def measure_trial(old: State, new: State, h: float, stretch: Array) -> Measured:
     """Measure the step from `old` to `new`; write what it has lost of inextensibility into `stretch` (N, 3)."""
     strain = measure_stretch(new, h, stretch)
     turn, acceleration, motion, poison = 0.0, 0.0, 0.0, 0.0
@@ -36,7 +38,20 @@ def measure_trial(old: State, new: State, h: float, stretch: Array) -> Trial:
             poison += 0.0 * (change + moved)
         turn = max(turn, square)
         poison += 0.0 * square
-    return Trial(strain + poison, h * np.sqrt(turn) + poison, acceleration + poison, motion + poison)
+    bending = total_bending(new.Y, h)
+    return Measured(strain + poison, h * np.sqrt(turn) + poison, acceleration + poison, motion + poison,
+                    bending + poison)  # fmt: skip
+
+
+@kernel
+def total_bending(Y: Array, h: float) -> float:
+    """K = int |kappa_bending| ds (rad)."""
+    total = 0.0
+    for j in range(len(Y) - 1):
+        one = 0.5 * (Y[j, KAPPA] + Y[j + 1, KAPPA])
+        two = 0.5 * (Y[j, KAPPA + 1] + Y[j + 1, KAPPA + 1])
+        total += np.sqrt(one * one + two * two)
+    return h * total
 
 
 @kernel

@@ -53,11 +53,6 @@ class State(NamedTuple):
         n = intervals + 2
         return cls(np.zeros((n, 4)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((3, 3)), np.zeros((n - 1, 3)))
 
-    def copy_to(self, other: State) -> None:
-        """Overwrite `other` with this state."""
-        for mine, theirs in zip(self, other, strict=True):
-            theirs[...] = mine
-
 
 class Stages(NamedTuple):
     """The three stages of a step, stage first.

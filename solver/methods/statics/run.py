@@ -7,16 +7,17 @@ from math import nan, pi
 import numpy as np
 
 from solver.frame import Fields, Frame, Statistics
+from solver.kernel import compile_apart
 from solver.measures.topology import writhe
 from solver.methods.staggered.energies import energies, twist
 from solver.methods.staggered.method import orientations_at_nodes
 from solver.methods.statics.equations import Equations, Point
 from solver.methods.statics.path import Path
 from solver.methods.statics.stability import negative_modes
-from solver.rod import Array
+from solver.rod import Array, Rod
 from solver.rotation import rotate, rotate_back
 from solver.run import Run
-from solver.scene import Scene
+from solver.scene import End, Initial, Numerics, Scene
 
 
 class Equilibria(Run):
@@ -28,6 +29,7 @@ class Equilibria(Run):
 
     def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
         super().__init__(scene, statistics)
+        compile_apart("statics", "from solver.methods.statics.run import exercise; exercise()")
         self._equations = Equations(scene)
         self._path = Path(self._equations)
         self._Lk = self._turns_at_start()
@@ -119,3 +121,13 @@ class Equilibria(Run):
             kappa=stages.bend[0] / equations.chain.span[:, None] - equations.offset, q=stages.moment[0].copy(),
             r=np.vstack([point.base, tips]), orientation=orientation,
         )  # fmt: skip
+
+
+def exercise() -> None:
+    """Call every kernel of a static analysis, for a tiny scene."""
+    rod, numerics = Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), Numerics(intervals=4)
+    scene = Scene(rod=rod, initial=Initial.straight(), start=End.clamp(), end=End.free(), t_end=1.0,
+                  output_interval=1.0, numerics=numerics, analysis="static")  # fmt: skip
+    analysis = Equilibria(scene)
+    analysis.warm()
+    analysis._frame(0.0)

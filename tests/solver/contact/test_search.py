@@ -18,9 +18,10 @@ from solver.contact.search import (
     harmless_bending,
     largest_displacement,
     smallest_distance,
+    smallest_gap,
 )
-from solver.methods.box.coupling import total_bending
 from solver.methods.box.fields import KAPPA
+from solver.methods.box.trial import total_bending
 from solver.rod import Array, Rod
 from solver.scene import Contact
 
@@ -90,6 +91,15 @@ def test_the_pairs_found_are_those_of_brute_force(seed: int, amplitude: float) -
     every = distances(points)
     for radius in (0.03, 1.5 * min(every.values())):
         assert listed(found_by(points, radius)) == {pair for pair, d in every.items() if d < radius}
+
+
+@given(seeds, wildness)
+@settings(max_examples=40, deadline=None)
+def test_the_smallest_gap_is_that_of_brute_force_on_a_rod_whose_thickness_varies(seed: int, amplitude: float) -> None:
+    points = points_of(tangents(S, seed, amplitude))
+    points.diameter[:] = 0.03 * np.random.default_rng(seed).uniform(0.1, 1.0, len(points.p))
+    gaps = [d - 0.5 * (points.diameter[a] + points.diameter[b]) for (a, b), d in distances(points).items()]
+    assert smallest_gap(points, SKIP) == pytest.approx(min(gaps), rel=1e-12)
 
 
 def test_a_distance_that_is_enough_is_returned_if_none_is_smaller() -> None:

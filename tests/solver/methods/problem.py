@@ -13,13 +13,14 @@ from solver.curve import Curve
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.methods.box.augmented import wide_panel, wide_start
-from solver.methods.box.coupling import _move, total_bending
+from solver.methods.box.coupling import _move
 from solver.methods.box.fields import State
 from solver.methods.box.generalized_alpha import Scheme, history
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.method import _initial_state
 from solver.methods.box.newton import EndValues, Scales, Work, assemble, set_scales
 from solver.methods.box.space import SpaceScheme
+from solver.methods.box.trial import total_bending
 from solver.rod import Array, Section, sample
 from solver.scene import End
 

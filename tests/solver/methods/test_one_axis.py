@@ -189,9 +189,9 @@ REFUSED = {
     "contact": replace(CANTILEVER, contact=TOUCHES),
     "a centreline out of the plane": replace(CANTILEVER, initial=Initial(lambda s: arc(s) @ SKEW.T)),
     "no principal axis across the plane": replace(
-        CANTILEVER, initial=Initial.straight(a1=(1.0, 0.1, 0.0)), rod=ROD.with_properties(stiffness=UNEQUAL)),
+        CANTILEVER, initial=Initial.straight(a1=(1.0, 0.1, 0.0)), rod=replace(ROD, stiffness=UNEQUAL)),
     "twist in a plane": replace(CANTILEVER, initial=spun().initial),
-    "natural curvature out of the plane": replace(CANTILEVER, rod=ROD.with_properties(kappa0=CURVED)),
+    "natural curvature out of the plane": replace(CANTILEVER, rod=replace(ROD, kappa0=CURVED)),
     "weight out of the plane": replace(CANTILEVER, gravity=(1.0, 1e-6, -9.81)),
     "a current out of the plane": replace(CANTILEVER, fluid=replace(WATER, current=OUT_OF_PLANE)),
     "velocity out of the plane": replace(CANTILEVER, initial=Initial.straight(velocity=OUT_OF_PLANE)),

@@ -123,7 +123,7 @@ def let_go(twist: float, second: float, torsional: float, intervals: int, initia
     """A rod of EJ2 / EJ1 = `second` and GJ / EJ1 = `torsional`, straight when at rest, twisted (rad) and let go."""
     stiffness = (Curve.constant(EJ), Curve.constant(second * EJ), Curve.constant(torsional * EJ))
     start = replace(initial, twist=Curve.table([0.0, LENGTH], [0.0, twist]))
-    return Scene(ROD.with_properties(stiffness=stiffness), start, End.free(), End.free(), 0.02, 0.01,
+    return Scene(replace(ROD, stiffness=stiffness), start, End.free(), End.free(), 0.02, 0.01,
                  numerics=staggered(intervals, 1.0, 0.01))  # fmt: skip
 
 

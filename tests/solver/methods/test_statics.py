@@ -117,7 +117,7 @@ def test_damped_motion_comes_to_rest_at_the_equilibrium(loads: dict[str, object]
 
 RISE = 0.6
 """Angle (rad) through which half an arch turns: it rises along e1 to its crown."""
-ARCH_ROD = ROD.with_properties(kappa0=(ZERO, Curve.constant(-RISE / LENGTH), ZERO))
+ARCH_ROD = replace(ROD, kappa0=(ZERO, Curve.constant(-RISE / LENGTH), ZERO))
 
 
 def half_arch(s: Array) -> Array:
@@ -218,7 +218,7 @@ def test_a_rod_pulled_beyond_its_length_ends_by_name() -> None:
 
 
 def test_a_branch_that_leads_back_past_the_start_ends_by_name() -> None:
-    high = ROD.with_properties(kappa0=(ZERO, Curve.constant(-RISE / LENGTH), ZERO))
+    high = replace(ROD, kappa0=(ZERO, Curve.constant(-RISE / LENGTH), ZERO))
     scene = arch(Condition("load", ramp(-10.0 * EJ, 10.0)), 40.0, 0.25)
     lifted = replace(scene, rod=high, points=(PointLoad(LENGTH, constant_vector((-2.0 * EJ, 0.0, 0.0))),))
     with pytest.raises(RunFailed) as failure:

@@ -1,0 +1,131 @@
+"""A polygon of fewer vertices with the same writhe, but for an area that is known.
+
+Let a curve change without passing through itself. Then its writhe changes by the area that its tangent indicatrix, the
+path of its unit tangents on the sphere, sweeps: by area / 2 pi (Fuller, PNAS 75 (1978) 3557). A polygon's indicatrix
+runs along great circles from the tangent of each segment to that of the next. So the segments t_1 ... t_m of a block
+may give way to their chord, of the direction c between the tangents t_0 before and t_m+1 after it, at the price of the
+spherical triangles (c, t_i, t_i+1): O(m), where their pairs with all others are O(m n).
+
+This asks that nothing passes through the block's convex hull on the way. That is proved
+
+- for the neighbouring blocks, if all tangents of the three are within a right angle of each other: then a plane across
+  the joint separates their hulls, no triangle is large, and the block runs forward along its chord without meeting
+  itself;
+- for every other block, if the spheres around both are apart.
+
+A ray is the neighbour of the block that it touches, and another one to the rest. A block for which the proof fails
+stays as it is: its pairs are summed up as ever.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from solver.measures.spherical import half_area
+
+Array = NDArray[np.float64]
+
+BLOCK = 8
+RIGHT_ANGLE = sqrt(2.0)
+"""The chord of a right angle on the unit sphere. Chords that sum up to less belong to angles that do so, too: as far as
+there an arc is at most pi / 2 sqrt(2) times as long as its chord."""
+
+
+@njit(cache=True, error_model="numpy")
+def shorten(r: Array, first: Array, last: Array) -> tuple[Array, float]:
+    """The polygon `r` (3, n) without the inner vertices of its smooth blocks, and what its pairs add up to the less
+    (half areas: Wr = -sum / pi).
+
+    It is continued by rays that arrive along the unit vector `first` and leave along `last` (3,).
+    """
+    t = _tangents(r, first, last)
+    smooth, alone = _smooth(t), _alone(r, first, last)
+    shorter, many, area, before = np.empty(r.shape), 1, 0.0, t[0]
+    shorter[:, 0] = r[:, 0]
+    for block in range(len(smooth)):
+        start, end = BLOCK * block, min(BLOCK * (block + 1), r.shape[1] - 1)
+        if smooth[block] and alone[block]:
+            chord = r[:, end] - r[:, start]
+            chord /= np.sqrt(np.sum(chord * chord))
+            area += half_area(before, chord, t[start + 1])
+            for i in range(start + 1, end + 1):
+                area += half_area(t[i], chord, t[i + 1])
+            before = chord
+            start = end - 1
+        else:
+            before = t[end]
+        shorter[:, many : many + end - start] = r[:, start + 1 : end + 1]
+        many += end - start
+    return shorter[:, :many].copy(), area
+
+
+@njit(cache=True, error_model="numpy")
+def _tangents(r: Array, first: Array, last: Array) -> Array:
+    """Unit tangents (n + 1, 3) of the ray, the n - 1 segments and the other ray."""
+    t = np.empty((r.shape[1] + 1, 3))
+    t[0], t[-1] = first, last
+    for i in range(r.shape[1] - 1):
+        x, y, z = r[0, i + 1] - r[0, i], r[1, i + 1] - r[1, i], r[2, i + 1] - r[2, i]
+        length = sqrt(x * x + y * y + z * z)
+        t[i + 1, 0], t[i + 1, 1], t[i + 1, 2] = x / length, y / length, z / length
+    return t
+
+
+@njit(cache=True, error_model="numpy")
+def _smooth(t: Array) -> NDArray[np.bool_]:
+    """Of each block, whether its tangents and those of its neighbours turn by less than a right angle in all."""
+    turned, segments = np.zeros(len(t)), len(t) - 2
+    for i in range(1, len(t)):
+        x, y, z = t[i, 0] - t[i - 1, 0], t[i, 1] - t[i - 1, 1], t[i, 2] - t[i - 1, 2]
+        turned[i] = turned[i - 1] + sqrt(x * x + y * y + z * z)
+    smooth = np.empty((segments + BLOCK - 1) // BLOCK, np.bool_)
+    for block in range(len(smooth)):
+        start, end = max(BLOCK * (block - 1) + 1, 0), min(BLOCK * (block + 2), segments + 1)
+        smooth[block] = turned[end] - turned[start] < RIGHT_ANGLE
+    return smooth
+
+
+@njit(cache=True, error_model="numpy")
+def _spheres(r: Array) -> tuple[Array, Array]:
+    """Centres (blocks, 3) and radii (blocks,) of spheres, each around all vertices of a block."""
+    blocks = (r.shape[1] + BLOCK - 2) // BLOCK
+    centres, radii = np.empty((blocks, 3)), np.zeros(blocks)
+    for block in range(blocks):
+        start, end = BLOCK * block, min(BLOCK * (block + 1), r.shape[1] - 1)
+        x, y, z = 0.5 * (r[0, start] + r[0, end]), 0.5 * (r[1, start] + r[1, end]), 0.5 * (r[2, start] + r[2, end])
+        for i in range(start, end + 1):
+            radii[block] = max(radii[block], sqrt((r[0, i] - x) ** 2 + (r[1, i] - y) ** 2 + (r[2, i] - z) ** 2))
+        centres[block, 0], centres[block, 1], centres[block, 2] = x, y, z
+    return centres, radii
+
+
+@njit(cache=True, error_model="numpy")
+def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
+    """Of each block, whether the sphere around it is apart from those of all but its neighbours, and from the rays."""
+    centres, radii = _spheres(r)
+    blocks = len(radii)
+    alone = np.ones(blocks, np.bool_)
+    for one in range(blocks):
+        if one > 0 and not _ray_apart(centres[one], radii[one], r[:, 0], -first):
+            alone[one] = False
+        if one < blocks - 1 and not _ray_apart(centres[one], radii[one], r[:, -1], last):
+            alone[one] = False
+        for other in range(one + 2, blocks):
+            apart = 0.0
+            for k in range(3):
+                apart += (centres[one, k] - centres[other, k]) ** 2
+            if not apart > (radii[one] + radii[other]) ** 2:
+                alone[one] = alone[other] = False
+    return alone
+
+
+@njit(cache=True, error_model="numpy")
+def _ray_apart(centre: Array, radius: float, origin: Array, direction: Array) -> bool:
+    """Whether a ray passes a sphere by."""
+    away = centre - origin
+    away -= max(np.sum(away * direction), 0.0) * direction
+    return bool(np.sum(away * away) > radius * radius)

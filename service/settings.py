@@ -154,7 +154,7 @@ def from_environment(environment: Mapping[str, str] = os.environ) -> Settings:
 
 
 def _told(fault: Any, names: Mapping[str, str]) -> str:
-    """One fault. The value of an address is not told: it may hold a password."""
+    """One fault. The value of an address is not told, nor of what is no setting: it may hold a password."""
     name = str(fault["loc"][0])
-    value = "" if name in ("database", "broker") else f", got {fault['input']!r}"
+    value = "" if name in ("database", "broker") or name not in names else f", got {fault['input']!r}"
     return f"{names.get(name, name)}: {fault['msg']}{value}"

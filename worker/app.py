@@ -25,8 +25,11 @@ main_process = os.getpid()
 
 @cache
 def database() -> Database:
-    """This process's own connections to the registry: none may cross a fork."""
-    return Database(settings.database_url)
+    """The registry. It is opened before the first fork, so that each child has a schema that suits it, also when
+    another host has upgraded the tables since; connections it has none then, for they must not cross a fork."""
+    opened = Database(settings.database_url)
+    opened.close()
+    return opened
 
 
 @app.task(name=TASK)
@@ -43,9 +46,10 @@ def log_as_json(**_: Any) -> None:
 
 @worker_init.connect
 def prepare(**_: Any) -> None:
-    """Before the first fork: directories, and the compiled kernels, which the children then share."""
+    """Before the first fork: directories, the compiled kernels and the registry, which the children then share."""
     settings.make_directories()
     solver.warm()
+    database()  # may fail; then each child tries
 
 
 @worker_process_init.connect

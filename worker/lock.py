@@ -5,7 +5,7 @@ from __future__ import annotations
 import fcntl
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,8 +20,12 @@ class JobLock:
     left: int
 
     def mark(self, steps: int) -> None:
-        """Tell the next holder how far this one came, should it die: some microseconds, no way to the disk."""
-        os.pwrite(self.file, b"%*d" % (WIDTH, steps), 0)
+        """Tell the next holder how far this one came, should it die: some microseconds, no way to the disk.
+
+        Where there is no room for it less is known of what was lost; no run ends for that.
+        """
+        with suppress(OSError):
+            os.pwrite(self.file, b"%*d" % (WIDTH, steps), 0)
 
 
 @contextmanager

@@ -30,6 +30,7 @@ TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "cases", "description": "What can be simulated, and what it would cost."},
         {"name": "OGC API Processes", "description": "The same jobs as one process of OGC API Processes, Part 1."},
         {"name": "service", "description": "Whether it lives, and how it does."}]
+ROUTERS = [part.router for part in (submitting, jobs, events, datasets, cases, processes, watching, front)]
 BURST = 10.0  # s of an owner's rate that may be spent at once
 
 
@@ -62,8 +63,8 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
     hosts = {name.strip().lower() for name in settings.hosts.split(",")} - {""}
     app.add_middleware(Gate, keyed=keyed, hosts=hosts)
     problems.install(app)
-    for part in (submitting, jobs, events, datasets, cases, processes, watching, front):
-        app.include_router(part.router)
+    for router in ROUTERS:
+        app.include_router(router)
     return app
 
 

@@ -19,6 +19,26 @@ WITH_A_KEY = (401, 403, 429)
 REF = "#/components/schemas/{model}"
 NOT_OURS = ("HTTPValidationError", "ValidationError")
 
+PARAMETERS = {
+    "job_id": "The id that the submission was answered with",
+    "process_id": "`simulate`: there is no other",
+    "name": "A shipped case",
+    "Idempotency-Key": "The same key and body give the same job for a day, also if the first answer was lost",
+    "Last-Event-ID": "The version of the job that was seen last: what came after it is sent",
+    "limit": "At most so many on a page",
+    "after": "Only what is older than this id: pages lead on with it",
+    "status": "Only jobs of this status",
+    "label": "Only jobs with exactly this label",
+    "variables": "Names of variables, with commas between them",
+    "t_min": "Frames from this time on, s",
+    "t_max": "Frames up to this time, s",
+    "s_min": "Nodes from this arclength on, m",
+    "s_max": "Nodes up to this arclength, m",
+    "time_stride": "Each so many-th of these frames",
+    "s_stride": "Each so many-th of these nodes",
+}
+"""What a parameter means wherever it occurs, unless its route says more."""
+
 NOT_MODIFIED: dict[int | str, dict[str, Any]] = {304: {"description": "Unchanged since the ETag in If-None-Match"}}
 
 SUMMARY = """\
@@ -84,7 +104,9 @@ def describe(app: FastAPI) -> dict[str, Any]:
 
 
 def _complete(operation: dict[str, Any]) -> None:
-    """Add the problems that the gate and the scopes make, and those of faulty parameters."""
+    """Add what parameters mean, the problems that the gate and the scopes make, and those of faulty parameters."""
+    for parameter in operation.get("parameters", []):
+        parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))
     answers = operation["responses"]
     if "422" in answers:
         answers |= _named(problems(422))

@@ -74,7 +74,7 @@ Jobs = Annotated[Registry, Depends(_seen)]
 """The jobs that the caller may see, for reading."""
 
 OwnJobs = Annotated[Registry, Depends(_own)]
-"""The same, for changing."""
+"""The same, for changing: an operator who may submit may cancel what others have submitted."""
 
 
 def matches(request: Request, etag: str) -> bool:

@@ -85,7 +85,8 @@ class _Told(Collector):
         yield from (now, ended)
         yield GaugeMetricFamily("hockle_queue_age_seconds", "Age of the oldest waiting job", told.queue_age)
         yield GaugeMetricFamily("hockle_lease_age_seconds", "Since the most silent worker renewed", told.lease_age)
-        yield CounterMetricFamily("hockle_steps", "Steps of the solver that count", told.steps)
+        taken = told.steps + told.steps_redone  # the first alone falls where a run goes back to its checkpoint
+        yield CounterMetricFamily("hockle_steps", "Steps of the solver, those computed again included", taken)
         yield CounterMetricFamily("hockle_steps_redone", "Steps lost and computed again", told.steps_redone)
         yield _histogram("hockle_drift_topology_turns", "|Tw + Wr - Lk| at the end of a run", told.drift_topology)
         yield _histogram("hockle_drift_energy_ratio", "Energy balance at the end over the energy that changed its form",

@@ -14,15 +14,13 @@ from service.cases.quantities import Positive, Spec
 from service.cases.rod import RodSpec
 from service.cases.surroundings import ContactSpec, FluidSpec, LoadsSpec
 from solver import Numerics
+from solver.pilot import FIRST_INTERVALS
 
 FieldName = Literal["v", "omega", "f", "kappa", "q", "r", "orientation"]
 ALL_FIELDS: tuple[FieldName, ...] = ("v", "omega", "f", "kappa", "q", "r", "orientation")
 
 MOST_NODE_FRAMES = 10_000_000
 """Nodes times stored frames: about 1.8 GB before compression."""
-
-LEAST_INTERVALS = 32
-"""As many a tolerance must be allowed to choose."""
 
 MOST_STEPS = 10_000_000
 """Steps at dt_max; the run may need more, where it has to refine."""
@@ -157,7 +155,7 @@ class CaseSpec(Spec):
     def _check_size(self) -> Self:
         if self.output.interval > self.t_end:
             raise refusal("output/interval", self.output.interval, f"must be <= t_end ({self.t_end} s)")
-        stored = self.frames * ((self.numerics.intervals or LEAST_INTERVALS) + 1)
+        stored = self.frames * ((self.numerics.intervals or FIRST_INTERVALS) + 1)
         if stored > MOST_NODE_FRAMES:
             rule = f"must leave at most {MOST_NODE_FRAMES:,} nodes times frames, not {stored:,}"
             raise refusal("output/interval", self.output.interval, rule)

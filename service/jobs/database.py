@@ -22,6 +22,14 @@ from service.jobs.turn import turn
 BUSY = 20.0
 """Seconds for which a write waits for another one, or for a connection."""
 
+FOUND_DEAD = {
+    "connect_timeout": 5, "keepalives_idle": 10, "keepalives_interval": 5, "keepalives_count": 3,
+    "tcp_user_timeout": 15_000,  # ms
+    "options": "-c tcp_keepalives_idle=10 -c tcp_keepalives_interval=5 -c tcp_keepalives_count=3",
+}  # fmt: skip
+"""Of connections to PostgreSQL: each side finds within some 25 s that the other's host is gone, not within hours. Else
+nobody would reconcile, since the lock of a dead leader lies in its session, and no request would be answered."""
+
 PRIMARY = 0xFF
 """The part of SQLite's error codes that says what, not why: another process may also be recovering the log."""
 
@@ -102,7 +110,7 @@ def _engine(url: str, reading: bool = False) -> Engine:
     """Reads have connections of their own: to change the level of one costs as much as a read itself."""
     told: dict[str, Any] = {"isolation_level": "AUTOCOMMIT"} if reading else {}
     if not url.startswith("sqlite"):
-        return create_engine(url, pool_pre_ping=True, pool_timeout=BUSY, **told)
+        return create_engine(url, connect_args=FOUND_DEAD, pool_pre_ping=True, pool_timeout=BUSY, **told)
     engine = create_engine(url, connect_args={"timeout": BUSY if reading else 0.0}, pool_timeout=BUSY, **told)
     event.listen(engine, "connect", _set_up_sqlite)
     if not reading:

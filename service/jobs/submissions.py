@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import queue
 import threading
 import time
@@ -17,6 +18,7 @@ AT_ONCE = 200
 PAUSE = 0.05  # s between two tellings: in a rush of submissions they would cost as much as these
 
 Waiting = tuple[Submission, "Future[Job]"]
+log = logging.getLogger(__name__)
 
 
 class InFlight(Exception):
@@ -115,5 +117,8 @@ class Submissions:
             while not self._news.empty():
                 if not self._news.get():
                     return
-            self._committed()
+            try:
+                self._committed()
+            except Exception:
+                log.exception("the workers could not be told of new jobs; the reconciler will")
             time.sleep(PAUSE)

@@ -20,7 +20,7 @@ def is_public(address: str) -> bool:
     """Whether an address is of the public internet, and so is what it wraps (IPv4 in IPv6)."""
     ip = ipaddress.ip_address(address.partition("%")[0])
     if isinstance(ip, ipaddress.IPv6Address):
-        if ip in NAT64 or ip.sixtofour is not None or ip.teredo is not None:
+        if ip in NAT64 or ip.sixtofour is not None or ip.teredo is not None or ip.is_site_local:
             return False
         if ip.ipv4_mapped is not None:
             ip = ip.ipv4_mapped

@@ -38,6 +38,14 @@ def test_an_unknown_setting_in_the_file_is_refused(tmp_path):
         from_environment({"HOCKLE_SETTINGS": str(file)})
 
 
+def test_no_password_is_told_of_a_setting_that_was_misspelt(tmp_path):
+    file = tmp_path / "hockle.toml"
+    file.write_text('databse = "postgresql://me:secret@x/y"\n')
+    with pytest.raises(ValueError, match="databse") as refusal:
+        from_environment({"HOCKLE_SETTINGS": str(file)})
+    assert "secret" not in str(refusal.value)
+
+
 @pytest.mark.parametrize(("url", "kombu"), [
     ("unix:///run/b.sock", "redis+socket:///run/b.sock"),
     ("redis://localhost:6379/0", "redis://localhost:6379/0"),

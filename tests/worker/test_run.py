@@ -115,6 +115,12 @@ def test_a_lock_file_that_its_holder_removed_meanwhile_locks_nothing(settings):
                 assert third
 
 
+def test_a_full_disk_takes_no_job_from_who_only_marks_its_steps(settings, monkeypatch):
+    with job_lock(settings.locks / "x.lock") as held:
+        monkeypatch.setattr(os, "pwrite", raising(OSError(errno.ENOSPC, "No space left on device")))
+        held.mark(7)
+
+
 def test_a_run_that_fails_keeps_its_frames_and_tells_the_remedy(job, registry, settings, monkeypatch):
     failure = RunFailed(Outcome.STEP_TOO_SMALL, 0.02, 7, "stuck")
     monkeypatch.setattr(attempt, "simulate", simulation_that(raising(failure)))

@@ -58,5 +58,11 @@ def test_the_dashboard_needs_nothing_from_elsewhere(client):
 
 
 def test_the_interface_describes_itself(client):
-    paths = client.get("/v1/openapi.json").json()["paths"]
-    assert {"/v1/jobs", "/v1/jobs/{job_id}", "/v1/jobs/{job_id}/dataset", "/v1/validate"} <= set(paths)
+    told = client.get("/v1/openapi.json").json()
+    assert told["openapi"].startswith("3.1.")
+    assert {"/v1/jobs", "/v1/jobs/{job_id}", "/v1/jobs/{job_id}/dataset", "/v1/validate"} <= set(told["paths"])
+    for path, operations in told["paths"].items():
+        for method, operation in operations.items():
+            assert operation["summary"] and operation["description"] and operation["tags"], (method, path)
+            for parameter in operation.get("parameters", []):
+                assert parameter["description"], (method, path, parameter["name"])

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +23,10 @@ from hypothesis import strategies as st
 
 from service.api.app import create_app
 from service.api.listening import listen
-from service.cases import load_case, shipped_cases
+from service.cases import apply_settings, load_case, parse_case, shipped_cases
+from service.jobs import Database, NewJob, Registry, Status
 from service.settings import Settings
+from worker.run import run_next
 
 HERE = Path(__file__).parent
 LONG = os.environ.get("FUZZ") == "long"
@@ -43,12 +46,26 @@ CASES = [load_case(name) for name in shipped_cases()]
 
 
 @pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory, until_ready) -> Iterator[str]:
+def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """A data directory in which a job has run, and its id."""
+    told = Settings(data=tmp_path_factory.mktemp("data"))
+    told.make_directories()
+    database = Database(told.database_url)
+    short = apply_settings(load_case("cantilever-vibration"), {"t_end": 0.1, "output.interval": 0.02})
+    job = Registry(database).submit(NewJob(parse_case(short).document()))
+    run_next(database, told)
+    assert Registry(database).get(job.id).status is Status.SUCCESSFUL
+    database.close()
+    return told.data, job.id
+
+
+@pytest.fixture(scope="module")
+def address(ran: tuple[Path, str], until_ready) -> Iterator[str]:
     """A running service, in a process of its own."""
     [listening] = listen("127.0.0.1", 0)
     with listening:
         command = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
-        environment = {**os.environ, "HOCKLE_DATA": str(tmp_path_factory.mktemp("data")), "REDIS_URL": ""}
+        environment = {**os.environ, "HOCKLE_DATA": str(ran[0]), "REDIS_URL": ""}
         process = subprocess.Popen(command, env=environment, pass_fds=[listening.fileno()])
         try:
             address = f"http://127.0.0.1:{listening.getsockname()[1]}"
@@ -91,9 +108,11 @@ def until_ready():
     return wait
 
 
-def test_schemathesis_finds_nothing(address, dismissing, tmp_path):
-    command = [str(Path(sys.executable).with_name("schemathesis")), "--config-file", str(HERE / "schemathesis.toml"),
-               "run", f"{address}/v1/openapi.json", "--seed", SEED, "--no-color",
+def test_schemathesis_finds_nothing(address, ran, dismissing, tmp_path):
+    config = shutil.copy(HERE / "schemathesis.toml", tmp_path)
+    (tmp_path / "ran.dict").write_text(f'"{ran[1]}"\n')
+    command = [str(Path(sys.executable).with_name("schemathesis")), "--config-file", str(config), "run",
+               f"{address}/v1/openapi.json", "--seed", SEED, "--no-color",
                "--generation-database", "none", *SCHEMATHESIS]  # fmt: skip
     told = subprocess.run(command, capture_output=True, text=True, timeout=1800, cwd=tmp_path)
     assert told.returncode == 0, told.stdout[-20_000:] + told.stderr
@@ -156,19 +175,27 @@ def malformed(draw: st.DrawFn) -> tuple[dict[str, Any], str]:
     return changed(case, pointer, lambda parent, key: parent.__delitem__(key)), pointer
 
 
+WAYS = {
+    "/v1/jobs": [("", lambda case: case), ("/case", lambda case: {"case": case, "label": "fuzz"})],
+    "/v1/validate": [("", lambda case: case), ("/case", lambda case: {"case": case})],
+    "/ogc/processes/simulate/execution": [("/inputs/case", lambda case: {"inputs": {"case": case}})],
+}
+"""Where a case may be sent to, how it is wrapped there, and so where its own pointers begin."""
+
+
 def test_a_malformed_case_is_refused_with_a_pointer_to_its_fault_and_makes_no_job(client):
     seen = 0
 
     @settings(max_examples=MALFORMED, deadline=None, database=None, derandomize=True,
               suppress_health_check=list(HealthCheck))  # fmt: skip
-    @given(malformed())
-    def refused(one: tuple[dict[str, Any], str]) -> None:
+    @given(malformed(), st.sampled_from([(path, *way) for path, ways in WAYS.items() for way in ways]))
+    def refused(one: tuple[dict[str, Any], str], way: tuple[str, str, Callable[[Any], Any]]) -> None:
         nonlocal seen
-        case, pointer = one
-        answer = client.post("/v1/jobs", content=json.dumps(case), headers={"Content-Type": "application/json"})
+        (case, inside), (path, prefix, wrapped) = one, way
+        answer = client.post(path, content=json.dumps(wrapped(case)), headers={"Content-Type": "application/json"})
         assert answer.status_code == 422, answer.text
         told = [error["pointer"] for error in answer.json()["errors"]]
-        assert any(f"{one}/".startswith(f"{pointer}/") for one in told), (pointer, told)
+        assert any(f"{one}/".startswith(f"{prefix}{inside}/") for one in told), (path, prefix, inside, told)
         seen += 1
 
     refused()

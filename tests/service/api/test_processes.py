@@ -48,6 +48,13 @@ def test_it_is_the_same_job_for_both_faces(client, case):
     assert [job["jobID"] for job in client.get("/ogc/jobs").json()["jobs"]] == [job_id]
 
 
+def test_a_case_that_has_run_is_not_run_again_unless_that_is_asked(client, case, registry, settings):
+    job_id = execute(client, case).json()["jobID"]
+    run_next(registry.database, settings)
+    assert execute(client, case).json()["jobID"] == job_id
+    assert execute(client, {"case": case, "reuse": False}).json()["jobID"] != job_id
+
+
 def test_a_dismissed_job_stays_dismissed(client, case):
     address = execute(client, case).headers["location"]
     assert client.delete(address).json()["status"] == "dismissed"

@@ -28,7 +28,15 @@ def test_the_metrics_are_those_of_the_registry(client, registry, case):
     counts = [told[f"hockle_jobs{status}"] for status in ("accepted", "running", "failed", "dismissed", "successful")]
     assert counts == [1, 1, 1, 1, 0]
     assert told["hockle_jobs_ended_totalstep_too_smallfailed"] == told["hockle_jobs_ended_totalcancelleddismissed"] == 1
-    assert (told["hockle_steps_total"], told["hockle_steps_redone_total"]) == (150, 10)
+    assert (told["hockle_steps_total"], told["hockle_steps_redone_total"]) == (160, 10)
+
+
+def test_steps_taken_do_not_fall_when_a_run_goes_back_to_its_checkpoint(client, registry, case):
+    held = claim(registry.database, client.post("/v1/jobs", json=case).json()["id"], 9.0, "here")
+    held.renew(9.0, Reached(0.5, 1.0, 50, 0))
+    before = metrics(client)["hockle_steps_total"]
+    held.renew(9.0, Reached(0.5, 1.0, 30, 20))
+    assert metrics(client)["hockle_steps_total"] == before == 50
 
 
 def test_ages_are_those_of_the_oldest_job_and_the_most_silent_worker(client, registry, case):

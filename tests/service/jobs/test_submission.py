@@ -205,6 +205,21 @@ def test_after_a_commit_it_is_told(database, until):
         until(lambda: told, "the commit is told of")
 
 
+def test_a_telling_that_fails_is_not_the_last(database, until):
+    told: list[int] = []
+
+    def tell() -> None:
+        told.append(1)
+        if len(told) == 1:
+            raise OSError("the database was away just then")
+
+    with Submissions(database, MANY, tell) as submissions:
+        for many in (1, 2):
+            with submissions.put(wanted()) as future:
+                future.result(60)
+            until(lambda many=many: len(told) == many, "the commit is told of")
+
+
 def test_an_owner_sees_no_others_jobs(database, registry):
     alice, bob = submit(database, wanted(), wanted(owner="bob"))
     bobs = registry.of("bob")

@@ -14,7 +14,7 @@ from chaos.cases import cases, undisturbed
 from chaos.judge import judge
 from chaos.postgres import binaries
 from chaos.report import Report
-from hockle.supervisor import stop_on_signals
+from hockle.supervisor import ENVIRONMENT, stop_on_signals
 
 KINDS = ("sqlite", "postgresql")
 
@@ -29,7 +29,7 @@ def main() -> int:
     parser.add_argument("--faults", type=int, default=50, help="at least so many in each seed")
     told = parser.parse_args()
     stop_on_signals()  # and clean up then
-    os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    os.environ |= ENVIRONMENT
     known = cases()
     expected = {name: undisturbed(case) for name, case in known.items()}
     kinds = KINDS if told.database == "both" else (told.database,)
@@ -47,6 +47,7 @@ def campaign(kind: str, seeds: range, jobs: int, faults: int, known: dict[str, d
     """Run the seeds on one kind of database, keeping what is known after each; whether all went well."""
     report = Report(kind)
     for seed in seeds:
+        print(f"{kind}, seed {seed}", file=sys.stderr, flush=True)
         began = time.monotonic()
         with (
             tempfile.TemporaryDirectory(prefix="hockle-chaos-", ignore_cleanup_errors=True) as directory,

@@ -30,6 +30,8 @@ STEPS_BETWEEN = 1000.0
 """Steps that the workers take between two faults, on average: one job."""
 IDLE = 10.0
 """Seconds after which the next fault comes even so."""
+WITHIN = 1800.0
+"""Seconds within which a seed has done its faults, or nobody takes jobs any more."""
 QUEUED = 6
 """So many jobs are kept open while faults are done."""
 
@@ -57,7 +59,7 @@ def run_seed(seed: int, settings: Settings, server: Any, small: bool, cases: Map
     target = Target(served, database, random.Random(seed), server, small, submitter.submit)  # no secret
     served.start()
     try:
-        with Watch(settings, served) as watch:
+        with Watch(settings) as watch:
             _make_trouble(target, record, count, faults, only or tuple(WEIGHTS))
             for thread in target.later:
                 thread.join()
@@ -76,9 +78,11 @@ def _make_trouble(target: Target, record: Record, count: int, faults: int, only:
               threading.Thread(target=_poison, args=(target, record, stopped))]
     for thread in others:
         thread.start()
-    weights = [WEIGHTS[fault] for fault in only]
+    weights, deadline = [WEIGHTS[fault] for fault in only], time.monotonic() + WITHIN
     try:
-        while record.faults.total() < faults or len(record.accepted) < count:
+        while record.done < faults or len(record.accepted) < count:
+            if time.monotonic() > deadline:
+                raise TimeoutError(f"after {WITHIN:.0f} s: {record.done} faults, {len(record.accepted)} jobs accepted")
             target.served.look_after()
             fault = target.random.choices(only, weights)[0]
             with suppress(Exception):  # the database may be away, a process may have just ended

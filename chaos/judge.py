@@ -61,7 +61,7 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
     """The verdict on one seed; `expected` are the digests of undisturbed runs by the name of their case."""
     database = Database(settings.database_url)
     found = {job.id: job for job in _all_jobs(Registry(database))}
-    verdict = Verdict(jobs=len(found), faults=record.faults.total(), overlaps=watch.overlaps, looks=watch.looks)
+    verdict = Verdict(jobs=len(found), faults=record.done, overlaps=watch.overlaps, looks=watch.looks)
     verdict.lost = sum(job_id not in found for job_id in record.accepted)
     ends, labels = _ends(database), Counter(job.label for job in found.values())
     for job in found.values():
@@ -89,8 +89,6 @@ def _explained(job: Job, record: Record) -> bool:
     """Whether the job may have ended so, after what was done."""
     if job.outcome == "worker_lost":
         return job.fruitless >= 3
-    if job.outcome in ("disk_full", "dataset_not_written"):
-        return record.faults["fill_disk"] + record.faults["fill_disk_at_consolidation"] > 0
     if job.id in record.starved:
         return job.outcome in ("out_of_memory", "cancelled")
     return job.outcome in ALLOWED

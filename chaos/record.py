@@ -19,3 +19,8 @@ class Record:
     """The jobs whose every process is killed."""
     faults: Counter[str] = field(default_factory=Counter)
     all_ended: bool = False
+
+    @property
+    def done(self) -> int:
+        """How many faults, those that poisoned jobs met not counted: they come by themselves."""
+        return self.faults.total() - self.faults["poison"]

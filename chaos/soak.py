@@ -38,6 +38,7 @@ from chaos.report import RESULTS
 from chaos.served import Served, wait_for
 from chaos.submitter import Submitter
 from chaos.watch import Watch
+from hockle.supervisor import ENVIRONMENT
 from service.jobs import Database
 from service.settings import Settings
 from validation.provenance import provenance
@@ -62,7 +63,7 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
     told = parser.parse_args()
-    os.environ |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    os.environ |= ENVIRONMENT
     with tempfile.TemporaryDirectory(prefix="hockle-soak-", ignore_cleanup_errors=True) as directory:
         settings = Settings(data=Path(directory) / "data", lease=LEASE, checkpoint=CHECKPOINT)
         settings.make_directories()
@@ -72,7 +73,7 @@ def main() -> int:
         target = Target(served, database, random.Random(told.seed), None, False, submitter.submit)  # no secret
         served.start()
         try:
-            with Watch(settings, served) as watch:
+            with Watch(settings) as watch:
                 growth = _soak(target, record, 60.0 * told.minutes)
                 record.all_ended = come_to_an_end(target)
                 wait_for(lambda: not _left(settings))

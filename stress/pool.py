@@ -1,8 +1,8 @@
 """Tasks on two processes that are used again and again; one that hangs or dies is told from one that ends.
 
 CPU time is read from /proc, which says what the scheduler has counted, as `time.process_time` does. RLIMIT_CPU goes by
-timer ticks instead: beside other work a process limited to 25 s was ended after 21.5 s, and in a process that has run
-for ten minutes the two were more than GRACE apart, so that a run of half a second was called a hang.
+timer ticks instead: beside other work a process limited to 25 s was ended after 21.5 s, and in processes that had run
+for minutes, runs of a second or less were called hangs.
 """
 
 from __future__ import annotations

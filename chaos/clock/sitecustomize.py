@@ -1,4 +1,4 @@
-"""On the path of the served processes: their time.time() is wrong by what a file says."""
+"""On the path of the served processes: their time of day is wrong by what a file says."""
 
 import os
 import time
@@ -16,3 +16,4 @@ def _wrong() -> float:
 
 
 time.time = _wrong
+time.time_ns = lambda: int(1e9 * _wrong())

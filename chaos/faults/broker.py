@@ -23,11 +23,11 @@ def kill_broker(target: Target) -> bool:
 
 
 def stall_broker(target: Target) -> bool:
-    """Redis answers nothing for a while."""
+    """Redis answers nothing for a while, which may be longer than anybody waits for it."""
     pid = target.served.broker()
     if not send(pid, signal.SIGSTOP):
         return False
-    target.in_a_while(target.random.uniform(0.5, 3.0), lambda: send(pid, signal.SIGCONT))
+    target.in_a_while(target.random.uniform(0.5, 8.0), lambda: send(pid, signal.SIGCONT))
     return True
 
 

@@ -27,9 +27,9 @@ def locked(target: Target) -> Iterator[None]:
 
 
 def lock_database(target: Target) -> bool:
-    """Nobody else may write for a while."""
+    """Nobody else may write for a while; leases may run out."""
     with locked(target):
-        time.sleep(0.4 * target.lease)
+        time.sleep(target.random.uniform(0.2, 1.5) * target.lease)
     return True
 
 

@@ -7,6 +7,7 @@ over all frames in which the rod presses on itself.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -34,7 +35,7 @@ def uneven_rod() -> Rod:
     thin = Curve.table(s, DIAMETER * (1 - 0.1 * np.sin(np.pi * s / LENGTH)), "cubic")
     rod = Rod.circular(LENGTH, thin, YOUNGS_MODULUS, SHEAR_MODULUS, DENSITY)
     bend, _, torsion = rod.stiffness
-    return rod.with_properties(stiffness=(bend, lambda s: 1.5 * bend(s), torsion))
+    return replace(rod, stiffness=(bend, lambda s: 1.5 * bend(s), torsion))
 
 
 def smooth_motion(intervals: int, dt: float, rho_inf: float) -> Scene:
@@ -77,7 +78,7 @@ def pressed_loop(intervals: int, dt: float, rho_inf: float) -> Scene:
     initial, zero = Initial(looped, a1=(0.0, 0.0, 1.0)), Curve.constant(0.0)
     fine = np.linspace(0.0, LOOP, 2001)
     one, two, three = (Curve.table(fine, column, "cubic") for column in nodes_at_rest(initial, fine)[2].T)
-    rod = Rod.circular(LOOP, 0.004, 5e7, 2e7, DENSITY).with_properties(kappa0=(one, two, three))
+    rod = replace(Rod.circular(LOOP, 0.004, 5e7, 2e7, DENSITY), kappa0=(one, two, three))
     growth = Curve.table([0.0, PRESSED], [0.0, 1.0], "smoothstep")
     force = DistributedLoad((zero, zero, lambda s: 1.5 * np.sin(2 * np.pi * s / LOOP)), schedule=growth)
     contact = Contact(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import atan2
 
 import numpy as np
@@ -58,7 +59,7 @@ def arch(condition: Condition) -> list[Frame]:
         return radius * np.column_stack([np.cos(angle) - np.cos(RISE), 0.0 * s, np.sin(RISE) - np.sin(angle)])
 
     crown = End(((condition,), FIXED, FIXED), (FIXED, FIXED, FIXED), frame="lab")
-    rod = rod_R().with_properties(kappa0=(ZERO, Curve.constant(-RISE / LENGTH), ZERO))
+    rod = replace(rod_R(), kappa0=(ZERO, Curve.constant(-RISE / LENGTH), ZERO))
     return list(simulate(_static(60, rod=rod, initial=Initial(centreline), end=crown, t_end=FOLDED,
                                  output_interval=FOLDED / 100)))  # fmt: skip
 

@@ -34,7 +34,7 @@ class NewtonSystem:
         history(method.state, self._scheme, dt, method.work.past)
         method.work.feedback[:] = 0.0
         set_scales(method._scales, self._c0, method.work.system)
-        method.contact.prepare(*method._centreline(method.state), dt)
+        method.contact.prepare(method._bending, method.state.r, method.state.Y, dt)
 
     def assemble(self) -> None:
         """Residuals, and what the tangents are made of."""

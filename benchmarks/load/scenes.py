@@ -13,9 +13,12 @@ from typing import Any
 from benchmarks.load.clients import connect, listen, poll, submit_all
 from benchmarks.load.connection import Connection
 from service.cases import apply_settings, load_case
+from service.jobs import Database
+from service.jobs.held import claim, next_in_turn
+from service.settings import Settings
 
 POLLERS, FOR = 1000, 15.0
-SUBMITTERS, SUBMITTED = (8, 32), 3000
+SUBMITTERS, SUBMITTED = (8, 24), 3000
 LISTENERS, ROUNDS, TIMES = 200, 5, 200
 ONE_STEP = {"t_end": 0.01, "output.interval": 0.01, "numerics.dt_max": 0.01, "numerics.intervals": 50}
 
@@ -46,6 +49,20 @@ async def submissions(host: str, port: int, clients: int, many: int = SUBMITTED)
     for connection in connections:
         connection.close()
     return rate, latencies
+
+
+async def choices(host: str, port: int, settings: Settings) -> list[float]:
+    """What a worker does of whom all that wait are asked: it finds whose turn it is, and claims that job."""
+    [connection] = await connect(host, port, 1)
+    await submit_all([connection], [case(number) for number in range(TIMES)])
+    connection.close()
+    database, latencies = Database(settings.database_url), []
+    for _ in range(TIMES):
+        began = time.perf_counter()
+        claim(database, next_in_turn(database) or "", 1e3, "load")
+        latencies.append(time.perf_counter() - began)
+    database.close()
+    return latencies
 
 
 async def first_step(host: str, port: int, log: Path) -> tuple[list[float], list[float], list[float]]:

@@ -16,6 +16,7 @@ import httpx
 
 from hockle.supervisor import ENVIRONMENT
 from service.api.listening import listen
+from service.settings import Settings
 
 TOLD = ENVIRONMENT | {"REDIS_URL": "", "HOCKLE_QUOTA": "1000000"}
 APIS = 2
@@ -37,8 +38,8 @@ def whole() -> Iterator[tuple[str, int, Path]]:
 
 
 @contextmanager
-def without_workers() -> Iterator[tuple[str, int]]:
-    """The API processes alone, so that nothing computes beside them; host and port."""
+def without_workers() -> Iterator[tuple[str, int, Settings]]:
+    """The API processes alone, so that nothing computes beside them; host and port, and their settings."""
     with ExitStack() as cleanup:
         data = cleanup.enter_context(tempfile.TemporaryDirectory(prefix="hockle-load-"))
         sockets = [cleanup.enter_context(listening) for listening in listen("127.0.0.1", 0, many=APIS)]
@@ -57,4 +58,4 @@ def without_workers() -> Iterator[tuple[str, int]]:
                     break
                 except httpx.TransportError:
                     time.sleep(0.1)
-        yield host, port
+        yield host, port, Settings(Path(data))

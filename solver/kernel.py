@@ -1,5 +1,7 @@
-"""How every kernel of a step is compiled: single-threaded, cached on disk, no bounds checks, no NaN swallowed. (Those
-of the writhe, in measures/, choose for each function what may be reordered: their sums must be exact to rounding.)
+"""How every kernel of a step is compiled: single-threaded, cached on disk, no bounds checks, no NaN swallowed.
+
+Nothing is contracted or reordered (no fastmath): each operation rounds as IEEE 754 has it, so that a run is the same to
+the bit whatever was inlined where, and on every CPU (docs/decisions/0005). Divide by a constant by multiplying.
 
 Numba's cache does not see that a kernel called from another file has changed. So the cache lives in a folder
 named by a digest of the whole solver: another version of the code has another cache, and nothing compiles twice.
@@ -22,11 +24,7 @@ from numba.core.registry import cpu_target
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_OPTIONS: dict[str, Any] = {
-    "cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "fastmath": {"contract", "arcp"},
-}  # fmt: skip
-"""`arcp`: divisions by constants and by what does not change in a loop become multiplications."""
-
+_OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy"}
 APART = "HOCKLE_COMPILES"
 """The environment variable that tells a process that it is the one that compiles."""
 
@@ -53,9 +51,7 @@ if "NUMBA_CACHE_DIR" not in os.environ:
 def compile_apart(name: str, statement: str) -> None:
     """Have `statement` compile kernels in a process of its own, once for each cache; `name` says which.
 
-    What is compiled here and now is inlined otherwise than what is loaded, so that results differ in their last bits.
-    If everybody loads, a run is the same to the bit in each process, and goes on so in the next one. Where it cannot be
-    done, kernels are compiled when they are called, as ever.
+    LLVM takes hundreds of MB, which are not a job's. Where it cannot be done, kernels are compiled as they are called.
     """
     done = Path(numba.config.CACHE_DIR) / f"{name}-{_good_for()}.compiled"  # type: ignore[attr-defined]
     if done.exists() or os.environ.get(APART):

@@ -50,8 +50,11 @@ def turn(quaternion: Array, theta: Array, turned: Array) -> None:
     if square < 1.0:
         # cos(a/2) and sin(a/2)/a by their series, exact to rounding
         p = 0.25 * square
-        cosine = 1.0 - p / 2 * (1.0 - p / 12 * (1.0 - p / 30 * (1.0 - p / 56 * (1.0 - p / 90 * (1.0 - p / 132)))))
-        sinc = 0.5 - p / 12 * (1.0 - p / 20 * (1.0 - p / 42 * (1.0 - p / 72 * (1.0 - p / 110 * (1.0 - p / 156)))))
+        cosine, sinc = 1.0, 1.0
+        for k in range(5, -1, -1):
+            cosine = 1.0 - cosine * p * (1.0 / ((2 * k + 1.0) * (2 * k + 2.0)))
+            sinc = 1.0 - sinc * p * (1.0 / ((2 * k + 2.0) * (2 * k + 3.0)))
+        sinc *= 0.5
     else:
         angle = np.sqrt(square)
         cosine, sinc = np.cos(0.5 * angle), np.sin(0.5 * angle) / angle
@@ -89,9 +92,9 @@ def right_jacobian(theta: Array, scale: float, J: Array) -> None:
         first, second = 1.0, 1.0
         # sums over k of (-square)^k / (2 k + 2)! and / (2 k + 3)!, exact to rounding
         for k in range(7, -1, -1):
-            first = 1.0 - first * square / ((2 * k + 3.0) * (2 * k + 4.0))
-            second = 1.0 - second * square / ((2 * k + 4.0) * (2 * k + 5.0))
-        first, second = 0.5 * first, second / 6.0
+            first = 1.0 - first * square * (1.0 / ((2 * k + 3.0) * (2 * k + 4.0)))
+            second = 1.0 - second * square * (1.0 / ((2 * k + 4.0) * (2 * k + 5.0)))
+        first, second = 0.5 * first, (1 / 6) * second
     else:
         angle = np.sqrt(square)
         first, second = (1.0 - np.cos(angle)) / square, (angle - np.sin(angle)) / (square * angle)

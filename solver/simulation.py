@@ -72,7 +72,7 @@ class Simulation(Run):
 
     def warm(self) -> None:
         """Have every kernel compiled."""
-        _compile(self._scene.numerics.method, touching=not isinstance(self._method, OneAxisMethod))
+        _load(self._scene.numerics.method, touching=not isinstance(self._method, OneAxisMethod))
 
     def _first_frame(self) -> Frame:
         frame = self._accounts.frame(0.0)
@@ -175,13 +175,14 @@ class Simulation(Run):
 
 def warm(method: str = Numerics.method) -> None:
     """Load every kernel of a method from the cache, after another process has compiled what is not there; once."""
-    _compile(method, touching=True)
+    _load(method, touching=True)
     if method == "staggered":
-        _compile(method, touching=False)
+        _load(method, touching=False)
 
 
 @cache
-def _compile(method: str, touching: bool) -> None:
+def _load(method: str, touching: bool) -> None:
+    """Load the kernels for scenes that can touch themselves, or for those that turn about one axis and cannot."""
     name = f"{method}-touching" if touching else method
     compile_apart(name, f"from solver.simulation import exercise; exercise({method!r}, {touching})")
     exercise(method, touching)

@@ -36,6 +36,7 @@ for name, settings in %s.items():
     print(name, frames[-1].contacts)
 print(sorted(compiled() - before))
 print([str(kernel) for kernel in kernels() if kernel.stats.cache_misses])
+print([str(kernel) for kernel in kernels() if kernel.targetoptions.get("fastmath")])
 """
 
 
@@ -44,12 +45,13 @@ def test_a_warm_process_compiles_nothing(method):
     """Found under stress: two kernels were left to the run."""
     command = [sys.executable, "-c", PROGRAM % SCENES, method]
     told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
-    assert any(int(line.split()[1]) > 0 for line in told[:-2])  # there was contact
-    assert told[-2:] == ["[]", "[]"]
+    assert any(int(line.split()[1]) > 0 for line in told[:-3])  # there was contact
+    assert told[-3:-1] == ["[]", "[]"]
+    assert told[-1] == "[]"  # each operation rounds as IEEE 754 has it: the same bits however it was inlined
 
 
 def test_what_is_not_in_the_cache_is_compiled_by_another_process_and_once(tmp_path, monkeypatch):
-    """Found by chaos: a process that has compiled its kernels finds other last bits than one that has loaded them."""
+    """LLVM's memory is not to be a job's."""
     monkeypatch.setattr(config, "CACHE_DIR", str(tmp_path))
     marks = tmp_path / "marks"
     mark = f"import os, solver; open({str(marks)!r}, 'a').write(str(os.getpid()) + ' ')"

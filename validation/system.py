@@ -9,12 +9,12 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from solver.methods.box.elimination import factor, solve
-from solver.methods.box.generalized_alpha import Scheme, history
+from solver.methods.box.generalized_alpha import history
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.method import BoxMethod
 from solver.methods.box.newton import assemble, set_scales
+from solver.methods.box.schemes import BOX, Scheme, c0_of
 from solver.methods.box.shooting import shoot
-from solver.methods.box.space import BOX
 from solver.methods.staggered.method import SCHEME, StaggeredMethod
 from solver.methods.staggered.motion import move, spin_steadily
 from solver.methods.staggered.newton import evaluate, factor_both, solve_increments, update
@@ -27,7 +27,7 @@ class NewtonSystem:
     def __init__(self, method: BoxMethod, dt: float, rho_inf: float = 0.5) -> None:
         self._method, self._dt = method, dt
         self._scheme = Scheme.of(rho_inf)
-        self._c0 = self._scheme.c0(dt)
+        self._c0 = c0_of(self._scheme, dt)
         self._ends = method._ends(0.0, dt)
         self._marched = np.zeros((len(method.s), 12, 7))
         method.trial.Y[:] = method.state.Y

@@ -16,7 +16,7 @@ import numpy as np
 from solver.contact.law import Law
 from solver.contact.members import Members, dismiss, take_in
 from solver.contact.points import Points
-from solver.kernel import kernel
+from solver.kernel import inlined, kernel
 from solver.rod import Array
 
 
@@ -56,6 +56,12 @@ def longest_spacing(points: Points) -> float:
     return float(np.sqrt(longest))
 
 
+@inlined
+def _distance(points: Points, a: int, b: int) -> float:
+    x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
+    return np.sqrt(x * x + y * y + z * z)  # type: ignore[no-any-return]
+
+
 @kernel
 def smallest_distance(points: Points, skip: float, enough: float) -> float:
     """The smallest distance (m) of two points more than `skip` of arc apart, or `enough` if none are nearer."""
@@ -65,8 +71,7 @@ def smallest_distance(points: Points, skip: float, enough: float) -> float:
     for a in range(M):
         b = M - 1  # from the far end, so that a rod that is not folded is passed in one leap
         while b >= a + apart:
-            d = np.sqrt((points.p[a, 0] - points.p[b, 0]) ** 2 + (points.p[a, 1] - points.p[b, 1]) ** 2
-                        + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
+            d = _distance(points, a, b)
             if d < best:
                 best = d
             b -= max(1, int((d - best) / pitch))
@@ -82,8 +87,7 @@ def smallest_gap(points: Points, skip: float) -> float:
     for a in range(M):
         b = M - 1
         while b >= a + apart:
-            d = np.sqrt((points.p[a, 0] - points.p[b, 0]) ** 2 + (points.p[a, 1] - points.p[b, 1]) ** 2
-                        + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
+            d = _distance(points, a, b)
             best = min(best, d - 0.5 * (points.diameter[a] + points.diameter[b]))
             b -= max(1, int((d - widest - best) / pitch))
     return best
@@ -110,8 +114,7 @@ def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None
     for a in range(M):
         b = M - 1
         while b >= a + apart:
-            d = np.sqrt((points.p[a, 0] - points.p[b, 0]) ** 2 + (points.p[a, 1] - points.p[b, 1]) ** 2
-                        + (points.p[a, 2] - points.p[b, 2]) ** 2)  # fmt: skip
+            d = _distance(points, a, b)
             if d < radius:
                 if found < len(pairs.first):
                     pairs.first[found] = a

@@ -22,12 +22,11 @@ from __future__ import annotations
 from math import sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from solver.kernel import kernel
 from solver.measures.spherical import half_area
-
-Array = NDArray[np.float64]
+from solver.rod import Array
 
 BLOCK = 8
 RIGHT_ANGLE = sqrt(2.0)
@@ -35,7 +34,7 @@ RIGHT_ANGLE = sqrt(2.0)
 there an arc is at most pi / 2 sqrt(2) times as long as its chord."""
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def shorten(r: Array, first: Array, last: Array) -> tuple[Array, float]:
     """The polygon `r` (3, n) without the inner vertices of its smooth blocks, and what its pairs add up to the less
     (half areas: Wr = -sum / pi).
@@ -63,7 +62,7 @@ def shorten(r: Array, first: Array, last: Array) -> tuple[Array, float]:
     return shorter[:, :many].copy(), area
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _tangents(r: Array, first: Array, last: Array) -> Array:
     """Unit tangents (n + 1, 3) of the ray, the n - 1 segments and the other ray."""
     t = np.empty((r.shape[1] + 1, 3))
@@ -75,7 +74,7 @@ def _tangents(r: Array, first: Array, last: Array) -> Array:
     return t
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _smooth(t: Array) -> NDArray[np.bool_]:
     """Of each block, whether its tangents and those of its neighbours turn by less than a right angle in all."""
     turned, segments = np.zeros(len(t)), len(t) - 2
@@ -89,7 +88,7 @@ def _smooth(t: Array) -> NDArray[np.bool_]:
     return smooth
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _spheres(r: Array) -> tuple[Array, Array]:
     """Centres (blocks, 3) and radii (blocks,) of spheres, each around all vertices of a block."""
     blocks = (r.shape[1] + BLOCK - 2) // BLOCK
@@ -103,7 +102,7 @@ def _spheres(r: Array) -> tuple[Array, Array]:
     return centres, radii
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
     """Of each block, whether the sphere around it is apart from those of all but its neighbours, and from the rays."""
     centres, radii = _spheres(r)
@@ -123,7 +122,7 @@ def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
     return alone
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _ray_apart(centre: Array, radius: float, origin: Array, direction: Array) -> bool:
     """Whether a ray passes a sphere by."""
     away = centre - origin

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from math import atan2, sqrt
 
-import numpy as np
-from numba import njit
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from solver.kernel import inlined, kernel
+from solver.rod import Array
 
 
-@njit(cache=True)
+@kernel
 def half_area(a: Array, b: Array, c: Array) -> float:
     """Half the signed area of the spherical triangle of directions a, b, c (3,), of any length > 0.
 
@@ -31,7 +28,7 @@ def half_area(a: Array, b: Array, c: Array) -> float:
     return angle(la * lb * lc + ab * lc + bc * la + ca * lb, volume)
 
 
-@njit(cache=True, inline="always")
+@inlined
 def angle(x: float, y: float) -> float:
     """arg(x + i y), but 0 for what lies in one plane, whose area is none wherever its corners lie."""
     return 0.0 if y == 0.0 else atan2(y, x)

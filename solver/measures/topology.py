@@ -17,13 +17,13 @@ from __future__ import annotations
 from math import pi, sqrt
 
 import numpy as np
-from numba import njit
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from solver.kernel import inlined, kernel
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
+from solver.rod import Array
 
-Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
 SMALL_TANGENT = 0.1
@@ -69,7 +69,7 @@ def _unit(direction: ArrayLike) -> Array:
     return vector / norm
 
 
-@njit(cache=True)
+@kernel
 def _ray(r: Array, origin: Array, direction: Array) -> float:
     """Half the signed area of all segments of `r` (3, n) with the ray from one of its ends.
 
@@ -84,7 +84,7 @@ def _ray(r: Array, origin: Array, direction: Array) -> float:
     return total
 
 
-@njit(cache=True)
+@kernel
 def _distances(r: Array, i: int, out: Array) -> None:
     """Distances of vertex i from all later vertices."""
     x, y, z, later = r[0, i + 1 :], r[1, i + 1 :], r[2, i + 1 :], out[i + 1 :]
@@ -93,7 +93,7 @@ def _distances(r: Array, i: int, out: Array) -> None:
         later[k] = sqrt(u * u + v * v + w * w)
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _pair(start: Vector, end: Vector, first: Vector, last: Vector, other: float,
           a: float, b: float, c: float, d: float) -> tuple[float, float]:  # fmt: skip
     """x, y with arg(x + i y) = half the signed area of two segments (see the module's text).
@@ -115,7 +115,7 @@ def _pair(start: Vector, end: Vector, first: Vector, last: Vector, other: float,
     return twice_d1 * twice_d2 - twice_volume * twice_volume, twice_volume * (twice_d1 + twice_d2)
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _arctangent(t: float) -> float:
     """arctan(t) for |t| <= SMALL_TANGENT."""
     p = t * t
@@ -123,14 +123,14 @@ def _arctangent(t: float) -> float:
     return t * (1.0 - p * (1 / 3 - p * (1 / 5 - p * (1 / 7 - p * series))))
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
-def _row(r: Array, i: int, last: int, squares: Array, from_i: Array, from_next: Array) -> tuple[float, int]:
-    """Half the area of segment i with segments i + 2 ... last - 1, and how many pairs are left out.
+@kernel
+def _row(r: Array, i: int, last: int, squares: Array, from_i: Array, from_next: Array, areas: Array) -> int:
+    """Write half the areas of segment i with segments i + 2 ... last - 1; return how many are left out, as 0.
 
     Left out are the near pairs, whose angle is not small. So the loop has no call and no branch (nor the one that
     would raise for a divisor of 0, hence the error model), runs from 0 along slices, and is vectorised.
     """
-    total, left_out, j = 0.0, 0, i + 2
+    left_out, j = 0, i + 2
     start, end = (r[0, i], r[1, i], r[2, i]), (r[0, i + 1], r[1, i + 1], r[2, i + 1])
     x, y, z, a, d = r[0, j:], r[1, j:], r[2, j:], from_i[j:], from_next[j:]
     x1, y1, z1, b, c = r[0, j + 1 :], r[1, j + 1 :], r[2, j + 1 :], from_i[j + 1 :], from_next[j + 1 :]
@@ -138,12 +138,26 @@ def _row(r: Array, i: int, last: int, squares: Array, from_i: Array, from_next: 
     for k in range(last - j):
         p, q = _pair(start, end, (x[k], y[k], z[k]), (x1[k], y1[k], z1[k]), other[k], a[k], b[k], c[k], d[k])
         small = abs(q) < SMALL_TANGENT * p
-        total += _arctangent(q / p) if small else 0.0
+        areas[k] = _arctangent(q / p) if small else 0.0
         left_out += 0 if small else 1
-    return total, left_out
+    return left_out
 
 
-@njit(cache=True)
+@kernel
+def _sum(values: Array) -> float:
+    """Their sum, in an order that is vectorised and yet the same on every CPU."""
+    a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    whole = len(values) - len(values) % 8
+    for k in range(0, whole, 8):
+        a, b, c, d = a + values[k], b + values[k + 1], c + values[k + 2], d + values[k + 3]
+        e, f, g, h = e + values[k + 4], f + values[k + 5], g + values[k + 6], h + values[k + 7]
+    total = ((a + e) + (b + f)) + ((c + g) + (d + h))
+    for k in range(whole, len(values)):
+        total += values[k]
+    return total
+
+
+@kernel
 def _near_pairs(r: Array, i: int, last: int, squares: Array, from_i: Array, from_next: Array) -> float:
     """Half the area of segment i with those segments that `_row` leaves out."""
     total = 0.0
@@ -156,11 +170,11 @@ def _near_pairs(r: Array, i: int, last: int, squares: Array, from_i: Array, from
     return total
 
 
-@njit(cache=True)
+@kernel
 def _segment_pairs(r: Array, closed: bool) -> float:
     """Half the signed area of all pairs of segments of `r` (3, n); neighbours lie in one plane."""
     n = r.shape[1]
-    from_i, from_next, squares = np.empty(n), np.empty(n), np.empty(n - 1)
+    from_i, from_next, squares, areas = np.empty(n), np.empty(n), np.empty(n - 1), np.empty(n)
     for i in range(n - 1):
         squares[i] = (r[0, i + 1] - r[0, i]) ** 2 + (r[1, i + 1] - r[1, i]) ** 2 + (r[2, i + 1] - r[2, i]) ** 2
     _distances(r, 0, from_next)
@@ -169,8 +183,8 @@ def _segment_pairs(r: Array, closed: bool) -> float:
         from_i, from_next = from_next, from_i
         _distances(r, i + 1, from_next)
         last = n - 2 if closed and i == 0 else n - 1
-        row, left_out = _row(r, i, last, squares, from_i, from_next)
-        total += row
+        left_out = _row(r, i, last, squares, from_i, from_next, areas)
+        total += _sum(areas[: last - i - 2])
         if left_out > 0:
             total += _near_pairs(r, i, last, squares, from_i, from_next)
     return total

@@ -12,7 +12,7 @@ import numpy as np
 from solver.kernel import kernel
 from solver.methods.box.fields import OMEGA, F, Linear, Nodes, V
 from solver.methods.box.intervals import interval_panel, interval_residuals
-from solver.methods.box.space import AT_LEFT_NODE, MINUS_DIFFERENCE
+from solver.methods.box.schemes import AT_LEFT_NODE, MINUS_DIFFERENCE
 from solver.rod import Array, Section
 
 

@@ -25,7 +25,7 @@ from solver.methods.box.condensation import (
 )
 from solver.methods.box.fields import Linear, Nodes, Wide
 from solver.methods.box.intervals import MEANS, interval_panel
-from solver.methods.box.space import BOX
+from solver.methods.box.schemes import BOX
 from solver.rod import Array, Section
 
 

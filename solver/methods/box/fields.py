@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.methods.box.space import BOX, SpaceScheme
+from solver.methods.box.schemes import BOX, SpaceScheme
 from solver.rod import Array
 
 V, OMEGA, KAPPA, F = 0, 3, 6, 9

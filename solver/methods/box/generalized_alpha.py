@@ -10,34 +10,10 @@ So every equation, the constraint and its multiplier f live at one time level, a
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from solver.kernel import kernel
 from solver.methods.box.fields import OMEGA, State, V
+from solver.methods.box.schemes import Scheme, c0_of
 from solver.rod import Array
-
-
-class Scheme(NamedTuple):
-    """Parameters alpha_m, alpha_f and gamma of one member of the family."""
-
-    alpha_m: float
-    alpha_f: float
-    gamma: float
-
-    @classmethod
-    def of(cls, rho_inf: float) -> Scheme:
-        """The second-order member with spectral radius rho_inf at infinite frequency."""
-        alpha_m = (3.0 - rho_inf) / (2.0 * (1.0 + rho_inf))
-        alpha_f = 1.0 / (1.0 + rho_inf)
-        return cls(alpha_m, alpha_f, 0.5 + alpha_m - alpha_f)
-
-    def c0(self, dt: float) -> float:
-        """d(rate)/d(value) at the end of a step dt."""
-        return self.alpha_m / (self.alpha_f * self.gamma * dt)
-
-
-BACKWARD_EULER = Scheme(1.0, 1.0, 1.0)
-"""Order 1, for the first tiny step that finds consistent accelerations and forces."""
 
 
 @kernel
@@ -47,8 +23,7 @@ def history(state: State, scheme: Scheme, dt: float, past: Array) -> None:
     At t_{n+1}: r = past[:, 0:3] + V / c0, theta (from R_n) = past[:, 3:6] + omega / c0, and the rates of
     V, omega, kappa are c0 * value + past[:, 6:15].
     """
-    am, af, gamma = scheme.alpha_m, scheme.alpha_f, scheme.gamma
-    c0 = am / (af * gamma * dt)
+    am, af, gamma, c0 = scheme.alpha_m, scheme.alpha_f, scheme.gamma, c0_of(scheme, dt)
     keep_rate = dt * gamma / am * (1.0 - af)
     keep_aux = dt * ((1.0 - gamma) - gamma / am * (1.0 - am))
     mix_aux = ((1.0 - am) - am * (1.0 - gamma) / gamma) / af
@@ -78,8 +53,7 @@ def rescale_aux(state: State, ratio: float) -> None:
 @kernel
 def finish(old: State, new: State, scheme: Scheme, dt: float, past: Array) -> None:
     """Write the rates and auxiliary rates of `new` (its Y is given) at the end of the step from `old`."""
-    am, af, gamma = scheme.alpha_m, scheme.alpha_f, scheme.gamma
-    c0 = am / (af * gamma * dt)
+    am, af, c0 = scheme.alpha_m, scheme.alpha_f, c0_of(scheme, dt)
     for j in range(len(past)):
         for i in range(9):
             new.rate[j, i] = c0 * new.Y[j, i] + past[j, 6 + i]

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from solver.kernel import inlined, kernel
 from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, V
-from solver.methods.box.space import SpaceScheme
+from solver.methods.box.schemes import SpaceScheme
 from solver.rod import Array, Section
 
 MEANS = 5

@@ -15,9 +15,9 @@ from solver.loads.applied import AppliedLoads, Loads
 from solver.measures.energies import Energies
 from solver.methods.box.energies import energies, powers
 from solver.methods.box.fields import KAPPA, OMEGA, F, State, V
-from solver.methods.box.generalized_alpha import BACKWARD_EULER, Scheme, rescale_aux
+from solver.methods.box.generalized_alpha import rescale_aux
 from solver.methods.box.newton import EndValues, Scales, Work, step
-from solver.methods.box.space import SpaceScheme
+from solver.methods.box.schemes import BACKWARD_EULER, Scheme, SpaceScheme, c0_of
 from solver.methods.box.trial import Measured, measure_trial, total_bending
 from solver.rod import Array, Section, sample
 from solver.rotation import relative_rotation, rotate_back, tangents_of
@@ -95,7 +95,7 @@ class BoxMethod:
         """Make the trial the state."""
         old, new = self.state, self.trial
         self._F_rate = (new.Y[:, F:] - old.Y[:, F:]) / dt
-        c0 = (BACKWARD_EULER if self._consistent else self._scheme).c0(dt)
+        c0 = c0_of(BACKWARD_EULER if self._consistent else self._scheme, dt)
         for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
             shift = new.r[node : node + 1] - old.r[node : node + 1]
             turned = self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0

@@ -15,11 +15,11 @@ from solver.methods.box.coupling import Coupling, add_contact, contact_fraction,
 from solver.methods.box.elimination import factor, solve
 from solver.methods.box.ends import end_conditions
 from solver.methods.box.fields import KAPPA, F, Linear, Nodes, State
-from solver.methods.box.generalized_alpha import Scheme, finish, history
+from solver.methods.box.generalized_alpha import finish, history
 from solver.methods.box.intervals import interval_residuals
 from solver.methods.box.nodes import balance_rotation, balance_translation, place_nodes
+from solver.methods.box.schemes import Scheme, SpaceScheme, c0_of
 from solver.methods.box.shooting import LARGEST_GROWTH, shoot
-from solver.methods.box.space import SpaceScheme
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR, STALLED
 from solver.rod import Array, Section
 
@@ -143,7 +143,7 @@ def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: S
     `work.feedback` holds the stretch times its feedback rate. Convergence: the increment, or its
     extrapolation for a quadratically converging iteration, is below 1e-9 of the natural units.
     """
-    c0 = scheme.alpha_m / (scheme.alpha_f * scheme.gamma * dt)
+    c0 = c0_of(scheme, dt)
     system = work.system
     history(old, scheme, dt, work.past)
     set_scales(scales, c0, system)

@@ -12,7 +12,7 @@ import numpy as np
 from solver.kernel import kernel
 from solver.methods.box.fields import Linear, Nodes
 from solver.methods.box.intervals import MEANS, interval_panel
-from solver.methods.box.space import BOX
+from solver.methods.box.schemes import BOX
 from solver.rod import Array, Section
 
 LARGEST_GROWTH = 1e12

@@ -22,8 +22,8 @@ from solver.rotation import relative_rotation
 def _coefficient(square: float) -> tuple[float, float]:
     """b and its derivative by x^2."""
     if square < 0.25:
-        b = 1 / 12 + square * (1 / 720 + square * (1 / 30240 + square * (1 / 1209600 + square / 47900160)))
-        return b, 1 / 720 + square * (1 / 15120 + square * (1 / 403200 + square / 11975040))
+        b = 1 / 12 + square * (1 / 720 + square * (1 / 30240 + square * (1 / 1209600 + square * (1 / 47900160))))
+        return b, 1 / 720 + square * (1 / 15120 + square * (1 / 403200 + square * (1 / 11975040)))
     half = 0.5 * np.sqrt(square)
     cot = np.cos(half) / np.sin(half)
     b = (1.0 - half * cot) / square
@@ -74,7 +74,8 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
     for i in range(len(bend)):
         x, y, z = bend[i, 0], bend[i, 1], bend[i, 2]
         b, slope = _coefficient(x * x + y * y + z * z)
-        theta, q = bend[i], moment[i]
+        theta, q, EJ, per = bend[i], moment[i], chain.stiffness[i], 1.0 / chain.span[i]
+        spring = (EJ[0] * per, EJ[1] * per, EJ[2] * per)
         q0, q1, q2 = q[0], q[1], q[2]
         c0, c1, c2 = y * q2 - z * q1, z * q0 - x * q2, x * q1 - y * q0
         d = (y * c2 - z * c1, z * c0 - x * c2, x * c1 - y * c0)
@@ -96,7 +97,7 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
                 h0, h1, h2 = 0.0, 0.0, 0.0
                 for n in range(3):
                     weight = B[m, n] if side == 0 else B[n, m]
-                    value = G[m, n] - 0.5 * sign * turned[m][n] + weight * chain.stiffness[i, n] / chain.span[i]
+                    value = G[m, n] - 0.5 * sign * turned[m][n] + weight * spring[n]
                     if n == 0:
                         h0 = value
                     elif n == 1:

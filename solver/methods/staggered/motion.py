@@ -37,11 +37,10 @@ def _sum_series(square: float, terms: int) -> tuple[float, float, float, float]:
     """`terms` terms of sum over k of (-x^2)^k / (2 k + 2)! and / (2 k + 3)!, and of their derivatives, by Horner."""
     a, b, da, db = 0.0, 0.0, 0.0, 0.0
     for k in range(terms - 1, -1, -1):
-        da = -(a + square * da) / ((2 * k + 3.0) * (2 * k + 4.0))
-        a = 1.0 - a * square / ((2 * k + 3.0) * (2 * k + 4.0))
-        db = -(b + square * db) / ((2 * k + 4.0) * (2 * k + 5.0))
-        b = 1.0 - b * square / ((2 * k + 4.0) * (2 * k + 5.0))
-    return 0.5 * a, b / 6.0, 0.5 * da, db / 6.0
+        even, odd = 1.0 / ((2 * k + 3.0) * (2 * k + 4.0)), 1.0 / ((2 * k + 4.0) * (2 * k + 5.0))
+        da, db = -even * (a + square * da), -odd * (b + square * db)
+        a, b = 1.0 - even * (a * square), 1.0 - odd * (b * square)
+    return 0.5 * a, (1 / 6) * b, 0.5 * da, (1 / 6) * db
 
 
 @kernel

@@ -153,9 +153,9 @@ def update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: S
             u, v, w = theta[0], theta[1], theta[2]
             # a rotation by p in the frame of R_n changes theta by p - theta x p / 2 + ...
             c0, c1, c2 = v * p2 - w * p1, w * p0 - u * p2, u * p1 - v * p0
-            theta[0] += p0 - 0.5 * c0 + (v * c2 - w * c1) / 12.0
-            theta[1] += p1 - 0.5 * c1 + (w * c0 - u * c2) / 12.0
-            theta[2] += p2 - 0.5 * c2 + (u * c1 - v * c0) / 12.0
+            theta[0] += p0 - 0.5 * c0 + (1 / 12) * (v * c2 - w * c1)
+            theta[1] += p1 - 0.5 * c1 + (1 / 12) * (w * c0 - u * c2)
+            theta[2] += p2 - 0.5 * c2 + (1 / 12) * (u * c1 - v * c0)
             turned = max(turned, abs(p0), abs(p1), abs(p2))
             if not np.isfinite(p0):
                 return np.inf, np.inf

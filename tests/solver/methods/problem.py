@@ -15,11 +15,11 @@ from solver.loads.applied import Loads
 from solver.methods.box.augmented import wide_panel, wide_start
 from solver.methods.box.coupling import _move
 from solver.methods.box.fields import State
-from solver.methods.box.generalized_alpha import Scheme, history
+from solver.methods.box.generalized_alpha import history
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.method import _initial_state
 from solver.methods.box.newton import EndValues, Scales, Work, assemble, set_scales
-from solver.methods.box.space import SpaceScheme
+from solver.methods.box.schemes import Scheme, SpaceScheme, c0_of
 from solver.methods.box.trial import total_bending
 from solver.rod import Array, Section, sample
 from solver.scene import End
@@ -70,7 +70,7 @@ class Problem:
 
     @property
     def c0(self) -> float:
-        return self.scheme.c0(self.dt)
+        return c0_of(self.scheme, self.dt)
 
     @property
     def wide(self) -> bool:
@@ -182,7 +182,7 @@ def problem(
     scheme = Scheme.of(numerics.rho_inf)
     work = Work.empty(intervals, False, SpaceScheme.of(rho_inf_space), contact is not None)
     work.system.wide.A[:] = 0.1 * random.normal(size=work.system.wide.A.shape)
-    set_scales(Scales(LENGTH, float(section.stiffness[:, 0].mean()), False), scheme.c0(dt), work.system)
+    set_scales(Scales(LENGTH, float(section.stiffness[:, 0].mean()), False), c0_of(scheme, dt), work.system)
     history(old, scheme, dt, work.past)
     work.feedback[:] = 1e-4 * random.normal(size=work.feedback.shape)
     touching = SelfContact(contact, scene.rod, s, stages=1)

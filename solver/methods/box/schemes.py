@@ -1,6 +1,7 @@
-"""Generalized-alpha in space: the one-step formula of the box scheme's family, and its solve.
+"""The parameters of generalized-alpha, in time (generalized_alpha.py) and in space.
 
-With Z = (omega, V, F, q) and Z_s = -G at a node, A an auxiliary derivative carried along s,
+In space it is the one-step formula of the box scheme's family: with Z = (omega, V, F, q) and Z_s = -G at a node, A an
+auxiliary derivative carried along s,
 
     a Delta Z + h b A_j + h (w_left G_j + w_right G_{j+1}) = 0,   Z_{j+1} = Z_j + h ((1 - gamma) A_j + gamma A_{j+1}),
 
@@ -16,6 +17,33 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from solver.kernel import inlined
+
+
+class Scheme(NamedTuple):
+    """Parameters alpha_m, alpha_f and gamma of one member of the family."""
+
+    alpha_m: float
+    alpha_f: float
+    gamma: float
+
+    @classmethod
+    def of(cls, rho_inf: float) -> Scheme:
+        """The second-order member with spectral radius rho_inf at infinite frequency."""
+        alpha_m = (3.0 - rho_inf) / (2.0 * (1.0 + rho_inf))
+        alpha_f = 1.0 / (1.0 + rho_inf)
+        return cls(alpha_m, alpha_f, 0.5 + alpha_m - alpha_f)
+
+
+@inlined
+def c0_of(scheme: Scheme, dt: float) -> float:
+    """c0 = d(rate)/d(value) at the end of a step dt."""
+    return scheme.alpha_m / (scheme.alpha_f * scheme.gamma * dt)
+
+
+BACKWARD_EULER = Scheme(1.0, 1.0, 1.0)
+"""Order 1, for the first tiny step that finds consistent accelerations and forces."""
+
 
 class SpaceScheme(NamedTuple):
     """Coefficients a, b, w_left, w_right and gamma of one member of the family."""
@@ -29,9 +57,7 @@ class SpaceScheme(NamedTuple):
     @classmethod
     def of(cls, rho_inf: float) -> SpaceScheme:
         """The second-order member with spectral radius rho_inf at infinite wave number."""
-        alpha_m = (3.0 - rho_inf) / (2.0 * (1.0 + rho_inf))
-        alpha_f = 1.0 / (1.0 + rho_inf)
-        gamma = 0.5 + alpha_m - alpha_f
+        alpha_m, alpha_f, gamma = Scheme.of(rho_inf)
         return cls(alpha_m / gamma, 1.0 - alpha_m / gamma, 1.0 - alpha_f, alpha_f, gamma)
 
 

@@ -47,11 +47,15 @@ class Verdict:
         return self.steps_redone / max(self.steps, 1)
 
     @property
+    def bad(self) -> tuple[int, ...]:
+        """All that must be zero."""
+        return (self.lost, self.duplicated, self.overlaps, self.not_identical, self.wrong_outcome, self.left_over,
+                self.miscounted)  # fmt: skip
+
+    @property
     def good(self) -> bool:
         """Whether all that must be zero is, and little was computed again."""
-        bad = (self.lost, self.duplicated, self.overlaps, self.not_identical, self.wrong_outcome, self.left_over,
-               self.miscounted)  # fmt: skip
-        return not any(bad) and self.redone < MOST_REDONE
+        return not any(self.bad) and self.redone < MOST_REDONE
 
     def __add__(self, other: Verdict) -> Verdict:
         return Verdict(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))

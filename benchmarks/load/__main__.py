@@ -25,11 +25,11 @@ Two API processes as `hockle serve` starts them, SQLite in WAL mode with synchro
 are one process beside them (asyncio with uvloop), on the same cores. Latency is from the write of the request to
 the last byte of the answer. Status: 1000 keep-alive connections, each once a second, out of step. Submissions: so many
 connections, each one after the other, every case another one. These are measured without workers, so that what
-jobs cost is not in them, nor is the choice among the jobs that wait, which is measured in a process of its own; the
-rest with the whole of `hockle serve` and one worker, warmed by a job. First step: one job at a time, from the request
-to the worker's claim, to the first steps that its log tells of, and to the end of a job of a single step, its dataset
-published. Events: from the time in `ended` to its arrival at 200 listeners. The load
-of the machine, beside ours, is in the figures."""
+jobs cost is not in them, nor is the choice among the jobs that wait, which is measured by itself. The rest is
+measured with the whole of `hockle serve` and one worker, warmed by a job. First step: one job at a time, from the
+request to the worker's claim, to the first steps that its log tells of, and to the end of a job of a single step, its
+dataset published. Events: from the time in `ended` to its arrival at 200 listeners. The load of the machine, beside
+ours, is in the figures."""
 
 
 def row(name: str, seconds: Sequence[float], aim: str, rate: str = "") -> dict[str, Any]:

@@ -52,7 +52,7 @@ async def submissions(host: str, port: int, clients: int, many: int = SUBMITTED)
 
 
 async def choices(host: str, port: int, settings: Settings) -> list[float]:
-    """What a worker does of whom all that wait are asked: it finds whose turn it is, and claims that job."""
+    """How long an idle worker takes to find whose turn it is, among all that wait, and to claim that job."""
     [connection] = await connect(host, port, 1)
     await submit_all([connection], [case(number) for number in range(TIMES)])
     connection.close()

@@ -66,9 +66,10 @@ def alive(pid: int) -> bool:
 
 
 @contextmanager
-def serving(data: Path) -> Iterator[Server]:
+def serving(data: Path, **told: str) -> Iterator[Server]:
+    """A server that keeps what is its own in `data`; `told` are more environment variables."""
     command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", str(data)]
-    environment = {**os.environ, **SHORT_LEASES, "REDIS_URL": ""}
+    environment = {**os.environ, **SHORT_LEASES, "REDIS_URL": "", **told}
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                env=environment)  # fmt: skip
     try:

@@ -78,7 +78,7 @@ class Rod:
             return lambda s: factor * pi / 4 * width(s) ** 2
 
         def second_moment(factor: float) -> Profile:
-            return lambda s: factor * pi / 64 * width(s) ** 4
+            return lambda s: factor * pi / 64 * (width(s) ** 2) ** 2
 
         bending, torsion = second_moment(youngs_modulus), second_moment(2 * shear_modulus)
         about_diameter, about_axis = second_moment(density), second_moment(2 * density)

@@ -9,14 +9,17 @@ space.
 
 from __future__ import annotations
 
+from cmath import phase
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import cos, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.curve import Curve, Vector
 from solver.initial import nodes_at_rest
+from solver.kernel import kernel
 from solver.rod import Array, sample
 from solver.rotation import matrix_of, multiply, rotate
 from solver.scene import Component, End, Scene
@@ -26,6 +29,15 @@ Plane = NDArray[np.complex128]
 
 NONE = 1e-10
 """Angle (rad) to the plane, or to the axis, that counts as none: what Newton's iteration leaves of a rotation."""
+
+
+@kernel
+def directions(phi: Array) -> Plane:
+    """exp(i phi) (n,), the same on every CPU, which numpy's is not."""
+    found = np.empty(len(phi), np.complex128)
+    for j in range(len(phi)):
+        found[j] = complex(np.cos(phi[j]), np.sin(phi[j]))
+    return found
 
 
 @dataclass(frozen=True)
@@ -67,8 +79,8 @@ class Axis:
         half_turn, turned = np.zeros(4), np.zeros(4)
         half_turn[1 + self.index] = 1.0
         multiply(self.quaternion, half_turn, turned)
-        cosine, sine = np.cos(0.5 * phi), np.sin(0.5 * phi)
-        return np.asarray(cosine[:, None] * self.quaternion + sine[:, None] * turned)
+        half = directions(0.5 * phi)
+        return np.asarray(half.real[:, None] * self.quaternion + half.imag[:, None] * turned)
 
 
 def axis_of(scene: Scene) -> Axis | None:
@@ -111,9 +123,9 @@ def _axis(index: int, first: Array) -> Axis:
         along = np.sign(R[j, 2]) * (np.eye(3)[j] - n[j] * n)
         along /= np.linalg.norm(along)
         lab, pair = along + 1j * np.cross(n, along), ((k + 1) % 3, (k + 2) % 3)
-        phi = float(np.angle(R[:, 2] @ lab))
-    back = np.array([np.cos(0.5 * phi), 0.0, 0.0, 0.0])
-    back[1 + index] = -np.sin(0.5 * phi)
+        phi = phase(complex(R[:, 2] @ lab))
+    back = np.array([cos(0.5 * phi), 0.0, 0.0, 0.0])
+    back[1 + index] = -sin(0.5 * phi)
     multiply(first, back, turned)
     return Axis(index, n, turned, lab, material, {"lab": pair, "material": (2, 1 if index == 0 else 0)})
 

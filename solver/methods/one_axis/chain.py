@@ -3,6 +3,7 @@ complex number for a vector of the plane (see `Axis`)."""
 
 from __future__ import annotations
 
+from math import atan2
 from typing import NamedTuple
 
 import numpy as np
@@ -98,7 +99,8 @@ def about_axis(axis: Axis, chain: space.Chain, state: space.State) -> tuple[Chai
     p, found = axis.index, State.empty(len(chain.mass))
     a, v, b, u = axis.quaternion[0], axis.quaternion[1:], state.quaternion[:, 0], state.quaternion[:, 1:]
     turned = a * u - np.outer(b, v) - np.cross(v, u)
-    found.phi[:] = np.unwrap(2.0 * np.arctan2(turned[:, p], a * b + u @ v))
+    halves = map(atan2, turned[:, p], a * b + u @ v)
+    found.phi[:] = np.unwrap([2.0 * half for half in halves])
     found.omega[:] = state.omega[:, p]
     found.base[:] = state.base @ axis.lab
     section = (chain.mass, *(np.ascontiguousarray(a[:, p]) for a in (chain.inertia, chain.dry_inertia)))

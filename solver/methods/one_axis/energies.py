@@ -7,7 +7,7 @@ import numpy as np
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.measures.energies import Energies
-from solver.methods.one_axis.axis import Plane
+from solver.methods.one_axis.axis import Plane, directions
 from solver.methods.one_axis.chain import Chain, Stages
 from solver.methods.one_axis.segments import Driven, across, along, end_velocity
 from solver.methods.staggered.chain import STAGES
@@ -20,8 +20,8 @@ def energies(chain: Chain, loads: Loads, current: complex, weight: Plane, phi: A
     velocity."""
     strain = np.diff(phi) / chain.span - chain.kappa0
     elastic = float(0.5 * np.sum(chain.span * chain.stiffness * strain**2))
-    kinetic = np.sum(chain.mass * np.abs(centres[1]) ** 2) + np.sum(chain.dry_inertia * omega**2)
-    aside = ((centres[1] - current) * np.exp(-1j * chain.swing * phi[1:-1])).imag
+    kinetic = np.sum(chain.mass * (centres[1].real ** 2 + centres[1].imag ** 2)) + np.sum(chain.dry_inertia * omega**2)
+    aside = ((centres[1] - current) * directions(-chain.swing * phi[1:-1])).imag
     added = np.sum(loads.added_mass * aside**2) + np.sum((chain.inertia - chain.dry_inertia) * omega**2)
     return Energies(
         bending=elastic * chain.swing,

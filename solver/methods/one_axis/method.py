@@ -9,7 +9,7 @@ import numpy as np
 from solver.ends import LOAD, DrivenEnd
 from solver.frame import Fields
 from solver.measures.energies import Energies
-from solver.methods.one_axis.axis import Axis, Plane
+from solver.methods.one_axis.axis import Axis, Plane, directions
 from solver.methods.one_axis.chain import Stages, State, about_axis
 from solver.methods.one_axis.energies import energies, stage_powers
 from solver.methods.one_axis.motion import follow_segments
@@ -103,7 +103,7 @@ class OneAxisMethod(RadauMethod):
         """The state along the rod, at the nodes."""
         axis, (r, V) = self._axis, self._nodes()
         phi, omega = at_nodes(self.state.phi), at_nodes(self.state.omega)
-        back = np.exp(-1j * self.chain.swing * phi)
+        back = directions(-self.chain.swing * phi)
         bend = np.diff(self.state.phi) / self.chain.span
         return Fields(
             v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(self.state.F * back),
@@ -150,7 +150,7 @@ class OneAxisMethod(RadauMethod):
 
     def _tangents(self) -> Plane:
         """T (N + 2,) of the orientations."""
-        return np.asarray(np.exp(1j * self.chain.swing * self.state.phi))
+        return directions(self.chain.swing * self.state.phi)
 
     def _nodes(self) -> tuple[Plane, Plane]:
         """Places and velocities (N + 1,) of the nodes."""

@@ -35,17 +35,25 @@ ERROR = np.array([-13.0 - 7.0 * ROOT, -13.0 + 7.0 * ROOT, -1.0]) / (3.0 * GAMMA)
 """Weights of the stages in the error estimate; the slope at the start of the step has 1 / GAMMA."""
 
 
-CUBIC, PARABOLA = np.array([1, 2, 3]), np.array([0, 1, 2])
-"""Powers of the polynomial through (0, 0) and the stages, and of the parabola through the stages."""
-TO_CUBIC, TO_PARABOLA = np.linalg.inv(C[:, None] ** CUBIC), np.linalg.inv(C[:, None] ** PARABOLA)
-"""From values at the stages to the coefficients of these powers."""
+def _cubic(x: np.ndarray) -> np.ndarray:
+    """x, x^2, x^3 (3, 3), by multiplication, which is the same on every CPU."""
+    return np.vander(x, 4, increasing=True)[:, 1:]
+
+
+def _parabola(x: np.ndarray) -> np.ndarray:
+    """1, x, x^2 (3, 3)."""
+    return np.vander(x, 3, increasing=True)
+
+
+TO_CUBIC, TO_PARABOLA = np.linalg.inv(_cubic(C)), np.linalg.inv(_parabola(C))
+"""From values at the stages to the coefficients of the polynomial through (0, 0) and them, and of the parabola."""
 
 
 def extrapolation(ratio: float) -> np.ndarray:
     """(3, 3): values of the polynomial through (0, 0) and the stages at the stages of a next step `ratio` as long."""
-    return np.asarray((1.0 + ratio * C)[:, None] ** CUBIC @ TO_CUBIC)
+    return np.asarray(_cubic(1.0 + ratio * C) @ TO_CUBIC)
 
 
 def quadratic_extrapolation(ratio: float) -> np.ndarray:
     """(3, 3): values of the parabola through the three stages at the stages of a next step `ratio` as long."""
-    return np.asarray((1.0 + ratio * C)[:, None] ** PARABOLA @ TO_PARABOLA)
+    return np.asarray(_parabola(1.0 + ratio * C) @ TO_PARABOLA)

@@ -18,6 +18,7 @@ from chaos.cases import digest, undisturbed
 from chaos.postgres import binaries, postgres
 from hockle.broker import redis_binary
 from hockle.client import Client
+from service.cases import apply_settings
 
 pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc"),
@@ -97,6 +98,7 @@ def ready(server) -> bool:
 
 
 def test_a_host_that_is_cut_off_loses_its_job_to_the_other_and_is_back_later(start, slow, quick, until, tmp_path):
+    slow = apply_settings(slow, {"t_end": 10.0})
     with postgres() as database, redis() as broker:
         links = [Link(socket.AF_UNIX, str(database.directory / ".s.PGSQL.5432")),
                  Link(socket.AF_INET, ("127.0.0.1", broker))]  # fmt: skip

@@ -1,4 +1,7 @@
-"""The physics at a node: frames, inertia, moments and loads at the current iterate, with their tangents."""
+"""The physics at a node: frames, inertia, moments and loads at the current iterate, with their tangents.
+
+What not every scene has is added in loops of its own: within the others it slows down scenes without it, too.
+"""
 
 from __future__ import annotations
 
@@ -57,8 +60,9 @@ def balance_rotation(new: State, section: Section, loads: Loads, past: Array, c0
         D[0, 1], D[0, 2] = (I2 - I1) * w2, (I2 - I1) * w1
         D[1, 0], D[1, 2] = (I0 - I2) * w2, (I0 - I2) * w0
         D[2, 0], D[2, 1] = (I1 - I0) * w1, (I1 - I0) * w0
-        if loads.turns:
-            _subtract_lab_moment(nodes.R[j], nodes.J[j], loads.lab[j, 3:], W, D)
+    if loads.turns:
+        for j in range(len(past)):
+            _subtract_lab_moment(nodes.R[j], nodes.J[j], loads.lab[j, 3:], nodes.W[j], nodes.W_w[j])
 
 
 @kernel
@@ -76,25 +80,43 @@ def _subtract_lab_moment(R: Array, J: Array, moment: Array, W: Array, W_w: Array
 @kernel
 def balance_translation(new: State, section: Section, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
     """Write P = rho_c A (dV/dt + c V) - B with its tangents by V and omega."""
-    acceleration, u, b = nodes.scratch[0], nodes.scratch[1], nodes.scratch[2]
     for j in range(len(past)):
         mass = section.mass[j]
         P, P_V, P_w = nodes.P[j], nodes.P_V[j], nodes.P_w[j]
         for i in range(3):
             velocity = new.Y[j, V + i]
-            acceleration[i] = c0 * velocity + past[j, 6 + i]
-            u[i] = velocity - loads.current[i]
-            P[i] = mass * (acceleration[i] + loads.damping * velocity) - loads.lab[j, i]
+            P[i] = mass * (c0 * velocity + past[j, 6 + i] + loads.damping * velocity) - loads.lab[j, i]
             for k in range(3):
                 P_V[i, k] = 0.0
                 P_w[i, k] = 0.0
             P_V[i, i] = mass * (c0 + loads.damping)
-        if loads.follows:
-            for i in range(3):
-                b[i] = -loads.material[j, i]
-            rotation_tangent(nodes.R[j], b, nodes.J[j], P_w)
-            for i in range(3):
-                P[i] += nodes.R[j, i, 0] * b[0] + nodes.R[j, i, 1] * b[1] + nodes.R[j, i, 2] * b[2]
-        if loads.wet:
-            add_added_mass(loads.added_mass[j], c0, acceleration, nodes.T[j], nodes.T_w[j], P, P_V, P_w)
-            add_drag(loads.drag_normal[j], loads.drag_tangential[j], u, nodes.T[j], nodes.T_w[j], P, P_V, P_w)
+    if loads.follows:
+        _subtract_material_force(loads.material, nodes)
+    if loads.wet:
+        _add_fluid(new, loads, past, c0, nodes)
+
+
+@kernel
+def _subtract_material_force(force: Array, nodes: Nodes) -> None:
+    """Subtract R force, `force` (n, >= 3), from P, and its tangent from P_w."""
+    b = nodes.scratch[0]
+    for j in range(len(nodes.P)):
+        R, P = nodes.R[j], nodes.P[j]
+        for i in range(3):
+            b[i] = -force[j, i]
+        rotation_tangent(R, b, nodes.J[j], nodes.P_w[j])
+        for i in range(3):
+            P[i] += R[i, 0] * b[0] + R[i, 1] * b[1] + R[i, 2] * b[2]
+
+
+@kernel
+def _add_fluid(new: State, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
+    """Add the fluid's force with its tangents."""
+    acceleration, u = nodes.scratch[0], nodes.scratch[1]
+    for j in range(len(past)):
+        for i in range(3):
+            acceleration[i] = c0 * new.Y[j, V + i] + past[j, 6 + i]
+            u[i] = new.Y[j, V + i] - loads.current[i]
+        T, T_w, P, P_V, P_w = nodes.T[j], nodes.T_w[j], nodes.P[j], nodes.P_V[j], nodes.P_w[j]
+        add_added_mass(loads.added_mass[j], c0, acceleration, T, T_w, P, P_V, P_w)
+        add_drag(loads.drag_normal[j], loads.drag_tangential[j], u, T, T_w, P, P_V, P_w)

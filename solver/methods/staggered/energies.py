@@ -54,31 +54,56 @@ def stage_powers(chain: Chain, loads: Loads, driven: Driven, stages: Stages, wei
     `ends` (3, 2, 3): velocities of the first and the last node at the stages, lab.
     """
     N = len(chain.mass)
-    T, T_t = np.zeros(3), np.zeros(3)
     for i in range(STAGES):
         given, lost, work = 0.0, 0.0, 0.0
         for k in range(3):
             work += stages.F[i, N, k] * ends[i, 1, k] - stages.F[i, 0, k] * ends[i, 0, k]
             work += stages.right[i, N, k] * stages.omega[i, N + 1, k] - stages.left[i, 0, k] * stages.omega[i, 0, k]
         for j in range(N):
-            R, V, w = stages.R[i, j + 1], stages.V[i, j], stages.omega[i, j + 1]
+            V, w = stages.V[i, j], stages.omega[i, j + 1]
             lab, material = driven.lab[i, j], driven.material[i, j]
             for k in range(3):
                 given += (lab[k] - weight[j, k]) * V[k] + material[3 + k] * w[k]
                 lost += loads.damping * (chain.mass[j] * V[k] ** 2 + chain.dry_inertia[j, k] * w[k] ** 2)
-                for m in range(3):
-                    given += R[k, m] * (material[m] * V[k] + lab[3 + k] * w[m])
-            if loads.wet:
-                for k in range(3):
-                    T[k] = R[k, 2]
-                    T_t[k] = R[k, 0] * w[1] - R[k, 1] * w[0]
-                from_current, to_fluid = fluid_power(
-                    loads.added_mass[j], loads.drag_normal[j], loads.drag_tangential[j], V, loads.current,
-                    stages.A[i, j], T, T_t,
-                )  # fmt: skip
-                given += from_current
-                lost += to_fluid
+        if loads.follows or loads.turns:
+            given += _given_by_turned_loads(driven, stages, i)
+        if loads.wet:
+            from_current, to_fluid = _given_by_fluid(loads, stages, i)
+            given += from_current
+            lost += to_fluid
         out[i, 0], out[i, 1], out[i, 2] = work, chain.h * given, chain.h * lost
+
+
+@kernel
+def _given_by_turned_loads(driven: Driven, stages: Stages, i: int) -> float:
+    """Power over h of the forces given in the material frame, and of the moments given in the lab's."""
+    given = 0.0
+    for j in range(len(driven.lab[i])):
+        R, V, w = stages.R[i, j + 1], stages.V[i, j], stages.omega[i, j + 1]
+        lab, material = driven.lab[i, j], driven.material[i, j]
+        for k in range(3):
+            for m in range(3):
+                given += R[k, m] * (material[m] * V[k] + lab[3 + k] * w[m])
+    return given
+
+
+@kernel
+def _given_by_fluid(loads: Loads, stages: Stages, i: int) -> tuple[float, float]:
+    """Power over h that the current gives, and that the fluid takes."""
+    T, T_t = np.zeros(3), np.zeros(3)
+    given, lost = 0.0, 0.0
+    for j in range(len(stages.V[i])):
+        R, w = stages.R[i, j + 1], stages.omega[i, j + 1]
+        for k in range(3):
+            T[k] = R[k, 2]
+            T_t[k] = R[k, 0] * w[1] - R[k, 1] * w[0]
+        from_current, to_fluid = fluid_power(
+            loads.added_mass[j], loads.drag_normal[j], loads.drag_tangential[j], stages.V[i, j], loads.current,
+            stages.A[i, j], T, T_t,
+        )  # fmt: skip
+        given += from_current
+        lost += to_fluid
+    return given, lost
 
 
 @kernel

@@ -180,7 +180,14 @@ ONCE_WRONG = {
 CASES = json.loads(Path(__file__).with_name("once_wrong.json").read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize("number", ONCE_WRONG)
+RINGING = ("box, rho_inf = 0, a torque that jumps, steps far longer than a twist wave takes: the end's rate rings, and "
+           "so does its work by the trapezoidal rule")  # fmt: skip
+STILL_WRONG = [pytest.param(number, marks=pytest.mark.xfail(strict=True, reason=RINGING))
+               for number in ("77-451", "77-772")]  # fmt: skip
+"""Of seed 77."""
+
+
+@pytest.mark.parametrize("number", [*ONCE_WRONG, *STILL_WRONG])
 def test_a_random_case_that_was_once_wrong_ends_right_or_by_name(number):
     result = run(Task("", (), CASES[str(number)], steps=1000, cpu=60.0))
     assert result.ending in (Ending.CORRECT, Ending.NAMED), result.detail

@@ -24,7 +24,7 @@ HOSTS: dict[str, dict[str, str]] = {
     "Haswell": {"NUMBA_CPU_NAME": "haswell", "NUMBA_CPU_FEATURES": AVX2, "NPY_DISABLE_CPU_FEATURES": NO_AVX512},
     "Zen": {"NUMBA_CPU_NAME": "znver1", "NUMBA_CPU_FEATURES": AVX2, "NPY_DISABLE_CPU_FEATURES": NO_AVX512},
 }
-PROGRAM = "import chaos.cpus as cpus; cpus.tell()"
+PROGRAM = "from chaos.cpus import tell; tell()"
 
 
 def tell() -> None:

@@ -1,4 +1,4 @@
-"""How every kernel of a step is compiled: single-threaded, cached on disk, no bounds checks, no NaN swallowed.
+"""How every kernel is compiled: single-threaded, cached on disk, no bounds checks, no NaN swallowed.
 
 Nothing is contracted or reordered (no fastmath): each operation rounds as IEEE 754 has it, so that a run is the same to
 the bit whatever was inlined where, and on every CPU (docs/decisions/0005). Divide by a constant by multiplying.
@@ -25,6 +25,7 @@ from numba.core.registry import cpu_target
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 _OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy"}
+
 APART = "HOCKLE_COMPILES"
 """The environment variable that tells a process that it is the one that compiles."""
 

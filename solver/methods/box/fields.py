@@ -42,7 +42,7 @@ class Nodes(NamedTuple):
 
     (n, 3): `T` = R a3 (lab); `P` = rho_c A dV/dt - B (lab); `q` moment (material); `W` = I omega_t + omega x I omega
     - Q (material). (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V or omega (`w`)).
-    `scratch` (3, 3) belongs to the kernels that loop over the nodes.
+    `scratch` (2, 3) belongs to the kernels that loop over the nodes.
     """
 
     R: Array
@@ -60,7 +60,7 @@ class Nodes(NamedTuple):
     @classmethod
     def empty(cls, n: int) -> Nodes:
         """Zeros for n nodes."""
-        shapes = {"scratch": (3, 3)} | dict.fromkeys(("T", "P", "q", "W"), (n, 3))
+        shapes = {"scratch": (2, 3)} | dict.fromkeys(("T", "P", "q", "W"), (n, 3))
         return cls(*(np.zeros(shapes.get(name, (n, 3, 3))) for name in cls._fields))
 
 

@@ -175,19 +175,14 @@ ONCE_WRONG = {
     4930: "a rod 700 times as stiff about one axis lost a tenth of its energy: little beside the stiff axis's own",
     5325: "the box method's chords were a tenth too short for its curvature, not for its nodes' tangents",
     9969: "statics: an end slid past the other one, where the rays that close the curve meet and Wr is half its jump",
+    "77-451": "a torque that jumps, steps far longer than a twist wave takes: its mean power is far from its work",
+    "77-772": "the same at a slider whose torque changes its sign at once",
 }
-"""By number in the draws of seed 1; the cases lie beside this file, for other sources make other draws."""
+"""By number in the draws of seed 1, or by seed and number; they lie beside this file: other sources make others."""
 CASES = json.loads(Path(__file__).with_name("once_wrong.json").read_text(encoding="utf-8"))
 
 
-RINGING = ("box, rho_inf = 0, a torque that jumps, steps far longer than a twist wave takes: the end's rate rings, and "
-           "so does its work by the trapezoidal rule")  # fmt: skip
-STILL_WRONG = [pytest.param(number, marks=pytest.mark.xfail(strict=True, reason=RINGING))
-               for number in ("77-451", "77-772")]  # fmt: skip
-"""Of seed 77."""
-
-
-@pytest.mark.parametrize("number", [*ONCE_WRONG, *STILL_WRONG])
+@pytest.mark.parametrize("number", ONCE_WRONG)
 def test_a_random_case_that_was_once_wrong_ends_right_or_by_name(number):
     result = run(Task("", (), CASES[str(number)], steps=1000, cpu=60.0))
     assert result.ending in (Ending.CORRECT, Ending.NAMED), result.detail

@@ -13,8 +13,9 @@ from solver.frame import Fields
 from solver.initial import nodes_at_rest
 from solver.loads.applied import AppliedLoads, Loads
 from solver.measures.energies import Energies
-from solver.methods.box.energies import energies, powers
+from solver.methods.box.energies import energies
 from solver.methods.box.fields import KAPPA, OMEGA, F, State, V
+from solver.methods.box.flows import Flows, enter_step
 from solver.methods.box.generalized_alpha import rescale_aux
 from solver.methods.box.newton import EndValues, Scales, Work, step
 from solver.methods.box.schemes import BACKWARD_EULER, Scheme, SpaceScheme, c0_of
@@ -67,14 +68,13 @@ class BoxMethod:
         self._last_dt, self._taken_dt, self._consistent = 0.0, 0.0, False
         self._F_rate = np.zeros((len(self.s), 3))
         self.loads: Loads = self.applied.at(0.0)
-        self._power, self._power_before = np.zeros(4), np.zeros(4)
+        self._flows = Flows.empty(len(self.s))
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt into `trial`; how it ended and the Newton iterations.
 
         With `consistent`, by backward Euler: dt is tiny, and what is wanted is accelerations and forces.
         """
-        scheme = BACKWARD_EULER if consistent else self._scheme
         if not consistent and self._last_dt > 0.0 and dt != self._last_dt:
             rescale_aux(self.state, dt / self._last_dt)
         self._last_dt, self._consistent = dt, consistent
@@ -85,7 +85,7 @@ class BoxMethod:
         self._guess(dt, consistent)
         self.contact.prepare(self._bending, self.state.r, self.state.Y, dt)
         status, iterations = step(
-            self.state, self.trial, scheme, dt, self.h, self.section, self.loads, self._ends(t, dt),
+            self.state, self.trial, self._rule, dt, self.h, self.section, self.loads, self._ends(t, dt),
             self._scales, self.contact.touch, self.work,
         )  # fmt: skip
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
@@ -95,7 +95,7 @@ class BoxMethod:
         """Make the trial the state."""
         old, new = self.state, self.trial
         self._F_rate = (new.Y[:, F:] - old.Y[:, F:]) / dt
-        c0 = c0_of(BACKWARD_EULER if self._consistent else self._scheme, dt)
+        c0 = c0_of(self._rule, dt)
         for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
             shift = new.r[node : node + 1] - old.r[node : node + 1]
             turned = self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0
@@ -140,14 +140,14 @@ class BoxMethod:
     def flows(self, dt: float) -> Array:
         """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, into contact.
 
-        By the trapezoidal rule on the powers at the ends of the step.
+        A step that finds forces knows none at its begin: there those of its end count.
         """
-        self._power, self._power_before = self._power_before, self._power
-        powers(self.state, self.work.nodes, self.section, self.loads, self.applied.weight, self.h, self._power[:3])
-        stored, rubbed = self.contact.power()[0]
-        self._power[3] = stored
-        self._power[2] += rubbed
-        return np.asarray(0.5 * dt * (self._power + self._power_before))
+        enter_step(
+            self.trial, self.state, self.work.nodes, self.section, self.loads, self.applied.weight,
+            self.contact.power()[0], self.work.past, c0_of(self._rule, dt), dt, 1.0 if self._consistent else 0.5,
+            self.h, self._flows,
+        )  # fmt: skip
+        return self._flows.energy
 
     def fields(self) -> Fields:
         """The state along the rod."""
@@ -182,6 +182,11 @@ class BoxMethod:
         """Have every kernel compiled that a run may need."""
         self.contact.compile()
         rescale_aux(self.state, 1.0)
+
+    @property
+    def _rule(self) -> Scheme:
+        """The scheme of the step at hand."""
+        return BACKWARD_EULER if self._consistent else self._scheme
 
     def _guess(self, dt: float, consistent: bool) -> None:
         self.trial.Y[:] = self.state.Y

@@ -12,12 +12,13 @@ from solver.methods.box.elimination import factor, solve
 from solver.methods.box.generalized_alpha import history
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.method import BoxMethod
-from solver.methods.box.newton import assemble, set_scales
+from solver.methods.box.newton import balance_nodes, form_residuals, set_scales
 from solver.methods.box.schemes import BOX, Scheme, c0_of
 from solver.methods.box.shooting import shoot
 from solver.methods.staggered.method import SCHEME, StaggeredMethod
 from solver.methods.staggered.motion import move, spin_steadily
-from solver.methods.staggered.newton import evaluate, factor_both, solve_increments, update
+from solver.methods.staggered.newton import evaluate, factor_both, transform_residuals, update
+from solver.methods.staggered.tridiagonal import solve_stages
 from solver.rod import Array
 
 
@@ -39,8 +40,9 @@ class NewtonSystem:
     def assemble(self) -> None:
         """Residuals, and what the tangents are made of."""
         method, work = self._method, self._method.work
-        assemble(method.state, method.trial, work.past, self._c0, method.h, method.section, method.loads, self._ends,
-                 work.nodes, work.feedback, work.system, method.contact.touch)  # fmt: skip
+        balance_nodes(method.state, method.trial, work.past, self._c0, method.section, method.loads, work.nodes)
+        form_residuals(method.trial, work.past, self._c0, method.h, method.section, self._ends, work.nodes,
+                       work.feedback, work.system)  # fmt: skip
 
     def factor(self) -> bool:
         """Block elimination: form the panels and factor them."""
@@ -101,19 +103,22 @@ class StagesSystem:
     def evaluate(self) -> None:
         """Residuals."""
         method = self._method
-        evaluate(method.chain, method._loads, method.driven, method.stages, method.contact.touch, method.work)
+        evaluate(method.chain, method._loads, method.driven, method.stages, method.work.residuals)
 
     def factor(self) -> bool:
         """Tangents, and the real and the complex system factored."""
         method, work = self._method, self._method.work
-        return bool(factor_both(method.chain, method._loads, method.driven, SCHEME, self._dt, method.stages, work))
+        return bool(factor_both(method.chain, method._loads, method.driven, SCHEME, self._dt, method.stages,
+                                work.tangents, work.real, work.pair))  # fmt: skip
 
     def solve(self) -> None:
         """Both systems solved for the residuals."""
         method, work = self._method, self._method.work
-        solve_increments(method.chain, method.driven, SCHEME, self._dt, method.stages, method.contact.touch, work)
+        transform_residuals(method.driven, SCHEME, method.stages, work.tangents.R, work.residuals, work.transformed)
+        solve_stages(method.chain, method.driven, work.tangents, SCHEME.gamma / self._dt, SCHEME.pair / self._dt,
+                     work.transformed, work.real, work.pair)  # fmt: skip
 
     def update(self) -> None:
         """A vanishing part of the increments added to the stages, at the cost of all."""
-        method = self._method
-        update(method.chain, SCHEME, 1.0, 1e-30, method.stages, method.work)
+        method, work = self._method, self._method.work
+        update(method.chain, SCHEME, 1.0, 1e-30, method.stages, work.tangents, work.real, work.pair)

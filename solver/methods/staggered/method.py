@@ -166,8 +166,9 @@ class StaggeredMethod(RadauMethod):
     def _errors(self, dt: float) -> tuple[float, float, float, float]:
         """Of the trial: rotation (rad), error and motion; position (m) likewise."""
         errors: tuple[float, float, float, float] = estimate_error(
-            self.chain, self.driven, SCHEME, dt, self.state, self._centres, self.stages, self.work
-        )
+            self.chain, self.driven, SCHEME, dt, self.state, self._centres, self.stages, self.work.transformed,
+            self.work.tangents, self.work.real,
+        )  # fmt: skip
         return errors
 
     def _place_nodes(self, R: Array, omega: Array, base: Array, centres: Array) -> None:

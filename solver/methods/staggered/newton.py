@@ -77,21 +77,19 @@ def mix(weights: Array, source: Array, target: Array) -> None:
 
 
 @kernel
-def join_stages(chain: Chain, driven: Driven, stages: Stages, touch: Touch, work: Work) -> None:
-    """Write the forces of contact and the moments of all stages, whose motion is known."""
-    if touching(touch):
-        press_stages(chain, stages, driven, touch, work.coupling)
+def join_stages(chain: Chain, stages: Stages) -> None:
+    """Write the moments of all stages, whose motion is known."""
     for i in range(STAGES):
         bend_joints(chain, stages.quaternion[i], stages.bend[i], stages.moment[i], stages.left[i], stages.right[i])
 
 
 @kernel
-def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, touch: Touch, work: Work) -> None:
-    """Write the residuals of all stages, whose motion is known."""
-    join_stages(chain, driven, stages, touch, work)
+def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residuals: Residuals) -> None:
+    """Write the residuals of all stages, whose motion and forces of contact are known."""
+    join_stages(chain, stages)
     for i in range(STAGES):
-        balance_segments(chain, loads, driven, stages, work.residuals, i)
-        condition_ends(chain, driven, stages, work.residuals, i)
+        balance_segments(chain, loads, driven, stages, residuals, i)
+        condition_ends(chain, driven, stages, residuals, i)
 
 
 @kernel
@@ -129,11 +127,10 @@ def _turn_residuals(driven: Driven, stages: Stages, R: Array, residuals: Residua
 
 
 @kernel
-def update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: Stages,
-            work: Work) -> tuple[float, float]:  # fmt: skip
+def update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: Stages, tangents: Tangents,
+           real: Factors, pair: Factors) -> tuple[float, float]:  # fmt: skip
     """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one."""
-    T, frame = scheme.transform, work.tangents.R
-    real, pair = work.real, work.pair
+    T, frame = scheme.transform, tangents.R
     turned, forced, largest = 0.0, 0.0, unit
     for i in range(STAGES):
         t0, t1, t2 = fraction * T[i, 0], fraction * T[i, 1], fraction * T[i, 2]
@@ -166,36 +163,29 @@ def update(chain: Chain, scheme: Scheme, unit: float, fraction: float, stages: S
                 forced = max(forced, abs(change))
                 largest = max(largest, abs(stages.F[i, a, k]))
         for k in range(3):
-            z0 = node_moves(chain, work.tangents, pair, 0, k)
-            stages.shift[i, k] += t0 * node_moves(chain, work.tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
+            z0 = node_moves(chain, tangents, pair, 0, k)
+            stages.shift[i, k] += t0 * node_moves(chain, tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
     return turned / fraction, forced / (fraction * largest)
 
 
 @kernel
-def solve_increments(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stages: Stages, touch: Touch,
-               work: Work) -> float:  # fmt: skip
-    """Solve for the increments of the stages; return how much of them may be taken."""
-    residuals, transformed, tangents = work.residuals, work.transformed, work.tangents
-    _turn_residuals(driven, stages, tangents.R, residuals)
+def transform_residuals(driven: Driven, scheme: Scheme, stages: Stages, R: Array, residuals: Residuals,
+                        transformed: Residuals) -> None:  # fmt: skip
+    """Write the residuals, in the tangents' frames `R`, as the right-hand sides of the real and the complex system."""
+    _turn_residuals(driven, stages, R, residuals)
     mix(scheme.back, residuals.rotation, transformed.rotation)
     mix(scheme.back, residuals.translation, transformed.translation)
     mix(scheme.back, residuals.ends, transformed.ends)
-    gamma, pair = scheme.gamma / dt, scheme.pair / dt
-    if touching(touch):
-        return solve_with_contact(chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma, pair,
-                                  dt, transformed, work.real, work.pair, touch, work.coupling)  # fmt: skip
-    solve_stages(chain, driven, tangents, gamma, pair, transformed, work.real, work.pair)
-    return 1.0
 
 
 @kernel
 def factor_both(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, stages: Stages,
-                work: Work) -> bool:  # fmt: skip
+                tangents: Tangents, real: Factors, pair: Factors) -> bool:  # fmt: skip
     """Write the tangents at the middle stage, and factor the real and the complex system; False if one is singular."""
-    segment_tangents(chain, loads, driven, stages, 1, work.tangents)
-    if not factor(chain, driven, work.tangents, scheme.gamma / dt, work.real):
+    segment_tangents(chain, loads, driven, stages, 1, tangents)
+    if not factor(chain, driven, tangents, scheme.gamma / dt, real):
         return False
-    return bool(factor(chain, driven, work.tangents, scheme.pair / dt, work.pair))
+    return bool(factor(chain, driven, tangents, scheme.pair / dt, pair))
 
 
 @inlined
@@ -217,31 +207,43 @@ def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, 
     """Solve for the stages of a step of dt; theta, shift and F hold the first guess. `unit` = EJ/L^2 (N).
 
     `part` of the step's largest departure from steady rotation may be left, where that is more than TOLERANCE.
-    Returns how it ended and the iterations.
+    Returns how it ended and the iterations. Records of many arrays go only to where they are needed: each one passed on
+    costs some ns in every iteration.
     """
-    before = 0.0
+    before, contact = 0.0, touching(touch)
+    residuals, transformed, tangents, real, pair = work.residuals, work.transformed, work.tangents, work.real, work.pair
     spin_steadily(state, scheme.nodes, dt, stages)
     for iteration in range(1, LARGEST_ITERATIONS + 1):
         if not move(state, stages, scheme.inverse, dt, chain.h) < LARGEST_TURN:
             return STALLED, iteration
-        evaluate(chain, loads, driven, stages, touch, work)
+        if contact:
+            press_stages(chain, stages, driven, touch, work.coupling)
+        evaluate(chain, loads, driven, stages, residuals)
         if iteration == 1:
             work.coupling.known[0] = 0
-            if not factor_both(chain, loads, driven, scheme, dt, stages, work):
+            if not factor_both(chain, loads, driven, scheme, dt, stages, tangents, real, pair):
                 return SINGULAR, iteration
-        fraction = solve_increments(chain, driven, scheme, dt, stages, touch, work)
-        turned, forced = update(chain, scheme, unit, fraction, stages, work)
+        transform_residuals(driven, scheme, stages, tangents.R, residuals, transformed)
+        fraction, gamma, lambda_ = 1.0, scheme.gamma / dt, scheme.pair / dt
+        if contact:
+            fraction = solve_with_contact(chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma,
+                                          lambda_, dt, transformed, real, pair, touch, work.coupling)  # fmt: skip
+        else:
+            solve_stages(chain, driven, tangents, gamma, lambda_, transformed, real, pair)
+        turned, forced = update(chain, scheme, unit, fraction, stages, tangents, real, pair)
         if not max(turned, forced) < LARGEST_INCREMENT:
             return STALLED, iteration
-        share = part * IN_CONTACT if touching(touch) else part
+        share = part * IN_CONTACT if contact else part
         enough = max(TOLERANCE, share * largest_departure(stages))
         # contact's forces are as large as they are whatever the step: what counts is their own relative error
-        size = max(turned / enough, forced / (max(enough, share) if touching(touch) else enough))
+        size = max(turned / enough, forced / (max(enough, share) if contact else enough))
         if is_enough(size, before):
             move(state, stages, scheme.inverse, dt, chain.h)
-            join_stages(chain, driven, stages, touch, work)
+            if contact:
+                press_stages(chain, stages, driven, touch, work.coupling)
+            join_stages(chain, stages)
             return CONVERGED, iteration
-        if diverges(iteration, size, before) and not touching(touch):
+        if diverges(iteration, size, before) and not contact:
             return STALLED, iteration
         before = size if fraction == 1.0 else 0.0
     return STALLED, LARGEST_ITERATIONS
@@ -259,14 +261,15 @@ def largest_departure(stages: Stages) -> float:
 
 @kernel
 def estimate_error(chain: Chain, driven: Driven, scheme: Scheme, dt: float, state: State, centres: Array,
-                   stages: Stages, work: Work) -> tuple[float, float, float, float]:  # fmt: skip
+                   stages: Stages, residuals: Residuals, tangents: Tangents,
+                   factors: Factors) -> tuple[float, float, float, float]:  # fmt: skip
     """The embedded estimate of the step's error, and the motion: rotation (rad) error, motion; position (m) likewise.
 
     `centres` (3, N, 3): position, velocity and acceleration of the centres at the start of the step. The estimate of
-    order 3, g = dt/gamma y'(t) + sum of e_i (Y_i - y), is smoothed by the real system, M mu^2 + C mu + K.
+    order 3, g = dt/gamma y'(t) + sum of e_i (Y_i - y), is smoothed by the real system, M mu^2 + C mu + K, whose
+    `factors` are given; the first stage of `residuals` is overwritten.
     """
     mu, e = scheme.gamma / dt, scheme.error
-    residuals, factors = work.transformed, work.real
     rotation, translation = residuals.rotation[0], residuals.translation[0]
     residuals.ends[0] = 0.0
     rotation[:] = 0.0
@@ -290,8 +293,8 @@ def estimate_error(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stat
         for k in range(3):
             translation[j, k] = 0.0
             for m in range(3):
-                translation[j, k] -= work.tangents.M[j, k, m] * mu * (mu * place3[m] + rate3[m])
-    load_rows(chain, driven, work.tangents, mu, rotation, translation, residuals.ends[0], factors)
+                translation[j, k] -= tangents.M[j, k, m] * mu * (mu * place3[m] + rate3[m])
+    load_rows(chain, driven, tangents, mu, rotation, translation, residuals.ends[0], factors)
     solve(factors)
     displace(factors)
     turn_error, move_error = 0.0, 0.0

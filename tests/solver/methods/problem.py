@@ -7,18 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver import Contact, Initial, Numerics, Rod, Scene
-from solver.contact.forces import change_forces
+from solver.contact.forces import change_forces, touching
 from solver.contact.self_contact import SelfContact
 from solver.curve import Curve
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.methods.box.augmented import wide_panel, wide_start
-from solver.methods.box.coupling import _move
+from solver.methods.box.coupling import _move, add_contact
 from solver.methods.box.fields import State
 from solver.methods.box.generalized_alpha import history
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.method import _initial_state
-from solver.methods.box.newton import EndValues, Scales, Work, assemble, set_scales
+from solver.methods.box.newton import EndValues, Scales, Work, balance_nodes, form_residuals, set_scales
 from solver.methods.box.schemes import Scheme, SpaceScheme, c0_of
 from solver.methods.box.trial import total_bending
 from solver.rod import Array, Section, sample
@@ -79,8 +79,11 @@ class Problem:
     def residual(self) -> Array:
         """All residuals in the order of the system's rows."""
         system = self.work.system
-        assemble(self.old, self.new, self.work.past, self.c0, self.h, self.section, self.loads, self.ends,
-                 self.work.nodes, self.work.feedback, system, self.contact.touch)  # fmt: skip
+        work = self.work
+        balance_nodes(self.old, self.new, work.past, self.c0, self.section, self.loads, work.nodes)
+        if touching(self.contact.touch):
+            add_contact(self.new, work.nodes, self.h, self.contact.touch)
+        form_residuals(self.new, work.past, self.c0, self.h, self.section, self.ends, work.nodes, work.feedback, system)
         if self.wide:
             parts = [system.wide.b_start, system.wide.b.ravel(), system.b_end]
         else:

@@ -47,7 +47,8 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     The frame follows the centreline by parallel transport (sampled eight times finer), turned by `twist`.
     """
     refined = np.linspace(s[0], s[-1], 8 * (len(s) - 1) + 1)
-    curve = CubicSpline(refined, initial.centreline(refined))
+    path = initial.centreline(refined)
+    curve = CubicSpline(refined, path)
     tangent = curve(refined, 1)
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
     first = _transport(tangent, np.array(initial.a1, dtype=float))
@@ -59,7 +60,7 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     kappa_lab = np.cross(tangent, bend)
     kappa = np.einsum("nij,ni->nj", R, kappa_lab)
     kappa[:, 2] = CubicSpline(refined, angle)(refined, 1)
-    return initial.centreline(s), quaternion_of(R[::8]), kappa[::8]
+    return path[::8].copy(), quaternion_of(R[::8]), kappa[::8]
 
 
 def _transport(tangent: Array, first: Array) -> Array:

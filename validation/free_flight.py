@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PPoly
 
 from solver import End, Frame, Initial, Scene, simulate
 from solver.rod import Array, sample
@@ -15,13 +17,18 @@ VELOCITY = (0.3, -0.2, 0.5)
 SPIN = (1.0, 2.0, 0.5)
 
 
-def curled(s: Array) -> Array:
-    """A centreline whose tangent turns by 2 and 1 rad; its curvature and shear fade at both ends."""
+@cache
+def _curl() -> PPoly:
     fine = np.linspace(0.0, 1.0, 2001)
     turned = fine**3 * (10.0 - 15.0 * fine + 6.0 * fine**2)
     polar, azimuth = 2.0 * turned, 1.0 * turned
     tangent = np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], axis=1)
-    return np.asarray(CubicSpline(LENGTH * fine, tangent).antiderivative()(s), dtype=float)
+    return CubicSpline(LENGTH * fine, tangent).antiderivative()
+
+
+def curled(s: Array) -> Array:
+    """A centreline whose tangent turns by 2 and 1 rad; its curvature and shear fade at both ends."""
+    return np.asarray(_curl()(s), dtype=float)
 
 
 def throw(intervals: int, dt: float) -> Scene:

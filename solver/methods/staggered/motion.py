@@ -18,25 +18,29 @@ from __future__ import annotations
 import numpy as np
 
 from solver.kernel import inlined, kernel
+from solver.lanes import LANES, gather, scatter
 from solver.methods.staggered.chain import STAGES, Stages, State
 from solver.rod import Array
-from solver.rotation import matrix_of, multiply, relative_rotation, turn
+from solver.rotation import (
+    angle_by_sine,
+    any_angle_by_sine,
+    cosines_and_sincs,
+    cross,
+    entries,
+    is_small,
+    product,
+    unit,
+)
 
 LARGEST_TURN = 2.0
-"""Rotation (rad) in one step beyond which the series of a and b are not exact to rounding."""
+"""Rotation (rad) in one step beyond which the series are not exact to rounding."""
 
 
 @inlined
 def _series(square: float) -> tuple[float, float, float, float]:
-    """a, b and their derivatives by x^2, exact to rounding: seven terms up to 0.3 rad, eleven up to LARGEST_TURN."""
-    return _sum_series(square, 7) if square < 0.1 else _sum_series(square, 11)
-
-
-@inlined
-def _sum_series(square: float, terms: int) -> tuple[float, float, float, float]:
-    """`terms` terms of sum over k of (-x^2)^k / (2 k + 2)! and / (2 k + 3)!, and of their derivatives, by Horner."""
+    """a, b and their derivatives by x^2: sums over k of (-x^2)^k / (2 k + 2)! and / (2 k + 3)!, by Horner."""
     a, b, da, db = 0.0, 0.0, 0.0, 0.0
-    for k in range(terms - 1, -1, -1):
+    for k in range(10, -1, -1):
         even, odd = 1.0 / ((2 * k + 3.0) * (2 * k + 4.0)), 1.0 / ((2 * k + 4.0) * (2 * k + 5.0))
         da, db = -even * (a + square * da), -odd * (b + square * db)
         a, b = 1.0 - even * (a * square), 1.0 - odd * (b * square)
@@ -45,54 +49,84 @@ def _sum_series(square: float, terms: int) -> tuple[float, float, float, float]:
 
 @kernel
 def spin_steadily(state: State, nodes: Array, dt: float, stages: Stages) -> None:
-    """Write R_n, and exp([omega_n tau]) as quaternions and matrices at the stages, tau = nodes[i] dt."""
-    unturned, angle = np.array([1.0, 0.0, 0.0, 0.0]), np.empty(3)
-    for j in range(len(state.omega)):
-        matrix_of(state.quaternion[j], stages.start[j])
-    for i in range(STAGES):
-        for j in range(len(state.omega)):
-            for k in range(3):
-                angle[k] = state.omega[j, k] * nodes[i] * dt
-            turn(unturned, angle, stages.steady[i, j])
-            matrix_of(stages.steady[i, j], stages.S[i, j])
+    """Write R_n, and exp([omega_n tau]) as quaternions and matrices at the stages, tau = nodes[i] dt.
+
+    Eight abreast: see `lanes`.
+    """
+    n, rows = len(state.omega), np.empty((19, LANES))
+    for first in range(0, n, LANES):
+        gather(state.quaternion, 4, first, rows, 0)
+        gather(state.omega, 3, first, rows, 4)
+        for m in range(LANES):
+            (rows[10, m], rows[11, m], rows[12, m], rows[13, m], rows[14, m], rows[15, m], rows[16, m], rows[17, m],
+             rows[18, m]) = entries(rows[0, m], rows[1, m], rows[2, m], rows[3, m])  # fmt: skip
+        scatter(rows, 10, 9, first, stages.start.reshape(n, 9))
+        for i in range(STAGES):
+            for m in range(LANES):
+                rows[7, m], rows[8, m], rows[9, m] = (rows[4, m] * nodes[i] * dt, rows[5, m] * nodes[i] * dt,
+                                                      rows[6, m] * nodes[i] * dt)  # fmt: skip
+            cosines_and_sincs(rows, 7)
+            for m in range(LANES):
+                sinc = rows[11, m]
+                a, b, c, d = unit(rows[10, m], sinc * rows[7, m], sinc * rows[8, m], sinc * rows[9, m])
+                rows[0, m], rows[1, m], rows[2, m], rows[3, m] = a, b, c, d
+                (rows[10, m], rows[11, m], rows[12, m], rows[13, m], rows[14, m], rows[15, m], rows[16, m],
+                 rows[17, m], rows[18, m]) = entries(a, b, c, d)  # fmt: skip
+            scatter(rows, 0, 4, first, stages.steady[i])
+            scatter(rows, 10, 9, first, stages.S[i].reshape(n, 9))
 
 
 @kernel
 def turn_segments(state: State, stages: Stages, i: int) -> float:
-    """Write quaternion, R, omega and alpha of stage i; return the largest |theta|^2."""
-    largest = 0.0
-    turned = np.empty(4)
-    for j in range(stages.theta.shape[1]):
-        theta, v, w = stages.theta[i, j], stages.theta_t[i, j], stages.theta_tt[i, j]
-        turn(state.quaternion[j], theta, turned)
-        multiply(turned, stages.steady[i, j], stages.quaternion[i, j])
-        matrix_of(stages.quaternion[i, j], stages.R[i, j])
-        x, y, z = theta[0], theta[1], theta[2]
-        square = x * x + y * y + z * z
-        largest = max(largest, square)
-        a, b, da, db = _series(square)
-        growth = 2.0 * (x * v[0] + y * v[1] + z * v[2])
-        p0, p1, p2 = y * v[2] - z * v[1], z * v[0] - x * v[2], x * v[1] - y * v[0]
-        s0, s1, s2 = y * w[2] - z * w[1], z * w[0] - x * w[2], x * w[1] - y * w[0]
-        # theta x (theta x theta_t) and theta_t x (theta x theta_t) are m and n, theta x (theta x theta_tt) is u
-        m0, m1, m2 = y * p2 - z * p1, z * p0 - x * p2, x * p1 - y * p0
-        n0, n1, n2 = v[1] * p2 - v[2] * p1, v[2] * p0 - v[0] * p2, v[0] * p1 - v[1] * p0
-        u0, u1, u2 = y * s2 - z * s1, z * s0 - x * s2, x * s1 - y * s0
-        da *= growth
-        db *= growth
-        w0, w1, w2 = v[0] - a * p0 + b * m0, v[1] - a * p1 + b * m1, v[2] - a * p2 + b * m2
-        g0 = w[0] - a * s0 + b * u0 - da * p0 + db * m0 + b * n0
-        g1 = w[1] - a * s1 + b * u1 - da * p1 + db * m1 + b * n1
-        g2 = w[2] - a * s2 + b * u2 - da * p2 + db * m2 + b * n2
-        S, steady, omega, alpha = stages.S[i, j], state.omega[j], stages.omega[i, j], stages.alpha[i, j]
-        for k in range(3):
-            omega[k] = S[0, k] * w0 + S[1, k] * w1 + S[2, k] * w2
-            alpha[k] = S[0, k] * g0 + S[1, k] * g1 + S[2, k] * g2
-        alpha[0] -= steady[1] * omega[2] - steady[2] * omega[1]
-        alpha[1] -= steady[2] * omega[0] - steady[0] * omega[2]
-        alpha[2] -= steady[0] * omega[1] - steady[1] * omega[0]
-        for k in range(3):
-            omega[k] += steady[k]
+    """Write quaternion, R, omega and alpha of stage i; return the largest |theta|^2. Eight abreast: see `lanes`."""
+    n, largest, rows = stages.theta.shape[1], 0.0, np.empty((49, LANES))
+    for first in range(0, n, LANES):
+        gather(stages.theta[i], 3, first, rows, 43)
+        gather(stages.theta_t[i], 3, first, rows, 3)
+        gather(stages.theta_tt[i], 3, first, rows, 6)
+        gather(state.omega, 3, first, rows, 9)
+        gather(state.quaternion, 4, first, rows, 12)
+        gather(stages.steady[i], 4, first, rows, 16)
+        gather(stages.S[i].reshape(n, 9), 9, first, rows, 20)
+        cosines_and_sincs(rows, 43)
+        for m in range(LANES):
+            x, y, z, cosine, sinc, square = rows[43, m], rows[44, m], rows[45, m], rows[46, m], rows[47, m], rows[48, m]
+            p, q, r, s = product(rows[12, m], rows[13, m], rows[14, m], rows[15, m],
+                                 cosine, sinc * x, sinc * y, sinc * z)  # fmt: skip
+            p, q, r, s = unit(p, q, r, s)
+            p, q, r, s = product(p, q, r, s, rows[16, m], rows[17, m], rows[18, m], rows[19, m])
+            rows[29, m], rows[30, m], rows[31, m], rows[32, m] = p, q, r, s
+            (rows[33, m], rows[34, m], rows[35, m], rows[36, m], rows[37, m], rows[38, m], rows[39, m], rows[40, m],
+             rows[41, m]) = entries(p, q, r, s)  # fmt: skip
+            a, b, da, db = _series(square)
+            v0, v1, v2 = rows[3, m], rows[4, m], rows[5, m]
+            w0, w1, w2 = rows[6, m], rows[7, m], rows[8, m]
+            growth = 2.0 * (x * v0 + y * v1 + z * v2)
+            da, db = growth * da, growth * db
+            p0, p1, p2 = cross(x, y, z, v0, v1, v2)
+            s0, s1, s2 = cross(x, y, z, w0, w1, w2)
+            m0, m1, m2 = cross(x, y, z, p0, p1, p2)
+            n0, n1, n2 = cross(v0, v1, v2, p0, p1, p2)
+            u0, u1, u2 = cross(x, y, z, s0, s1, s2)
+            f0, f1, f2 = v0 - a * p0 + b * m0, v1 - a * p1 + b * m1, v2 - a * p2 + b * m2
+            g0 = w0 - a * s0 + b * u0 - da * p0 + db * m0 + b * n0
+            g1 = w1 - a * s1 + b * u1 - da * p1 + db * m1 + b * n1
+            g2 = w2 - a * s2 + b * u2 - da * p2 + db * m2 + b * n2
+            o0, o1, o2 = rows[9, m], rows[10, m], rows[11, m]
+            d0 = rows[20, m] * f0 + rows[23, m] * f1 + rows[26, m] * f2
+            d1 = rows[21, m] * f0 + rows[24, m] * f1 + rows[27, m] * f2
+            d2 = rows[22, m] * f0 + rows[25, m] * f1 + rows[28, m] * f2
+            c0, c1, c2 = cross(o0, o1, o2, d0, d1, d2)
+            rows[42, m], rows[43, m], rows[44, m] = d0 + o0, d1 + o1, d2 + o2
+            rows[45, m] = rows[20, m] * g0 + rows[23, m] * g1 + rows[26, m] * g2 - c0
+            rows[46, m] = rows[21, m] * g0 + rows[24, m] * g1 + rows[27, m] * g2 - c1
+            rows[47, m] = rows[22, m] * g0 + rows[25, m] * g1 + rows[28, m] * g2 - c2
+        for m in range(LANES):
+            largest = max(largest, rows[48, m])
+        scatter(rows, 29, 4, first, stages.quaternion[i])
+        scatter(rows, 33, 9, first, stages.R[i].reshape(n, 9))
+        scatter(rows, 42, 3, first, stages.omega[i])
+        scatter(rows, 45, 3, first, stages.alpha[i])
     return largest
 
 
@@ -162,20 +196,44 @@ def differentiate(inverse: Array, dt: float, values: Array, rates: Array) -> Non
 @kernel
 def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Array, weights: Array, ratio: float,
                 stages: Stages) -> None:  # fmt: skip
-    """Guess theta of a step of ratio dt: the motion of the last step, `theta` from the state `before`, goes on."""
-    ahead, turned, target, departed = np.empty(3), np.empty(4), np.empty(4), np.empty(3)
-    for i in range(STAGES):
-        for j in range(len(state.omega)):
-            for k in range(3):
-                ahead[k] = weights[i, 0] * theta[0, j, k] + weights[i, 1] * theta[1, j, k]
-                ahead[k] += weights[i, 2] * theta[2, j, k]
-            turn(before.quaternion[j], ahead, turned)
-            for k in range(3):
-                ahead[k] = before.omega[j, k] * dt * (1.0 + ratio * nodes[i])
-            turn(turned, ahead, target)
-            for k in range(3):
-                ahead[k] = -state.omega[j, k] * dt * ratio * nodes[i]
-            turn(target, ahead, turned)
-            relative_rotation(state.quaternion[j], turned, departed)
-            for k in range(3):
-                stages.theta[i, j, k] = departed[k]
+    """Guess theta of a step of ratio dt: the motion of the last step, `theta` from the state `before`, goes on.
+
+    Eight abreast: see `lanes`.
+    """
+    n, rows = len(state.omega), np.empty((39, LANES))
+    for first in range(0, n, LANES):
+        gather(before.quaternion, 4, first, rows, 0)
+        gather(before.omega, 3, first, rows, 4)
+        gather(state.quaternion, 4, first, rows, 7)
+        gather(state.omega, 3, first, rows, 11)
+        for i in range(STAGES):
+            gather(theta[0], 3, first, rows, 15)
+            gather(theta[1], 3, first, rows, 18)
+            gather(theta[2], 3, first, rows, 21)
+            back, ahead = dt * ratio * nodes[i], dt * (1.0 + ratio * nodes[i])
+            for m in range(LANES):
+                for k in range(3):
+                    x = weights[i, 0] * rows[15 + k, m] + weights[i, 1] * rows[18 + k, m]
+                    rows[15 + k, m] = x + weights[i, 2] * rows[21 + k, m]
+                    rows[24 + k, m] = ahead * rows[4 + k, m]
+                    rows[30 + k, m] = -back * rows[11 + k, m]
+            cosines_and_sincs(rows, 15)
+            cosines_and_sincs(rows, 24)
+            cosines_and_sincs(rows, 30)
+            for m in range(LANES):
+                a, b, c, d = rows[0, m], rows[1, m], rows[2, m], rows[3, m]
+                for at in (15, 24, 30):
+                    sinc = rows[at + 4, m]
+                    x, y, z = sinc * rows[at, m], sinc * rows[at + 1, m], sinc * rows[at + 2, m]
+                    a, b, c, d = product(a, b, c, d, rows[at + 3, m], x, y, z)
+                    a, b, c, d = unit(a, b, c, d)
+                rows[36, m], x, y, z = product(rows[7, m], -rows[8, m], -rows[9, m], -rows[10, m], a, b, c, d)
+                rows[15, m], rows[16, m], rows[17, m], rows[37, m] = x, y, z, x * x + y * y + z * z
+                rows[38, m] = angle_by_sine(rows[37, m], rows[36, m])
+            for m in range(LANES):
+                if not is_small(rows[37, m], rows[36, m]):
+                    rows[38, m] = any_angle_by_sine(rows[37, m], rows[36, m])
+            for m in range(LANES):
+                for k in range(3):
+                    rows[15 + k, m] *= rows[38, m]
+            scatter(rows, 15, 3, first, stages.theta[i])

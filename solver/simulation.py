@@ -167,10 +167,10 @@ class Simulation(Run):
 
     def _take(self, t: float, dt: float, iterations: int) -> None:
         """Make the step that was tried the state, and enter it in the books."""
-        self._method.take_step(t, dt)
+        flowed = self._method.take_step(t, dt)
         self._turn = self._trial_turn
         self.statistics.steps += 1
-        self._accounts.after_step(dt, iterations)
+        self._accounts.after_step(dt, iterations, flowed)
 
 
 def warm(method: str = Numerics.method) -> None:

@@ -8,8 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.curve import Curve
+from solver.ends import DrivenEnd
 from solver.rod import Array, Section
 from solver.scene import DistributedLoad, PointLoad, Scene
+
+NO_LOAD = np.zeros(6)
 
 
 class Loads(NamedTuple):
@@ -49,8 +52,6 @@ class AppliedLoads:
         inside = tuple(load for load in scene.points if load not in at_ends)
         self._points = [(load, point_weights(load.s, centres, lengths)) for load in inside]
         self._at_ends = at_ends
-        self.has_end_loads = bool(at_ends)
-        """Whether there are point loads at the ends."""
         self._given = scene.distributed + inside
         area = 0.25 * pi * section.diameter**2
         density = fluid.density if fluid else 0.0
@@ -84,6 +85,14 @@ class AppliedLoads:
             if load.s == s and load.frame == frame:
                 total += [c.value(t) for c in (*load.force, *load.moment)]
         return total if s > 0.0 else -total
+
+    def driving(self, end: DrivenEnd, s: float, t: float, dt: float, gain: float) -> tuple[Array, Array]:
+        """What drives the end at s at t + dt: values (6,) of its conditions, loads added, and dead lab loads (6,)."""
+        values, dead = end.values(t, dt, gain), NO_LOAD
+        if self._at_ends:
+            following, dead = (self.at_end(t + dt, s, frame) for frame in ("material", "lab"))
+            values += np.where(end.kinds % 2 == 1, following, 0.0)
+        return values, dead
 
     def at(self, t: float) -> Loads:
         """The loads at time t; the arrays are the same ones at every call."""

@@ -9,6 +9,7 @@ import numpy as np
 from solver.frame import Frame
 from solver.measures.topology import writhe
 from solver.methods.method import Method
+from solver.rod import Array
 from solver.rotation import rotate
 from solver.scene import Scene
 
@@ -33,9 +34,9 @@ class Accounts:
         self._turnover = 0.0
         self._Lk_at_start = 0.0
 
-    def after_step(self, dt: float, iterations: int) -> None:
-        """Enter the step just taken."""
-        self._totals += self._method.flows(dt)
+    def after_step(self, dt: float, iterations: int, flowed: Array) -> None:
+        """Enter the step just taken, and the energy (4,) that flowed in it: see `Method.take_step`."""
+        self._totals += flowed
         self._dt, self._iterations = dt, iterations
 
     def frame(self, t: float) -> Frame:

@@ -47,17 +47,17 @@ class Method(Protocol):
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
 
-    def take_step(self, t: float, dt: float) -> None:
-        """Make the trial the state."""
+    def take_step(self, t: float, dt: float) -> Array:
+        """Make the trial the state; return the energy (4,) in J that flowed in the step.
+
+        From the ends, from the loads, dissipated, into contact.
+        """
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
 
     def step_limit(self) -> float:
         """The longest next step (s) that contact allows."""
-
-    def flows(self, dt: float) -> Array:
-        """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, into contact."""
 
     def fields(self) -> Fields:
         """The state along the rod."""

@@ -164,7 +164,7 @@ def test_steps_end_on_the_corners_of_what_drives_the_rod() -> None:
     reached: list[float] = []
     simulation = simulate(scene)
     take = simulation._method.take_step
-    simulation._method.take_step = lambda t, dt: (reached.append(t + dt), take(t, dt))[1]  # type: ignore[method-assign,func-returns-value]
+    simulation._method.take_step = lambda t, dt: (reached.append(t + dt), take(t, dt))[1]  # type: ignore[method-assign]
     list(simulation)
     assert min(abs(t - 0.537) for t in reached) < 1e-9
 

@@ -91,19 +91,27 @@ class BoxMethod:
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
         return int(status), int(iterations)
 
-    def take_step(self, t: float, dt: float) -> None:
-        """Make the trial the state."""
+    def take_step(self, t: float, dt: float) -> Array:
+        """Make the trial the state; return the energy (4,) in J that flowed in the step.
+
+        From the ends, from the loads, dissipated, into contact.
+        """
         old, new = self.state, self.trial
         self._F_rate = (new.Y[:, F:] - old.Y[:, F:]) / dt
-        c0 = c0_of(self._rule, dt)
+        # a step that finds forces knows none at its begin: there those of its end count
+        late = 1.0 if self._consistent else 0.5
+        enter_step(
+            old, new, self.work.nodes, self.section, self.loads, self.applied.weight, self.contact.power()[0],
+            self.work.past, c0_of(self._rule, dt), dt, late, self.h, self._flows,
+        )  # fmt: skip
         for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
-            shift = new.r[node : node + 1] - old.r[node : node + 1]
-            turned = self.work.past[node, 3:6] + new.Y[node, OMEGA : OMEGA + 3] / c0
-            end.follow(shift[0] if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift)[0], turned)
+            shift, turned = self._flows.moved[node, :3], self._flows.moved[node, 3:]
+            end.follow(shift if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift[None])[0], turned)
         self.state, self.trial, self._taken_dt, self._bending = new, old, dt, self._measured.bending
         self._stretch_before, self._stretch, self._trial_stretch = (
             self._stretch, self._trial_stretch, self._stretch_before
         )  # fmt: skip
+        return self._flows.energy
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
@@ -136,18 +144,6 @@ class BoxMethod:
     def step_limit(self) -> float:
         """The longest next step (s) that contact allows."""
         return self.contact.step_limit
-
-    def flows(self, dt: float) -> Array:
-        """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, into contact.
-
-        A step that finds forces knows none at its begin: there those of its end count.
-        """
-        enter_step(
-            self.trial, self.state, self.work.nodes, self.section, self.loads, self.applied.weight,
-            self.contact.power()[0], self.work.past, c0_of(self._rule, dt), dt, 1.0 if self._consistent else 0.5,
-            self.h, self._flows,
-        )  # fmt: skip
-        return self._flows.energy
 
     def fields(self) -> Fields:
         """The state along the rod."""
@@ -195,15 +191,11 @@ class BoxMethod:
             self.trial.Y[:, F:] += dt * self._F_rate
 
     def _ends(self, t: float, dt: float) -> EndValues:
-        start, end = (self._targets(end, s, t, dt) for end, s in ((self.start, 0.0), (self.end, self.s[-1])))
-        return EndValues(self.start.kinds, *start, self.end.kinds, *end)
-
-    def _targets(self, end: DrivenEnd, s: float, t: float, dt: float) -> tuple[Array, Array]:
-        """Values of an end's conditions, and dead lab loads on it, at the end of the step."""
-        values = end.values(t, dt, LARGEST_FEEDBACK / dt)
-        loaded = end.kinds % 2 == 1
-        values[loaded] += self.applied.at_end(t + dt, s, "material")[loaded]
-        return values, self.applied.at_end(t + dt, s, "lab")
+        """What is given at both ends at the end of the step."""
+        gain, length = LARGEST_FEEDBACK / dt, float(self.s[-1])
+        start = self.applied.driving(self.start, 0.0, t, dt, gain)
+        return EndValues(self.start.kinds, *start,
+                         self.end.kinds, *self.applied.driving(self.end, length, t, dt, gain))  # fmt: skip
 
 
 def _initial_state(initial: Initial, s: Array, section: Section) -> tuple[State, Array]:

@@ -56,8 +56,11 @@ class OneAxisMethod(RadauMethod):
         """Nothing: there is no contact."""
         return ""
 
-    def take_step(self, t: float, dt: float) -> None:
-        """Make the trial the state."""
+    def take_step(self, t: float, dt: float) -> Array:
+        """Make the trial the state; return the energy (4,) in J that flowed in the step.
+
+        From the ends, from the loads, dissipated, none into contact. By Radau's own quadrature, of order 5.
+        """
         stages, weights = self.stages, tableau.A[2] * dt
         stage_powers(self.chain, self._loads, self.driven, stages, self._weight, self._powers)
         swing = 0.5j * self.chain.h * self.chain.swing * stages.T[:, -2] * stages.omega[:, -2]
@@ -74,6 +77,7 @@ class OneAxisMethod(RadauMethod):
         self._last_dt = dt
         for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
             kept[:] = now
+        return np.append(weights @ self._powers, 0.0)
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
@@ -91,13 +95,6 @@ class OneAxisMethod(RadauMethod):
     def step_limit(self) -> float:
         """None."""
         return inf
-
-    def flows(self, dt: float) -> Array:
-        """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, none into contact.
-
-        By Radau's own quadrature, of order 5.
-        """
-        return np.append(dt * tableau.A[2] @ self._powers, 0.0)
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""

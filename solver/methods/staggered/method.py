@@ -74,8 +74,11 @@ class StaggeredMethod(RadauMethod):
         place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
         return r, V
 
-    def take_step(self, t: float, dt: float) -> None:
-        """Make the trial the state."""
+    def take_step(self, t: float, dt: float) -> Array:
+        """Make the trial the state; return the energy (4,) in J that flowed in the step.
+
+        From the ends, from the loads, dissipated, into contact. By Radau's own quadrature, of order 5.
+        """
         stages, weights = self.stages, tableau.A[2] * dt
         ends = self._end_velocities()
         stage_powers(self.chain, self._loads, self.driven, stages, self.applied.weight, ends, self._powers)
@@ -94,6 +97,10 @@ class StaggeredMethod(RadauMethod):
         self._last_dt = dt
         for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
             kept[:] = now
+        stored, rubbed = self.contact.power().T
+        powers = np.column_stack([self._powers, stored])
+        powers[:, 2] += rubbed
+        return np.asarray(weights @ powers)
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
@@ -107,16 +114,6 @@ class StaggeredMethod(RadauMethod):
     def step_limit(self) -> float:
         """The longest next step (s) that contact allows."""
         return self.contact.step_limit
-
-    def flows(self, dt: float) -> Array:
-        """Energy (4,) in J that flowed in the last step: from the ends, from the loads, dissipated, into contact.
-
-        By Radau's own quadrature, of order 5.
-        """
-        stored, rubbed = self.contact.power().T
-        powers = np.column_stack([self._powers, stored])
-        powers[:, 2] += rubbed
-        return np.asarray(dt * tableau.A[2] @ powers)
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""

@@ -24,7 +24,6 @@ NEWTON_PART = 1e-3
 """Of the tolerance of a step's error: what Newton's iteration may leave. (Nothing where steps are of fixed length.)"""
 FEEDBACK = 0.5
 """Part of an end's lag behind its prescribed place that a step takes back."""
-NO_LOAD = np.zeros(6)
 SMALL_MOTION = 1e-7
 """Rotation (rad) and displacement (rod lengths) in a step below which it is not shortened; or, if that is more, those
 of which the tolerated part is what Newton's iteration leaves: no shorter step has a smaller error."""
@@ -88,8 +87,4 @@ class RadauMethod(ABC):
     def _ends_at(self, t: float, tau: float, dt: float) -> Iterator[tuple[int, DrivenEnd, Array, Array]]:
         """What is given at both ends at t + tau of a step of dt: side, end, values (6,) and dead lab loads (6,)."""
         for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
-            values, dead = end.values(t, tau, FEEDBACK / dt), NO_LOAD
-            if self.applied.has_end_loads:
-                following, dead = (self.applied.at_end(t + tau, s, frame) for frame in ("material", "lab"))
-                values += np.where(end.kinds % 2 == 1, following, 0.0)
-            yield side, end, values, dead
+            yield side, end, *self.applied.driving(end, s, t, tau, FEEDBACK / dt)

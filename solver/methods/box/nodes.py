@@ -29,7 +29,11 @@ def rotation_tangent(R: Array, x: Array, J: Array, out: Array) -> None:
 
 @kernel
 def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) -> None:
-    """Write positions and orientations of `new` and the nodes' R, J, T with its tangent. Eight abreast: see `lanes`."""
+    """Write positions and orientations of `new` and the nodes' R, J, T with its tangent.
+
+    Eight abreast (see `lanes`), in rows from 0: r; 3: theta, cos, sinc, |theta|^2; 9: what J is of; 11: quaternion;
+    15: R; 24: J; 33: dT; and in the end T from 6.
+    """
     n, scale, rows = len(past), 1.0 / c0, np.empty((42, LANES))
     for first in range(0, n, LANES):
         gather(past, 6, first, rows, 0)

@@ -44,7 +44,8 @@ def _coefficient(square: float) -> tuple[float, float]:
 def bend_joints(chain: Chain, quaternion: Array, bend: Array, moment: Array, left: Array, right: Array) -> None:
     """Write Theta, q, B q and B^t q of all joints (N + 1, 3 each) for orientations `quaternion` (N + 2, 4).
 
-    Eight abreast: see `lanes`.
+    Eight abreast (see `lanes`), in rows from 0: the two quaternions, then sin(a/2), cos(a/2), sin(a/2)^2, a / sin(a/2),
+    then Theta, its square and b; 5: stiffness; 8: kappa0; 11: span; 12: q; 15, 18: B q and B^t q.
     """
     rows, span = np.empty((21, LANES)), chain.span.reshape(-1, 1)
     for first in range(0, len(bend), LANES):

@@ -51,7 +51,7 @@ def _series(square: float) -> tuple[float, float, float, float]:
 def spin_steadily(state: State, nodes: Array, dt: float, stages: Stages) -> None:
     """Write R_n, and exp([omega_n tau]) as quaternions and matrices at the stages, tau = nodes[i] dt.
 
-    Eight abreast: see `lanes`.
+    Eight abreast (see `lanes`), in rows from 0: quaternion; 4: omega_n; 7: omega_n tau, cos, sinc, square; 10: matrix.
     """
     n, rows = len(state.omega), np.empty((19, LANES))
     for first in range(0, n, LANES):
@@ -78,29 +78,33 @@ def spin_steadily(state: State, nodes: Array, dt: float, stages: Stages) -> None
 
 @kernel
 def turn_segments(state: State, stages: Stages, i: int) -> float:
-    """Write quaternion, R, omega and alpha of stage i; return the largest |theta|^2. Eight abreast: see `lanes`."""
-    n, largest, rows = stages.theta.shape[1], 0.0, np.empty((49, LANES))
+    """Write quaternion, R, omega and alpha of stage i; return the largest |theta|^2.
+
+    Eight abreast (see `lanes`), in rows from 0: theta, cos, sinc, |theta|^2; 6: theta_t; 9: theta_tt; 12: omega_n;
+    15: the quaternion of R_n; 19, 23: the steady rotation's, and S; and what comes of them from 32 on.
+    """
+    n, largest, rows = stages.theta.shape[1], 0.0, np.empty((51, LANES))
     for first in range(0, n, LANES):
-        gather(stages.theta[i], 3, first, rows, 43)
-        gather(stages.theta_t[i], 3, first, rows, 3)
-        gather(stages.theta_tt[i], 3, first, rows, 6)
-        gather(state.omega, 3, first, rows, 9)
-        gather(state.quaternion, 4, first, rows, 12)
-        gather(stages.steady[i], 4, first, rows, 16)
-        gather(stages.S[i].reshape(n, 9), 9, first, rows, 20)
-        cosines_and_sincs(rows, 43)
+        gather(stages.theta[i], 3, first, rows, 0)
+        gather(stages.theta_t[i], 3, first, rows, 6)
+        gather(stages.theta_tt[i], 3, first, rows, 9)
+        gather(state.omega, 3, first, rows, 12)
+        gather(state.quaternion, 4, first, rows, 15)
+        gather(stages.steady[i], 4, first, rows, 19)
+        gather(stages.S[i].reshape(n, 9), 9, first, rows, 23)
+        cosines_and_sincs(rows, 0)
         for m in range(LANES):
-            x, y, z, cosine, sinc, square = rows[43, m], rows[44, m], rows[45, m], rows[46, m], rows[47, m], rows[48, m]
-            p, q, r, s = product(rows[12, m], rows[13, m], rows[14, m], rows[15, m],
+            x, y, z, cosine, sinc, square = rows[0, m], rows[1, m], rows[2, m], rows[3, m], rows[4, m], rows[5, m]
+            p, q, r, s = product(rows[15, m], rows[16, m], rows[17, m], rows[18, m],
                                  cosine, sinc * x, sinc * y, sinc * z)  # fmt: skip
             p, q, r, s = unit(p, q, r, s)
-            p, q, r, s = product(p, q, r, s, rows[16, m], rows[17, m], rows[18, m], rows[19, m])
-            rows[29, m], rows[30, m], rows[31, m], rows[32, m] = p, q, r, s
-            (rows[33, m], rows[34, m], rows[35, m], rows[36, m], rows[37, m], rows[38, m], rows[39, m], rows[40, m],
-             rows[41, m]) = entries(p, q, r, s)  # fmt: skip
+            p, q, r, s = product(p, q, r, s, rows[19, m], rows[20, m], rows[21, m], rows[22, m])
+            rows[32, m], rows[33, m], rows[34, m], rows[35, m] = p, q, r, s
+            (rows[36, m], rows[37, m], rows[38, m], rows[39, m], rows[40, m], rows[41, m], rows[42, m], rows[43, m],
+             rows[44, m]) = entries(p, q, r, s)  # fmt: skip
             a, b, da, db = _series(square)
-            v0, v1, v2 = rows[3, m], rows[4, m], rows[5, m]
-            w0, w1, w2 = rows[6, m], rows[7, m], rows[8, m]
+            v0, v1, v2 = rows[6, m], rows[7, m], rows[8, m]
+            w0, w1, w2 = rows[9, m], rows[10, m], rows[11, m]
             growth = 2.0 * (x * v0 + y * v1 + z * v2)
             da, db = growth * da, growth * db
             p0, p1, p2 = cross(x, y, z, v0, v1, v2)
@@ -112,21 +116,21 @@ def turn_segments(state: State, stages: Stages, i: int) -> float:
             g0 = w0 - a * s0 + b * u0 - da * p0 + db * m0 + b * n0
             g1 = w1 - a * s1 + b * u1 - da * p1 + db * m1 + b * n1
             g2 = w2 - a * s2 + b * u2 - da * p2 + db * m2 + b * n2
-            o0, o1, o2 = rows[9, m], rows[10, m], rows[11, m]
-            d0 = rows[20, m] * f0 + rows[23, m] * f1 + rows[26, m] * f2
-            d1 = rows[21, m] * f0 + rows[24, m] * f1 + rows[27, m] * f2
-            d2 = rows[22, m] * f0 + rows[25, m] * f1 + rows[28, m] * f2
+            o0, o1, o2 = rows[12, m], rows[13, m], rows[14, m]
+            d0 = rows[23, m] * f0 + rows[26, m] * f1 + rows[29, m] * f2
+            d1 = rows[24, m] * f0 + rows[27, m] * f1 + rows[30, m] * f2
+            d2 = rows[25, m] * f0 + rows[28, m] * f1 + rows[31, m] * f2
             c0, c1, c2 = cross(o0, o1, o2, d0, d1, d2)
-            rows[42, m], rows[43, m], rows[44, m] = d0 + o0, d1 + o1, d2 + o2
-            rows[45, m] = rows[20, m] * g0 + rows[23, m] * g1 + rows[26, m] * g2 - c0
-            rows[46, m] = rows[21, m] * g0 + rows[24, m] * g1 + rows[27, m] * g2 - c1
-            rows[47, m] = rows[22, m] * g0 + rows[25, m] * g1 + rows[28, m] * g2 - c2
+            rows[45, m], rows[46, m], rows[47, m] = d0 + o0, d1 + o1, d2 + o2
+            rows[48, m] = rows[23, m] * g0 + rows[26, m] * g1 + rows[29, m] * g2 - c0
+            rows[49, m] = rows[24, m] * g0 + rows[27, m] * g1 + rows[30, m] * g2 - c1
+            rows[50, m] = rows[25, m] * g0 + rows[28, m] * g1 + rows[31, m] * g2 - c2
         for m in range(LANES):
-            largest = max(largest, rows[48, m])
-        scatter(rows, 29, 4, first, stages.quaternion[i])
-        scatter(rows, 33, 9, first, stages.R[i].reshape(n, 9))
-        scatter(rows, 42, 3, first, stages.omega[i])
-        scatter(rows, 45, 3, first, stages.alpha[i])
+            largest = max(largest, rows[5, m])
+        scatter(rows, 32, 4, first, stages.quaternion[i])
+        scatter(rows, 36, 9, first, stages.R[i].reshape(n, 9))
+        scatter(rows, 45, 3, first, stages.omega[i])
+        scatter(rows, 48, 3, first, stages.alpha[i])
     return largest
 
 
@@ -198,7 +202,8 @@ def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Arr
                 stages: Stages) -> None:  # fmt: skip
     """Guess theta of a step of ratio dt: the motion of the last step, `theta` from the state `before`, goes on.
 
-    Eight abreast: see `lanes`.
+    Eight abreast (see `lanes`), in rows from 0: quaternion and omega before; 7: those of `state`; 15: theta ahead, then
+    departed; 24, 30: the steady rotations ahead, and back; 36: cos(a/2) of the departure, sin(a/2)^2, a / sin(a/2).
     """
     n, rows = len(state.omega), np.empty((39, LANES))
     for first in range(0, n, LANES):

@@ -42,6 +42,6 @@ def _by_us(numerics: Numerics) -> dict[str, Measured]:
 def runs() -> list[Run]:
     """By hockle, sampled at each step, and the peers, sampled twenty times a period."""
     boxes = [box(n, PERIOD / steps) for n, steps in ((10, 20), (20, 40), (40, 80), (80, 160), (160, 320))]
-    steps = ((10, 8), (20, 12), (40, 16), (80, 20), (160, 24))
+    steps = ((10, 8), (20, 12), (40, 16), (80, 24), (160, 32))
     staggereds = [staggered(n, PERIOD / each, FIXED) for n, each in steps]
     return [*ours(SCENE, boxes, staggereds, _by_us), *peers(SCENE, cantilever(20), judge, (5, 10, 20, 30), (10,))]

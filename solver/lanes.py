@@ -2,9 +2,9 @@
 
 The arrays hold what belongs to a node side by side, which a compiler cannot compute on several nodes at a time. So a
 loop gathers what eight nodes hold into rows of eight, computes along the rows, where every operation is that of one
-node on eight numbers at once, and scatters the results. To the bit what one after the other would give. The last
-eight are filled up with copies of the last node. What only some nodes need (a function for large angles, say) is
-mended between two loops along the rows.
+node on eight numbers at once, and scatters the results: to the bit what one after the other would give. What only some
+nodes need (a function for large angles, say) is mended between two loops along the rows. The last lanes are copies of
+the last line, so all that is gathered and scattered in one loop must have as many lines.
 """
 
 from __future__ import annotations

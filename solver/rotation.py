@@ -108,9 +108,9 @@ def turn(quaternion: Array, theta: Array, turned: Array) -> None:
 
 
 @kernel
-def multiply(left: Array, right: Array, product_: Array) -> None:
-    """Write the quaternion left * right into `product_` (4,): first `right`, then `left`."""
-    product_[0], product_[1], product_[2], product_[3] = product(
+def multiply(left: Array, right: Array, out: Array) -> None:
+    """Write the quaternion left * right into `out` (4,): first `right`, then `left`."""
+    out[0], out[1], out[2], out[3] = product(
         left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3]
     )
 

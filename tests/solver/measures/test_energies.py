@@ -174,9 +174,11 @@ def test_on_a_uniform_rod_the_time_scheme_alone_keeps_the_balance_open(
     for dt in (0.02, 0.01, 0.005):
         frames = run(replace(SCENES[name], numerics=fixed_steps(10, dt)))
         left.append(max(abs(f.energy_balance) for f in frames))
-    # a sixteenth, and a little more where the drag, which is not smooth at rest, starts: there one halving is uneven
-    assert left[1] < 0.5 * left[0]
+    # a sixteenth, and a little more where the drag, which is not smooth at rest, starts: there each halving is uneven
     assert left[2] < 0.1 * left[0]
+    if name != "in a current":
+        assert left[1] < 0.35 * left[0]
+        assert left[2] < 0.35 * left[1]
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -8,12 +8,16 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
 
+from chaos.campaign import free_port
+from chaos.postgres import Postgres, binaries, postgres
+from hockle.broker import redis_binary
 from hockle.client import Client
 from service.cases import apply_settings, load_case
 
@@ -29,6 +33,13 @@ class Server:
         self.process = process
         self.first_line = process.stdout.readline()
         self.address = self.first_line.split()[3].rstrip(",") if "serves at" in self.first_line else ""
+
+    @property
+    def ready(self) -> bool:
+        """Whether it says that it can do all it is there for."""
+        with suppress(httpx.TransportError):
+            return httpx.get(f"{self.address}/readyz", timeout=20.0, trust_env=False).status_code == 200
+        return False
 
     def below(self, pid: int | None = None) -> list[int]:
         """The ids of all processes that this server, or one of its processes, has started."""
@@ -66,12 +77,13 @@ def alive(pid: int) -> bool:
 
 
 @contextmanager
-def serving(data: Path, **told: str) -> Iterator[Server]:
-    """A server that keeps what is its own in `data`; `told` are more environment variables."""
+def serving(data: Path, tree: Path | None = None, **told: str) -> Iterator[Server]:
+    """A server that keeps what is its own in `data`, of the packages in `tree` if one is named; `told` are more
+    environment variables."""
     command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", str(data)]
     environment = {**os.environ, **SHORT_LEASES, "REDIS_URL": "", **told}
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                               env=environment)  # fmt: skip
+                               env=environment, cwd=tree)  # fmt: skip
     try:
         yield Server(process)
     finally:
@@ -84,6 +96,30 @@ def serving(data: Path, **told: str) -> Iterator[Server]:
 def start():
     """`with start(directory) as server:` runs a server of one's own."""
     return serving
+
+
+@pytest.fixture
+def postgresql() -> Iterator[Postgres]:
+    """A PostgreSQL for several hosts."""
+    if binaries() is None:
+        pytest.skip("no PostgreSQL on this machine")
+    with postgres() as running:
+        yield running
+
+
+@pytest.fixture
+def broker() -> Iterator[int]:
+    """The port on loopback of a Redis for several hosts."""
+    if redis_binary() is None:
+        pytest.skip("no Redis on this machine")
+    port = free_port()
+    process = subprocess.Popen([str(redis_binary()), "--port", str(port), "--bind", "127.0.0.1", "--save", ""],
+                               stdout=subprocess.DEVNULL)  # fmt: skip
+    try:
+        yield port
+    finally:
+        process.terminate()
+        process.wait(60)
 
 
 @pytest.fixture(scope="module")

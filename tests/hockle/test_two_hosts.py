@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import socket
-import subprocess
 import sys
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
-import httpx
 import pytest
 
 from chaos.campaign import free_port
 from chaos.cases import digest, undisturbed
-from chaos.postgres import binaries, postgres
-from hockle.broker import redis_binary
 from hockle.client import Client
 from service.cases import apply_settings
 
-pytestmark = [
-    pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc"),
-    pytest.mark.skipif(redis_binary() is None, reason="no Redis on this machine"),
-    pytest.mark.skipif(binaries() is None, reason="no PostgreSQL on this machine"),
-]
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
 
 
 class Link:
@@ -78,54 +69,36 @@ def _pass_on(source: socket.socket, target: socket.socket) -> None:
         target.shutdown(socket.SHUT_RDWR)
 
 
-@contextmanager
-def redis() -> Iterator[int]:
-    """The port of a Redis on loopback."""
-    port = free_port()
-    process = subprocess.Popen([str(redis_binary()), "--port", str(port), "--bind", "127.0.0.1", "--save", ""],
-                               stdout=subprocess.DEVNULL)  # fmt: skip
-    try:
-        yield port
-    finally:
-        process.terminate()
-        process.wait(60)
-
-
-def ready(server) -> bool:
-    with suppress(httpx.TransportError):
-        return httpx.get(f"{server.address}/readyz", timeout=20.0, trust_env=False).status_code == 200
-    return False
-
-
-def test_a_host_that_is_cut_off_loses_its_job_to_the_other_and_is_back_later(start, slow, quick, until, tmp_path):
+def test_a_host_that_is_cut_off_loses_its_job_to_the_other_and_is_back_later(
+    start, postgresql, broker, slow, quick, until, tmp_path
+):
     slow = apply_settings(slow, {"t_end": 10.0})
-    with postgres() as database, redis() as broker:
-        links = [Link(socket.AF_UNIX, str(database.directory / ".s.PGSQL.5432")),
-                 Link(socket.AF_INET, ("127.0.0.1", broker))]  # fmt: skip
-        shared = {"HOCKLE_STORE": str(tmp_path / "store")}
-        cut_off = shared | {"HOCKLE_DATABASE": f"postgresql://hockle@127.0.0.1:{links[0].port}/postgres",
-                            "REDIS_URL": f"redis://127.0.0.1:{links[1].port}/0"}  # fmt: skip
-        stays = shared | {"HOCKLE_DATABASE": database.url(), "REDIS_URL": f"redis://127.0.0.1:{broker}/0"}
-        with start(tmp_path / "a", **cut_off) as a, Client(a.address) as at_a:
-            long = at_a.submit(slow)["id"]
-            until(lambda: at_a.job(long)["progress"] > 0.02, "the job runs on the one host")
-            for link in links:
-                link.break_off()
-            with start(tmp_path / "b", **stays) as b, Client(b.address) as at_b:
-                short = at_b.submit(quick)["id"]
-                ends = {job_id: list(at_b.follow(job_id))[-1] for job_id in (short, long)}
-                assert {job_id: (end["status"], end["attempts"]) for job_id, end in ends.items()} == \
-                    {short: ("successful", 1), long: ("successful", 2)}  # fmt: skip
-                until(lambda: not ready(a), "the host that is cut off says so")
-                for link in links:
-                    link.cut = False
-                until(lambda: ready(a), "it is back")
-                for client, name in ((at_a, "a.nc"), (at_b, "b.nc")):
-                    client.fetch(long, tmp_path / name)
-                assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
-                again = at_a.submit(quick | {"description": "once more"})["id"]
-                assert list(at_b.follow(again))[-1]["status"] == "successful"
+    links = [Link(socket.AF_UNIX, str(postgresql.directory / ".s.PGSQL.5432")),
+             Link(socket.AF_INET, ("127.0.0.1", broker))]  # fmt: skip
+    shared = {"HOCKLE_STORE": str(tmp_path / "store")}
+    cut_off = shared | {"HOCKLE_DATABASE": f"postgresql://hockle@127.0.0.1:{links[0].port}/postgres",
+                        "REDIS_URL": f"redis://127.0.0.1:{links[1].port}/0"}  # fmt: skip
+    stays = shared | {"HOCKLE_DATABASE": postgresql.url(), "REDIS_URL": f"redis://127.0.0.1:{broker}/0"}
+    with start(tmp_path / "a", **cut_off) as a, Client(a.address) as at_a:
+        long = at_a.submit(slow)["id"]
+        until(lambda: at_a.job(long)["progress"] > 0.02, "the job runs on the one host")
         for link in links:
-            link.close()
+            link.break_off()
+        with start(tmp_path / "b", **stays) as b, Client(b.address) as at_b:
+            short = at_b.submit(quick)["id"]
+            ends = {job_id: list(at_b.follow(job_id))[-1] for job_id in (short, long)}
+            assert {job_id: (end["status"], end["attempts"]) for job_id, end in ends.items()} == \
+                {short: ("successful", 1), long: ("successful", 2)}  # fmt: skip
+            until(lambda: not a.ready, "the host that is cut off says so")
+            for link in links:
+                link.cut = False
+            until(lambda: a.ready, "it is back")
+            for client, name in ((at_a, "a.nc"), (at_b, "b.nc")):
+                client.fetch(long, tmp_path / name)
+            assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
+            again = at_a.submit(quick | {"description": "once more"})["id"]
+            assert list(at_b.follow(again))[-1]["status"] == "successful"
+    for link in links:
+        link.close()
     assert digest(tmp_path / "b.nc") == undisturbed(slow)
     assert len(list(Path(tmp_path / "store" / "datasets").iterdir())) == 3

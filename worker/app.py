@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from functools import cache
 from typing import Any
 
@@ -12,6 +13,7 @@ from celery.signals import setup_logging, worker_init, worker_process_init
 import solver
 from service.jobs import Database
 from service.jobs.doorbell import TASK, celery_settings
+from service.jobs.migrations import WrongSchema
 from service.logs import write_json
 from service.settings import from_environment
 from worker import run
@@ -49,7 +51,10 @@ def prepare(**_: Any) -> None:
     """Before the first fork: directories, the compiled kernels and the registry, which the children then share."""
     settings.make_directories()
     solver.warm()
-    database()  # may fail; then each child tries
+    try:
+        database()  # may fail; then each child tries
+    except WrongSchema as error:
+        sys.exit(str(error))  # no child could run a job, only take its message from workers that can
 
 
 @worker_process_init.connect

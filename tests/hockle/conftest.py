@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -31,8 +32,16 @@ class Server:
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self.process = process
-        self.first_line = process.stdout.readline()
-        self.address = self.first_line.split()[3].rstrip(",") if "serves at" in self.first_line else ""
+
+    @cached_property
+    def first_line(self) -> str:
+        """What it says when it serves, or why it does not; waits for that."""
+        return self.process.stdout.readline()
+
+    @property
+    def address(self) -> str:
+        """Where it serves, once it does; empty if it does not."""
+        return self.first_line.split()[3].rstrip(",") if "serves at" in self.first_line else ""
 
     @property
     def ready(self) -> bool:

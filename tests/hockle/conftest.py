@@ -16,6 +16,7 @@ from typing import Any
 import httpx
 import pytest
 
+import solver
 from chaos.campaign import free_port
 from chaos.postgres import Postgres, binaries, postgres
 from hockle.broker import redis_binary
@@ -89,6 +90,7 @@ def alive(pid: int) -> bool:
 def serving(data: Path, tree: Path | None = None, **told: str) -> Iterator[Server]:
     """A server that keeps what is its own in `data`, of the packages in `tree` if one is named; `told` are more
     environment variables."""
+    solver.warm()  # else the first worker may compile for longer than a test waits
     command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", str(data)]
     environment = {**os.environ, **SHORT_LEASES, "REDIS_URL": "", **told}
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,

@@ -8,13 +8,14 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import uvloop
 
 from benchmarks.load.scenes import SUBMITTERS, choices, events, first_step, statuses, submissions
 from benchmarks.load.service import whole, without_workers
+from benchmarks.load.table import Row, table
 from service.settings import Settings
 from validation.provenance import provenance
 
@@ -32,50 +33,58 @@ dataset published. Events: from the time in `ended` to its arrival at 200 listen
 ours, is in the figures."""
 
 
-def row(name: str, seconds: Sequence[float], aim: str, rate: str = "") -> dict[str, Any]:
-    """One line of the table, in ms."""
-    ordered = sorted(seconds)
-    p50, p99 = (1e3 * ordered[min(len(ordered) - 1, int(part * len(ordered)))] for part in (0.5, 0.99))
-    told = {"what": name, "n": len(ordered), "p50 ms": f"{p50:.2f}", "p99 ms": f"{p99:.1f}", "a second": rate,
-            "aim": aim, "p50 / that of none queued": ""}  # fmt: skip
-    print(" ".join(map(str, told.values())), file=sys.stderr, flush=True)
-    return told
-
-
-async def measure(host: str, port: int, settings: Settings, queued: str) -> list[dict[str, Any]]:
-    """Every scene once."""
-    rows = [row(f"a worker's choice and claim{queued}", await choices(host, port, settings), "")]
+async def of_api(host: str, port: int, settings: Settings) -> list[Row]:
+    """What needs no worker, once."""
+    rows = [Row("a worker's choice and claim", await choices(host, port, settings))]
     for clients in SUBMITTERS:
         rate, seconds = await submissions(host, port, clients)
-        rows.append(row(f"durable submission, {clients} clients{queued}", seconds, ">= 1000/s, p99 <= 50 ms",
-                        f"{rate:.0f}"))  # fmt: skip
+        rows.append(Row(f"durable submission, {clients} clients", seconds, ">= 1000/s, p99 <= 50 ms", rate))
     return [
         *rows,
-        row(f"status, 1000 pollers{queued}", await statuses(host, port, unchanged=False), "p99 <= 20 ms"),
-        row(f"status answered 304{queued}", await statuses(host, port, unchanged=True), "p99 <= 10 ms"),
+        Row("status, 1000 pollers", await statuses(host, port, unchanged=False), "p99 <= 20 ms"),
+        Row("status answered 304", await statuses(host, port, unchanged=True), "p99 <= 10 ms"),
     ]
 
 
-async def main() -> None:
-    """Measure with an empty queue and with a long one, print and keep."""
-    before = os.getloadavg()
+async def of_worker(host: str, port: int, log: Path) -> list[Row]:
+    """What becomes of a job and who hears of it, with an idle worker."""
+    claimed, stepped, ended = await first_step(host, port, log)
+    return [
+        Row("submission to the worker's claim", claimed),
+        Row("submission to the first solver step", stepped, "p99 <= 100 ms"),
+        Row("submission to the end of a job of one step", ended),
+        Row("event, 200 listeners", await events(host, port)),
+    ]
+
+
+def told(rows: Sequence[Row], queued: str = "", controls: Sequence[Row] = ()) -> list[Row]:
+    """The rows, each with how many jobs were queued and its control; shown at once to who waits for the table."""
+    of_each = controls or [None] * len(rows)
+    rows = [replace(row, what=row.what + queued, control=control)
+            for row, control in zip(rows, of_each, strict=True)]  # fmt: skip
+    for row in rows:
+        print(*row.cells().values(), file=sys.stderr, flush=True)
+    return rows
+
+
+async def measure() -> list[Row]:
+    """Every scene with its queues."""
     with without_workers() as place:
-        rows = await measure(*place, "")
+        none = told(await of_api(*place))
         await submissions(*place[:2], clients=SUBMITTERS[-1], many=QUEUED)
-        full = await measure(*place, f", {QUEUED:,} queued")
-    for alone, queued in zip(rows, full, strict=True):
-        queued["p50 / that of none queued"] = f"{float(queued['p50 ms']) / float(alone['p50 ms']):.2f}"
-    rows += full
+        many = told(await of_api(*place), f", {QUEUED:,} queued", none)
     with whole() as place:
-        claimed, stepped, ended = await first_step(*place)
-        rows.append(row("submission to the worker's claim", claimed, ""))
-        rows.append(row("submission to the first solver step", stepped, "p99 <= 100 ms"))
-        rows.append(row("submission to the end of a job of one step", ended, ""))
-        rows.append(row("event, 200 listeners", await events(*place[:2]), ""))
+        idle = told(await of_worker(*place))
+    return [*none, *many, *idle]
+
+
+async def main() -> None:
+    """Measure, print and keep."""
+    before = os.getloadavg()
+    rows = await measure()
     text = [*(f"- {line}" for line in provenance()),
-            f"- load average of the machine before {before[0]:.1f}, after {os.getloadavg()[0]:.1f}", "", HOW, ""]
-    text += ["| " + " | ".join(rows[0]) + " |", "|---" * len(rows[0]) + "|"]
-    text += ["| " + " | ".join(str(value) for value in one.values()) + " |" for one in rows]
+            f"- load average of the machine before {before[0]:.1f}, after {os.getloadavg()[0]:.1f}", "", HOW, "",
+            *table(rows)]  # fmt: skip
     print("\n".join(text))
     RESULTS.write_text("\n".join([*text, ""]), encoding="utf-8")
 

@@ -1,0 +1,45 @@
+"""The table of what was measured: latencies as numbers, and how they are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Row:
+    """Latencies (s) of one thing, and what they shall be. `rate`: how many a second, where that is told; `control`:
+    the same thing without what is tried here."""
+
+    what: str
+    seconds: Sequence[float]
+    aim: str = ""
+    rate: float | None = None
+    control: Row | None = None
+
+    def quantile(self, part: float) -> float:
+        """The latency (s) that this part of them does not reach."""
+        return sorted(self.seconds)[min(len(self.seconds) - 1, int(part * len(self.seconds)))]
+
+    @property
+    def ratio(self) -> float | None:
+        """The median by that of the control."""
+        return None if self.control is None else self.quantile(0.5) / self.control.quantile(0.5)
+
+    def cells(self) -> dict[str, str]:
+        """What the table shows, by its columns."""
+        return {
+            "what": self.what, "n": str(len(self.seconds)), "p50 ms": f"{1e3 * self.quantile(0.5):.2f}",
+            "p99 ms": f"{1e3 * self.quantile(0.99):.1f}", "a second": "" if self.rate is None else f"{self.rate:.0f}",
+            "aim": self.aim, "p50 / that of the control": "" if self.ratio is None else f"{self.ratio:.2f}",
+        }  # fmt: skip
+
+
+def table(rows: Sequence[Row]) -> list[str]:
+    """The lines of a table in Markdown."""
+    columns = list(rows[0].cells())
+    return [_line(columns), "|---" * len(columns) + "|", *(_line(list(row.cells().values())) for row in rows)]
+
+
+def _line(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cells) + " |"

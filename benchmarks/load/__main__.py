@@ -13,6 +13,7 @@ from pathlib import Path
 
 import uvloop
 
+from benchmarks.load.backlog import backlog
 from benchmarks.load.scenes import SUBMITTERS, choices, events, first_step, statuses, submissions
 from benchmarks.load.service import whole, without_workers
 from benchmarks.load.table import Row, table
@@ -20,17 +21,24 @@ from service.settings import Settings
 from validation.provenance import provenance
 
 RESULTS = Path(__file__).parents[1] / "results" / "load.md"
-QUEUED = 10_000
-HOW = """\
+QUEUED, FEW = 10_000, 20
+HOW = f"""\
 Two API processes as `hockle serve` starts them, SQLite in WAL mode with synchronous=FULL, on loopback; the clients
 are one process beside them (asyncio with uvloop), on the same cores. Latency is from the write of the request to
 the last byte of the answer. Status: 1000 keep-alive connections, each once a second, out of step. Submissions: so many
 connections, each one after the other, every case another one. These are measured without workers, so that what
-jobs cost is not in them, nor is the choice among the jobs that wait, which is measured by itself. The rest is
-measured with the whole of `hockle serve` and one worker, warmed by a job. First step: one job at a time, from the
-request to the worker's claim, to the first steps that its log tells of, and to the end of a job of a single step, its
-dataset published. Events: from the time in `ended` to its arrival at 200 listeners. The load of the machine, beside
-ours, is in the figures."""
+jobs cost is not in them, nor is the choice among the jobs that wait, which is measured by itself; first with no
+queue, then with {QUEUED:,} jobs in it. The rest is measured with the whole of `hockle serve` and one worker, warmed by
+a job. First step: one job at a time, from the request to the worker's claim, to the first steps that its log tells of,
+and to the end of a job of a single step, its dataset published. Events: from the time in `ended` to its arrival at
+200 listeners. Before each of these jobs there is a pause of random length, so that neither the rest of another job nor
+the sleep of the feed (0.1 s) is the same every time.
+
+First steps and events are measured three times: with an idle worker, and with one that is busy with a queue of
+{FEW} or of {QUEUED:,} jobs of a single step. Those of the queue have a lower priority than what is measured, and are
+made up for as they are worked off. A worker lets no job go for another, so that a submission first waits for the
+rest of the job that the worker is at: it comes at any moment of that, and the short queue is the control of the long
+one. The control of all else is the same with none queued. The load of the machine, beside ours, is in the figures."""
 
 
 async def of_api(host: str, port: int, settings: Settings) -> list[Row]:
@@ -46,9 +54,9 @@ async def of_api(host: str, port: int, settings: Settings) -> list[Row]:
     ]
 
 
-async def of_worker(host: str, port: int, log: Path) -> list[Row]:
-    """What becomes of a job and who hears of it, with an idle worker."""
-    claimed, stepped, ended = await first_step(host, port, log)
+async def of_worker(host: str, port: int, settings: Settings) -> list[Row]:
+    """What becomes of a job and who hears of it, once."""
+    claimed, stepped, ended = await first_step(host, port, settings)
     return [
         Row("submission to the worker's claim", claimed),
         Row("submission to the first solver step", stepped, "p99 <= 100 ms"),
@@ -75,7 +83,11 @@ async def measure() -> list[Row]:
         many = told(await of_api(*place), f", {QUEUED:,} queued", none)
     with whole() as place:
         idle = told(await of_worker(*place))
-    return [*none, *many, *idle]
+        async with backlog(*place, FEW):
+            short = told(await of_worker(*place), f", busy, {FEW} queued")
+        async with backlog(*place, QUEUED):
+            long = told(await of_worker(*place), f", busy, {QUEUED:,} queued", short)
+    return [*none, *many, *idle, *short, *long]
 
 
 async def main() -> None:

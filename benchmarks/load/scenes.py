@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import random
 import secrets
 import time
 from datetime import datetime
@@ -19,7 +20,10 @@ from service.settings import Settings
 
 POLLERS, FOR = 1000, 15.0
 SUBMITTERS, SUBMITTED = (8, 24), 3000
-LISTENERS, ROUNDS, TIMES = 200, 5, 200
+LISTENERS, ROUNDS, TIMES = 200, 25, 200
+PAUSE = 0.1
+"""The most seconds from a job's end to the next submission. So long the API's feed sleeps between two looks, and a busy
+worker needs less for a job: without a pause the next submission would meet them at the same moment every time."""
 ONE_STEP = {"t_end": 0.01, "output.interval": 0.01, "numerics.dt_max": 0.01, "numerics.intervals": 50}
 
 
@@ -65,8 +69,8 @@ async def choices(host: str, port: int, settings: Settings) -> list[float]:
     return latencies
 
 
-async def first_step(host: str, port: int, log: Path) -> tuple[list[float], list[float], list[float]]:
-    """From the request to the claim of an idle worker, to its first step, and to the end of a job of one step.
+async def first_step(host: str, port: int, settings: Settings) -> tuple[list[float], list[float], list[float]]:
+    """From the request to a worker's claim, to its first step, and to the end of a job of one step.
 
     The first job is not counted: the worker may still compile or load its kernels.
     """
@@ -82,8 +86,9 @@ async def first_step(host: str, port: int, log: Path) -> tuple[list[float], list
             await asyncio.sleep(0.02)
             job = json.loads((await connection.ask(connection.text("GET", f"/v1/jobs/{job['id']}"))).body)
         jobs.append(job)
+        await _pause()
     connection.close()
-    stepped = under_way(log)
+    stepped = under_way(settings.data / "logs" / "worker.log")
     claimed, ended = ([_unix(job[name]) - sent[job["id"]] for job in jobs[1:]] for name in ("started", "finished"))
     return claimed, [stepped[job["id"]] - sent[job["id"]] for job in jobs[1:]], ended
 
@@ -114,8 +119,13 @@ async def events(host: str, port: int) -> list[float]:
             await asyncio.wait_for(ended.acquire(), 120.0)
         for connection in listeners:
             connection.close()
+        await _pause()
     submitter.close()
     return latencies
+
+
+async def _pause() -> None:
+    await asyncio.sleep(random.uniform(0.0, PAUSE))
 
 
 def _unix(instant: str) -> float:

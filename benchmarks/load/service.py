@@ -23,15 +23,15 @@ APIS = 2
 
 
 @contextmanager
-def whole() -> Iterator[tuple[str, int, Path]]:
-    """`hockle serve` with one worker; host and port, and the file that the worker's log goes to."""
+def whole() -> Iterator[tuple[str, int, Settings]]:
+    """`hockle serve` with one worker; host and port, and its settings."""
     with tempfile.TemporaryDirectory(prefix="hockle-load-") as data:
         command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", data]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | TOLD)
         try:
             assert process.stdout is not None
             address = urlsplit(process.stdout.readline().split()[3].rstrip(","))
-            yield address.hostname or "", address.port or 0, Path(data) / "logs" / "worker.log"
+            yield address.hostname or "", address.port or 0, Settings(Path(data))
         finally:
             process.terminate()
             process.wait(120)

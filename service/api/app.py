@@ -59,7 +59,7 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
     app = FastAPI(title="hockle", version=version("hockle"), lifespan=lifespan, openapi_tags=TAGS,
                   generate_unique_id_function=lambda route: route.name,
                   openapi_url="/v1/openapi.json", docs_url=None, redoc_url=None, redirect_slashes=False)
-    app.openapi = lambda: describe(app)  # type: ignore[method-assign]
+    app.openapi = lambda: describe(app, keyed)  # type: ignore[method-assign]
     hosts = {name.strip().lower() for name in settings.hosts.split(",")} - {""}
     app.add_middleware(Gate, keyed=keyed, hosts=hosts)
     problems.install(app)

@@ -16,6 +16,7 @@ from service.cases import CaseSpec
 PROBLEM = {"application/problem+json": {"schema": {"$ref": "#/components/schemas/Problem"}}}
 ANYWHERE = (421,)
 WITH_A_KEY = (401, 403, 429)
+BEFORE_THE_LIMIT = {"401", "403", "421"}  # the gate refuses before it counts; too few scopes are found after
 REF = "#/components/schemas/{model}"
 NOT_OURS = ("HTTPValidationError", "ValidationError")
 
@@ -46,6 +47,10 @@ Simulations of elastic rods as jobs: submit a case, follow the job, fetch its Ne
 
 Every error is a problem (RFC 9457); where a case or a parameter is refused, `errors` says which, and by what rule.
 Where a key is required, send `Authorization: Bearer hk_...`: a key sees its owner's jobs, and others' are not there."""
+
+HEADERS = {401: {"WWW-Authenticate": "`Bearer`"}, 429: {"Retry-After": "Seconds to wait"}}
+LIMITS = {"RateLimit-Policy": "How many requests an owner may make, and in how many seconds",
+          "RateLimit": "How many are left, and after how many seconds all are again"}
 
 CASE = {"anyOf": [{"$ref": "#/components/schemas/CaseSpec"}, {"$ref": "#/components/schemas/JobRequest"}]}
 EXECUTE_BODY = {"requestBody": {"required": True, "content": {"application/json": {"schema": {
@@ -81,11 +86,12 @@ class ProblemDocument(BaseModel):
 
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """The answers by which an operation refuses, for its `responses`."""
-    return {status: {"description": HTTPStatus(status).phrase, "content": PROBLEM} for status in statuses}
+    return {status: {"description": HTTPStatus(status).phrase, "content": PROBLEM, **_headers(status)}
+            for status in statuses}  # fmt: skip
 
 
-def describe(app: FastAPI) -> dict[str, Any]:
-    """The document of `app`, made once."""
+def describe(app: FastAPI, keyed: bool) -> dict[str, Any]:
+    """The document of `app`, made once. `keyed`: whether a key is required."""
     if app.openapi_schema is None:
         told = get_openapi(title=app.title, version=app.version, description=SUMMARY, routes=app.routes,
                            tags=app.openapi_tags)
@@ -96,25 +102,43 @@ def describe(app: FastAPI) -> dict[str, Any]:
         schemas["Problem"] = schemas.pop("ProblemDocument")
         for name in NOT_OURS:
             schemas.pop(name, None)
+        told["components"]["headers"] = {name: _header(text, required=keyed) for name, text in LIMITS.items()}
         for operations in told["paths"].values():
             for operation in operations.values():
-                _complete(operation)
+                _complete(operation, keyed)
         app.openapi_schema = told
     return app.openapi_schema
 
 
-def _complete(operation: dict[str, Any]) -> None:
+def _complete(operation: dict[str, Any], keyed: bool) -> None:
     """Add what parameters mean, the problems that the gate and the scopes make, and those of faulty parameters."""
     for parameter in operation.get("parameters", []):
         parameter.setdefault("description", PARAMETERS.get(parameter["name"], ""))
     answers = operation["responses"]
     if "422" in answers:
         answers |= _named(problems(422))
-    keyed = "security" in operation
-    if keyed:
-        operation["security"].append({})  # on loopback no key is needed
-    answers |= _named(problems(*ANYWHERE, *(WITH_A_KEY if keyed else ())))
+    secured = "security" in operation
+    answers |= _named(problems(*ANYWHERE, *(WITH_A_KEY if secured else ())))
+    if secured:
+        if not keyed:
+            operation["security"].append({})
+        _tell_of_limits(answers)
     operation["responses"] = dict(sorted(answers.items()))
+
+
+def _tell_of_limits(answers: dict[str, Any]) -> None:
+    limits = {name: {"$ref": f"#/components/headers/{name}"} for name in LIMITS}
+    for status in answers.keys() - BEFORE_THE_LIMIT:
+        answers[status] = answers[status] | {"headers": answers[status].get("headers", {}) | limits}
+
+
+def _headers(status: int) -> dict[str, Any]:
+    told = HEADERS.get(status)
+    return {"headers": {name: _header(text) for name, text in told.items()}} if told else {}
+
+
+def _header(text: str, required: bool = True) -> dict[str, Any]:
+    return {"description": text, "required": required, "schema": {"type": "string"}}
 
 
 def _named(answers: dict[int | str, dict[str, Any]]) -> dict[str, dict[str, Any]]:

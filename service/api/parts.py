@@ -38,7 +38,7 @@ class _With(SecurityBase):
     """Gives the caller whom the gate let in, if the key has this scope."""
 
     def __init__(self, scope: Scope) -> None:
-        self.model = HTTPBearer(description="An API key: `hockle keys create`. On loopback none is needed.")
+        self.model = HTTPBearer(description="An API key: `hockle keys create`.")
         self.scheme_name = "API key"
         self._scope = scope
 

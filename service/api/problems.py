@@ -20,6 +20,7 @@ from service.jobs.submission import KeyReused, QuotaReached
 from service.jobs.submissions import InFlight
 
 LONGEST_VALUE = 200
+SOON = "10"  # s: when a job will end is not known
 METHODS = ("DELETE", "GET", "HEAD", "PATCH", "POST", "PUT")
 log = logging.getLogger(__name__)
 
@@ -110,7 +111,8 @@ async def _in_flight(_: Request, error: Exception) -> JSONResponse:
 
 
 async def _quota(_: Request, error: Exception) -> JSONResponse:
-    return Problem(429, "quota_reached", f"{error}: wait for some of them, or cancel them").response()
+    detail = f"{error}: wait for some of them, or cancel them"
+    return Problem(429, "quota_reached", detail, {"Retry-After": SOON}).response()
 
 
 async def _bug(request: Request, error: Exception) -> JSONResponse:

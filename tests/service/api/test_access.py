@@ -155,7 +155,9 @@ def test_too_many_requests_are_refused_with_the_time_to_wait(settings, case):
 def test_an_owner_may_have_so_many_unfinished_jobs(settings, case):
     with TestClient(create_app(replace(settings, quota=2)), base_url="http://127.0.0.1") as client:
         made = [client.post("/v1/jobs", json=case).json()["id"] for _ in range(2)]
-        refused(client.post("/v1/jobs", json=case), 429, "quota_reached")
+        too_many = client.post("/v1/jobs", json=case)
+        refused(too_many, 429, "quota_reached")
+        assert int(too_many.headers["retry-after"]) >= 1
         client.delete(f"/v1/jobs/{made[0]}")
         assert client.post("/v1/jobs", json=case).status_code == 202
 
@@ -192,3 +194,16 @@ def test_with_keys_a_host_is_an_address_or_a_name_of_ours(settings, host):
 def test_without_keys_only_loopback_is_served(host):
     with pytest.raises(ValueError, match="host must be a loopback address"):
         listen(host, 0)
+
+
+def test_the_description_asks_for_a_key_where_one_is_required_and_tells_of_the_headers(keyed, client):
+    for asked, optional in ((keyed, []), (client, [{}])):
+        told = asked.get("/v1/openapi.json").json()
+        operation = told["paths"]["/v1/jobs"]["post"]
+        assert operation["security"] == [{"API key": []}, *optional]
+        answers = operation["responses"]
+        assert answers["401"]["headers"]["WWW-Authenticate"]["required"]
+        assert answers["429"]["headers"]["Retry-After"]["required"]
+        limited = {status for status, answer in answers.items() if "RateLimit" in answer.get("headers", {})}
+        assert limited == set(answers) - {"401", "403", "421"}
+        assert all(header["required"] is (not optional) for header in told["components"]["headers"].values())

@@ -78,7 +78,7 @@ def _part(values: NDArray[np.float64], lowest: float | None, highest: float | No
     """The indices of an increasing coordinate's values within a closed range."""
     first = 0 if lowest is None else int(np.searchsorted(values, lowest, "left"))
     last = len(values) if highest is None else int(np.searchsorted(values, highest, "right"))
-    return slice(first, max(first, last), stride)
+    return slice(first, max(first, last), min(stride, max(1, len(values))))  # netCDF4 takes no stride past 64 bits
 
 
 def _check_size(

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from service.results import DatasetWriter, SubsetTooLarge, UnknownVariable, subset
@@ -40,6 +41,13 @@ def test_strides_count_from_the_first_value_of_the_range(path: Path):
     part = subset(path, ["contacts"], t_min=0.4, time_stride=3)
     assert part["variables"]["contacts"]["values"] == [1, 4, 7]
     assert "s" not in part["coordinates"]
+
+
+@pytest.mark.parametrize("stride", [10**6, 2**63 - 1, 2**63, 10**30])
+def test_a_stride_past_the_end_leaves_the_first_value(path: Path, stride: int):
+    first = subset(path, ["r"], time_stride=stride, s_stride=stride)
+    assert first["coordinates"]["time"]["values"] == subset(path, ["Tw"])["coordinates"]["time"]["values"][:1]
+    assert np.shape(first["variables"]["r"]["values"]) == (1, 1, 3)
 
 
 def test_a_value_that_is_none_is_null(path: Path):

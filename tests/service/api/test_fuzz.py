@@ -11,9 +11,11 @@ import shutil
 import subprocess
 import sys
 import threading
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import httpx
 import pytest
@@ -21,18 +23,21 @@ from fastapi.testclient import TestClient
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from service.access import KeyStore, Scope
 from service.api.app import create_app
 from service.api.listening import listen
 from service.cases import apply_settings, load_case, parse_case, shipped_cases
-from service.jobs import Database, NewJob, Registry, Status
+from service.jobs import Database, Job, NewJob, Registry, Status
+from service.jobs.held import claim
+from service.jobs.job import Reached
 from service.settings import Settings
 from worker.run import run_next
 
 HERE = Path(__file__).parent
 LONG = os.environ.get("FUZZ") == "long"
 MALFORMED = 10_000 if LONG else 500
-SCHEMATHESIS = (["--max-examples", "50", "--max-time", "900"] if LONG else
-                ["--max-examples", "8", "--phases", "examples,fuzzing,stateful"])  # fmt: skip
+DAY = 86400.0
+OUR_KEYS = ["--generation-with-security-parameters", "false"]  # and none of its own, which are all wrong
 SEED = os.environ.get("FUZZ_SEED", "20260101")
 
 NOWHERE_VALID: list[Any] = [{"nonsense": 1}, [[]], True, "\u2603 \u0000", 10**400, [None]]
@@ -45,28 +50,45 @@ FREE_TEXT = ("/title", "/description")
 CASES = [load_case(name) for name in shipped_cases()]
 
 
+class Ran(NamedTuple):
+    """A data directory in which a job of alice's has run, that job, and keys of hers."""
+
+    data: Path
+    job: Job
+    keys: list[str | None]
+
+
 @pytest.fixture(scope="module")
-def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
-    """A data directory in which a job has run, and its id."""
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Ran:
     told = Settings(data=tmp_path_factory.mktemp("data"))
     told.make_directories()
     database = Database(told.database_url)
     short = apply_settings(load_case("cantilever-vibration"), {"t_end": 0.1, "output.interval": 0.02})
-    job = Registry(database).submit(NewJob(parse_case(short).document()))
+    job = Registry(database).submit(NewJob(parse_case(short).document(), owner="alice"))
     run_next(database, told)
-    assert Registry(database).get(job.id).status is Status.SUCCESSFUL
+    job = Registry(database).get(job.id)
+    assert job.status is Status.SUCCESSFUL
+    full, other = ({Scope.READ, Scope.SUBMIT}, {Scope.OPERATE})
+    keys = [KeyStore(database).create("alice", frozenset(scopes), DAY).text for scopes in (full, other)]
     database.close()
-    return told.data, job.id
+    return Ran(told.data, job, [keys[0]] * 6 + [keys[1], None])
 
 
-@pytest.fixture(scope="module")
-def address(ran: tuple[Path, str], until_ready) -> Iterator[str]:
-    """A running service, in a process of its own."""
+def examples(few: int, seconds: int, phases: str = "examples,fuzzing,stateful") -> list[str]:
+    """How much schemathesis is to try: so many examples of an operation, or, for long, what `seconds` allow."""
+    if LONG:
+        return ["--max-examples", "50", "--max-time", str(seconds)]
+    return ["--max-examples", str(few), "--phases", phases]
+
+
+@contextmanager
+def serving(data: Path, **environment: str) -> Iterator[str]:
+    """The address of a running service, in a process of its own."""
     [listening] = listen("127.0.0.1", 0)
     with listening:
         command = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
-        environment = {**os.environ, "HOCKLE_DATA": str(ran[0]), "REDIS_URL": ""}
-        process = subprocess.Popen(command, env=environment, pass_fds=[listening.fileno()])
+        told = {**os.environ, "HOCKLE_DATA": str(data), "REDIS_URL": "", **environment}
+        process = subprocess.Popen(command, env=told, pass_fds=[listening.fileno()])
         try:
             address = f"http://127.0.0.1:{listening.getsockname()[1]}"
             until_ready(f"{address}/readyz", process)
@@ -76,47 +98,67 @@ def address(ran: tuple[Path, str], until_ready) -> Iterator[str]:
             process.wait(60)
 
 
+def until_ready(url: str, process: subprocess.Popen[bytes]) -> None:
+    while process.poll() is None:
+        try:
+            httpx.get(url, timeout=60.0, trust_env=False).raise_for_status()
+            return
+        except httpx.HTTPError:
+            continue
+    pytest.fail("the service did not start")
+
+
 @pytest.fixture
-def dismissing(address: str) -> Iterator[None]:
-    """Each job is dismissed soon after it was accepted, so that the stream of its events ends."""
-    over = threading.Event()
+def waiting(ran: Ran, tmp_path: Path) -> Iterator[list[str]]:
+    """The ids of jobs of alice's that wait. A job whose events are followed ends soon, as the one that has run, so
+    that they come to an end; the others wait until they are dismissed."""
+    database, over, followed = Database(Settings(data=ran.data).database_url), threading.Event(), tmp_path / "followed"
+    followed.touch()
 
-    def dismiss() -> None:
-        with httpx.Client(base_url=address, timeout=60.0, trust_env=False) as client:
-            while not over.wait(0.5):
-                for job in client.get("/v1/jobs", params={"status": "accepted"}).json()["jobs"]:
-                    client.delete(f"/v1/jobs/{job['id']}")
+    def end() -> None:
+        while not over.wait(0.2):
+            for job_id in followed.read_text().split():
+                if held := claim(database, job_id, 60.0, "fuzz"):
+                    held.finish(Status.SUCCESSFUL, "completed", "", ran.job.dataset, Reached(1.0))
 
-    thread = threading.Thread(target=dismiss)
+    jobs = [Registry(database).submit(NewJob(Registry(database).case(ran.job.id), owner="alice")) for _ in range(2)]
+    thread = threading.Thread(target=end)
     thread.start()
-    yield
+    yield [job.id for job in jobs]
     over.set()
     thread.join()
+    database.close()
 
 
-@pytest.fixture(scope="module")
-def until_ready():
-    def wait(url: str, process: subprocess.Popen[bytes]) -> None:
-        while process.poll() is None:
-            try:
-                httpx.get(url, timeout=60.0, trust_env=False).raise_for_status()
-                return
-            except httpx.HTTPError:
-                continue
-        pytest.fail("the service did not start")
-
-    return wait
-
-
-def test_schemathesis_finds_nothing(address, ran, dismissing, tmp_path):
-    config = shutil.copy(HERE / "schemathesis.toml", tmp_path)
-    (tmp_path / "ran.dict").write_text(f'"{ran[1]}"\n')
-    command = [str(Path(sys.executable).with_name("schemathesis")), "--config-file", str(config), "run",
-               f"{address}/v1/openapi.json", "--seed", SEED, "--no-color",
-               "--generation-database", "none", *SCHEMATHESIS]  # fmt: skip
-    told = subprocess.run(command, capture_output=True, text=True, timeout=1800, cwd=tmp_path)
+def schemathesis(address: str, ran: Ran, waiting: list[str], at: Path, *options: str,
+                 keys: Sequence[str | None] = ()) -> Counter[str]:
+    """Run it in the directory `at`; gives how often which status was answered."""
+    for name in ("schemathesis.toml", "schemathesis_hooks.py"):
+        shutil.copy(HERE / name, at)
+    for name, ids in (("ran.dict", [ran.job.id]), ("waiting.dict", waiting)):
+        (at / name).write_text("".join(f'"{id_}"\n' for id_ in ids))
+    command = [str(Path(sys.executable).with_name("schemathesis")), "run", f"{address}/v1/openapi.json",
+               "--seed", SEED, "--no-color", "--generation-database", "none", *options]  # fmt: skip
+    told = subprocess.run(command, capture_output=True, text=True, timeout=1800, cwd=at,
+                          env={**os.environ, "FUZZ_KEYS": json.dumps(keys)})  # fmt: skip
     assert told.returncode == 0, told.stdout[-20_000:] + told.stderr
-    print(told.stdout[-1500:])
+    met = Counter((at / "statuses").read_text().split())
+    print(told.stdout[-1500:], dict(sorted(met.items())))
+    return met
+
+
+def test_schemathesis_finds_nothing(ran, waiting, tmp_path):
+    with serving(ran.data) as address:
+        schemathesis(address, ran, waiting, tmp_path, *examples(8, seconds=900))
+
+
+@pytest.mark.parametrize(("rate", "tries", "meets"), [
+    ("1000", examples(4, 180), {"200", "401", "403"}), ("0.5", examples(2, 60, "examples,fuzzing"), {"401", "429"}),
+])  # fmt: skip
+def test_schemathesis_finds_nothing_where_keys_are_required(ran, waiting, tmp_path, rate, tries, meets):
+    with serving(ran.data, HOCKLE_REQUIRE_KEYS="1", HOCKLE_RATE=rate) as address:
+        met = schemathesis(address, ran, waiting, tmp_path, *tries, *OUR_KEYS, keys=ran.keys)
+        assert meets <= set(met)
 
 
 @pytest.fixture(scope="module")

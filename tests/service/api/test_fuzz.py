@@ -130,8 +130,9 @@ def waiting(ran: Ran, tmp_path: Path) -> Iterator[list[str]]:
     database.close()
 
 
-def schemathesis(address: str, ran: Ran, waiting: list[str], at: Path, *options: str,
-                 keys: Sequence[str | None] = ()) -> Counter[str]:
+def schemathesis(
+    address: str, ran: Ran, waiting: list[str], at: Path, *options: str, keys: Sequence[str | None] = ()
+) -> Counter[str]:
     """Run it in the directory `at`; gives how often which status was answered."""
     for name in ("schemathesis.toml", "schemathesis_hooks.py"):
         shutil.copy(HERE / name, at)

@@ -116,8 +116,10 @@ def waiting(ran: Ran, tmp_path: Path) -> Iterator[list[str]]:
     followed.touch()
 
     def end() -> None:
+        known: set[str] = set()
         while not over.wait(0.2):
-            for job_id in followed.read_text().split():
+            for job_id in set(followed.read_text().split()) - known:
+                known.add(job_id)
                 if held := claim(database, job_id, 60.0, "fuzz"):
                     held.finish(Status.SUCCESSFUL, "completed", "", ran.job.dataset, Reached(1.0))
 

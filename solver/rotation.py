@@ -11,6 +11,7 @@ import numpy as np
 from solver.kernel import inlined, kernel
 from solver.lanes import LANES
 from solver.rod import Array
+from solver.scratch import scratch
 
 Quaternion = tuple[float, float, float, float]
 Entries = tuple[float, float, float, float, float, float, float, float, float]
@@ -192,7 +193,7 @@ def quaternion_of(R: Array) -> Array:
 @kernel
 def rotate(orientation: Array, vectors: Array) -> Array:
     """Material vectors (n, 3) in the lab frame, by unit quaternions (n, 4)."""
-    rotated, R = np.empty_like(vectors), np.empty((3, 3))
+    rotated, R = np.empty_like(vectors), scratch((3, 3))
     for j in range(len(vectors)):
         matrix_of(orientation[j], R)
         for i in range(3):
@@ -203,7 +204,7 @@ def rotate(orientation: Array, vectors: Array) -> Array:
 @kernel
 def rotate_back(orientation: Array, vectors: Array) -> Array:
     """Lab vectors (n, 3) in the material frame, by unit quaternions (n, 4)."""
-    rotated, R = np.empty_like(vectors), np.empty((3, 3))
+    rotated, R = np.empty_like(vectors), scratch((3, 3))
     for j in range(len(vectors)):
         matrix_of(orientation[j], R)
         for i in range(3):

@@ -53,6 +53,7 @@ class AppliedLoads:
         self._points = [(load, point_weights(load.s, centres, lengths)) for load in inside]
         self._at_ends = at_ends
         self._given = scene.distributed + inside
+        self._density = np.zeros((n, 6))
         area = 0.25 * pi * section.diameter**2
         density = fluid.density if fluid else 0.0
         self._loads = Loads(
@@ -105,11 +106,15 @@ class AppliedLoads:
         self._loads.material[:] = 0.0
         self._loads.lab[:, :3] = self.weight
         for load, density in self._distributed:
-            target = self._loads.material if load.frame == "material" else self._loads.lab
-            target += load.schedule.value(t) * density
+            self._add(load, np.multiply(density, load.schedule.value(t), out=self._density))
         for point, weights in self._points:
-            target = self._loads.material if point.frame == "material" else self._loads.lab
-            target += np.outer(weights, [c.value(t) for c in (*point.force, *point.moment)])
+            for k, component in enumerate((*point.force, *point.moment)):
+                np.multiply(weights, component.value(t), out=self._density[:, k])
+            self._add(point, self._density)
+
+    def _add(self, load: DistributedLoad | PointLoad, density: Array) -> None:
+        target = self._loads.material if load.frame == "material" else self._loads.lab
+        target += density
 
 
 def effective_weight(scene: Scene, section: Section) -> Array:

@@ -7,21 +7,20 @@ rows, A = x / (rows h). This is an option for comparison: it costs several times
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.kernel import kernel
 from solver.methods.box.fields import OMEGA, F, Linear, Nodes, V
 from solver.methods.box.intervals import interval_panel, interval_residuals
 from solver.methods.box.schemes import AT_LEFT_NODE, MINUS_DIFFERENCE
 from solver.rod import Array, Section
+from solver.scratch import scratch
 
 
 @kernel
 def wide_residuals(Y: Array, past: Array, c0: float, h: float, nodes: Nodes, system: Linear) -> None:
     """Write the residuals of the wide system; those of the box part, `system.b`, are complete but for A."""
     wide, rows, gamma = system.wide, system.rows, system.space.gamma
-    nothing, at_start = np.zeros((1, 3)), np.zeros((1, 12))
-    interval_residuals(Y, past, c0, h, AT_LEFT_NODE, nodes, nothing, rows, system.mean, at_start)
+    nothing, at_start = scratch((1, 3)), scratch((1, 12))
+    interval_residuals(Y, past, c0, h, AT_LEFT_NODE, nodes, nothing, rows, at_start)
     wide.b_start[:6] = system.b_start
     for k in range(12):
         wide.b_start[6 + k] = at_start[0, k] + rows[k] * h * wide.A[0, k]

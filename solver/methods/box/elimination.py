@@ -7,8 +7,6 @@ pivoting, the remaining rows are carried on (de Boor & Weiss 1980, SOLVEBLOK; Di
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.kernel import kernel
 from solver.methods.box.augmented import wide_panel, wide_start
 from solver.methods.box.condensation import (
@@ -27,6 +25,7 @@ from solver.methods.box.fields import Linear, Nodes, Wide
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.schemes import BOX
 from solver.rod import Array, Section
+from solver.scratch import scratch, scratch_like
 
 
 @kernel
@@ -110,11 +109,14 @@ def factor(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system
     if len(system.wide.A) > 0:
         return bool(_factor_wide(Y, c0, h, nodes, section, system))
     # made here, so that the compiler knows their strides
-    carried, panel, left, right = np.zeros((6, WIDTH)), np.zeros((12, 24)), np.empty((12, LOCAL)), np.zeros((12, WIDTH))
-    swaps, inverse, entries = np.arange(LOCAL, dtype=np.int64), np.empty(LOCAL), left.reshape(12 * LOCAL)
+    carried, panel, left, right = scratch((6, WIDTH)), scratch((12, 24)), scratch((12, LOCAL)), scratch((12, WIDTH))
+    swaps, inverse, entries = scratch_like(LOCAL, system.swaps), scratch(LOCAL), left.reshape(12 * LOCAL)
+    mean = scratch((MEANS, 3))
+    for m in range(LOCAL):
+        swaps[m] = m
     carried[:, :12] = system.start
     for j in range(len(system.lower)):
-        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, system.mean, panel, 0)
+        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 0)
         sweep(panel, system.swept[j])
         condense(carried, panel, system.swept[j], left, right)
         keep_multipliers(carried, panel, system.by_swept[j])
@@ -136,7 +138,7 @@ def factor(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system
 
 @kernel
 def _factor_wide(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear) -> bool:
-    wide, mean = system.wide, np.zeros((MEANS, 3))
+    wide, mean = system.wide, scratch((MEANS, 3))
     for j in range(len(wide.panels)):
         W = wide.panels[j]
         W[:, :] = 0.0
@@ -156,18 +158,18 @@ def _factor_wide(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, 
 @kernel
 def solve(system: Linear, scale: float, b: Array, x: Array) -> None:
     """Solve with the factors into `x` (n, 12): right-hand side `b` (N, 12), and `scale` times all other residuals."""
-    wide = system.wide
+    wide, start, end = system.wide, scratch(6), scratch(6)
     for i in range(6):
-        system.rhs_start[i] = scale * system.b_start[i]
-        system.rhs_end[i] = scale * system.b_end[i]
+        start[i] = scale * system.b_start[i]
+        end[i] = scale * system.b_end[i]
     if len(wide.A) == 0:
-        N, y = len(b), system.rhs
+        N, y, local = len(b), system.rhs, scratch(12)
         for j in range(N):
-            forward(system.rhs_start, b[j], system.swept[j], system.by_swept[j], system.lower[j], system.swaps[j],
-                    y[j], system.local)  # fmt: skip
+            forward(start, b[j], system.swept[j], system.by_swept[j], system.lower[j], system.swaps[j],
+                    y[j], local)  # fmt: skip
         for i in range(6):
-            x[N, i] = system.rhs_start[i]
-        _close(system.last, system.last_swaps, system.rhs_end, x[N])
+            x[N, i] = start[i]
+        _close(system.last, system.last_swaps, end, x[N])
         for j in range(N - 1, -1, -1):
             backward(y[j], system.swept[j], system.lower[j], system.upper[j], x[j + 1], x[j])
         return
@@ -177,5 +179,5 @@ def solve(system: Linear, scale: float, b: Array, x: Array) -> None:
         for k in range(12):
             wide.rhs[j, k] = b[j, k] + scale * (wide.b[j, k] - system.b[j, k])
             wide.rhs[j, 12 + k] = scale * wide.b[j, 12 + k]
-    _substitute_wide(wide, system.rhs_end)
+    _substitute_wide(wide, end)
     x[:, :] = wide.x[:, :12]

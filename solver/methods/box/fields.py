@@ -42,7 +42,6 @@ class Nodes(NamedTuple):
 
     (n, 3): `T` = R a3 (lab); `P` = rho_c A dV/dt - B (lab); `q` moment (material); `W` = I omega_t + omega x I omega
     - Q (material). (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V or omega (`w`)).
-    `scratch` (2, 3) belongs to the kernels that loop over the nodes.
     """
 
     R: Array
@@ -55,13 +54,11 @@ class Nodes(NamedTuple):
     P_V: Array
     P_w: Array
     W_w: Array
-    scratch: Array
 
     @classmethod
     def empty(cls, n: int) -> Nodes:
         """Zeros for n nodes."""
-        shapes = {"scratch": (2, 3)} | dict.fromkeys(("T", "P", "q", "W"), (n, 3))
-        return cls(*(np.zeros(shapes.get(name, (n, 3, 3))) for name in cls._fields))
+        return cls(*(np.zeros((n, 3) if name in ("T", "P", "q", "W") else (n, 3, 3)) for name in cls._fields))
 
 
 class Wide(NamedTuple):
@@ -98,8 +95,7 @@ class Linear(NamedTuple):
     `space` the scheme along s; factors, see condensation.py: `swept` (N, 6, 3, 3), `by_swept` (N, 9, 6), `lower`
     (N, 72) with `swaps` (N, 6), `upper` (N, 96), `last` (12, 24) with `last_swaps` (12,); `start`, `end` (6, 12)
     rows of the ends; residuals `b` (N, 12), `b_start`, `b_end` (6,); `x` (n, 12) solution; `columns`, `rows` (12,)
-    scales; `wide` what rho_inf_space < 1 needs. Scratch: `rhs` (N, 12), `rhs_start`, `rhs_end` (6,), `local` (12,),
-    `mean` (5, 3).
+    scales; `wide` what rho_inf_space < 1 needs. Scratch: `rhs` (N, 12).
     """
 
     space: SpaceScheme
@@ -120,10 +116,6 @@ class Linear(NamedTuple):
     columns: Array
     rows: Array
     wide: Wide
-    rhs_start: Array
-    rhs_end: Array
-    local: Array
-    mean: Array
 
     @classmethod
     def empty(cls, intervals: int, space: SpaceScheme = BOX) -> Linear:
@@ -133,6 +125,5 @@ class Linear(NamedTuple):
             space, np.zeros((N, 6, 3, 3)), np.zeros((N, 9, 6)), np.zeros((N, 72)), np.zeros((N, 96)),
             np.zeros((6, 12)), np.zeros((6, 12)), np.zeros((N, 12)), np.zeros(6), np.zeros(6),
             np.zeros((N, 6), np.int64), np.zeros((12, 24)), np.zeros(12, np.int64), np.zeros((N + 1, 12)),
-            np.zeros((N, 12)), np.ones(12), np.ones(12), Wide.empty(0 if space == BOX else N), np.zeros(6),
-            np.zeros(6), np.zeros(12), np.zeros((5, 3)),
+            np.zeros((N, 12)), np.ones(12), np.ones(12), Wide.empty(0 if space == BOX else N),
         )  # fmt: skip

@@ -17,6 +17,7 @@ from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, State, V
 from solver.rod import Array, Section
+from solver.scratch import scratch
 
 
 class Flows(NamedTuple):
@@ -25,21 +26,17 @@ class Flows(NamedTuple):
     `energy` (4,) in J: from the ends, from loads other than weight, dissipated, into contact. (2, ...), now and before:
     `given` (n, 6), force (lab) and moment (material) per length but for weight; `power` (3,) in W: from the current, to
     fluid and friction, into contact. `moved` (n, 6): displacement (lab) and rotation (material) in the step.
-    Scratch: `left`, `right` (4, 3).
     """
 
     energy: Array
     given: Array
     power: Array
     moved: Array
-    left: Array
-    right: Array
 
     @classmethod
     def empty(cls, n: int) -> Flows:
         """Zeros for n nodes."""
-        left, right = np.zeros((2, 4, 3))
-        return cls(np.zeros(4), np.zeros((2, n, 6)), np.zeros((2, 3)), np.zeros((n, 6)), left, right)
+        return cls(np.zeros(4), np.zeros((2, n, 6)), np.zeros((2, 3)), np.zeros((n, 6)))
 
 
 @kernel
@@ -54,7 +51,7 @@ def enter_step(old: State, new: State, nodes: Nodes, section: Section, loads: Lo
     flows.given[1, :] = flows.given[0]
     power[1, :] = power[0]
     _given_loads(nodes, loads, weight, flows.given[0])
-    power[0, 0], power[0, 1] = _fluid_power(new, nodes, loads, h, flows) if loads.wet else (0.0, 0.0)
+    power[0, 0], power[0, 1] = _fluid_power(new, nodes, loads, h) if loads.wet else (0.0, 0.0)
     power[0, 1] += contact[1]
     power[0, 2] = contact[0]
     for i in range(3):
@@ -122,9 +119,9 @@ VELOCITY, FORCE, U_N, U_N_RATE = 0, 1, 2, 3
 
 
 @kernel
-def _fluid_power(state: State, nodes: Nodes, loads: Loads, h: float, flows: Flows) -> tuple[float, float]:
+def _fluid_power(state: State, nodes: Nodes, loads: Loads, h: float) -> tuple[float, float]:
     """What the current gives, and what the fluid takes less what goes into the kinetic energy of the added mass, W."""
-    left, right = flows.left, flows.right
+    left, right = scratch((4, 3)), scratch((4, 3))
     from_current, to_fluid = 0.0, 0.0
     _load_by_fluid(0, state, nodes, loads, right)
     for j in range(len(state.Y) - 1):

@@ -22,6 +22,7 @@ from solver.kernel import inlined, kernel
 from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, V
 from solver.methods.box.schemes import SpaceScheme
 from solver.rod import Array, Section
+from solver.scratch import scratch
 
 MEANS = 5
 """Means over an interval: kappa, omega, F (lab), q, and a3 x R_m^t F_m."""
@@ -29,12 +30,12 @@ MEANS = 5
 
 @kernel
 def interval_residuals(Y: Array, past: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes, feedback: Array,
-                       rows: Array, mean: Array, b: Array) -> None:  # fmt: skip
+                       rows: Array, b: Array) -> None:  # fmt: skip
     """Write the residuals of (2) to (5), times the row scales, into `b` (N, 12); without the term of A.
 
-    `feedback` (N, 3) is g (Delta r - h T_m); `mean` (MEANS, 3) is scratch.
+    `feedback` (N, 3) is g (Delta r - h T_m).
     """
-    a, left, right = space.a, space.w_left, space.w_right
+    a, left, right, mean = space.a, space.w_left, space.w_right, scratch((MEANS, 3))
     for j in range(len(b)):
         L, R = Y[j], Y[j + 1]
         _take_means(j, Y, left, right, nodes, mean)

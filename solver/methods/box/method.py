@@ -17,6 +17,7 @@ from solver.methods.box.energies import energies
 from solver.methods.box.fields import KAPPA, OMEGA, F, State, V
 from solver.methods.box.flows import Flows, enter_step
 from solver.methods.box.generalized_alpha import rescale_aux
+from solver.methods.box.guess import force_rate, guess, stretch_feedback
 from solver.methods.box.newton import EndValues, Scales, Work, step
 from solver.methods.box.schemes import BACKWARD_EULER, Scheme, SpaceScheme, c0_of
 from solver.methods.box.trial import Measured, measure_trial, total_bending
@@ -81,8 +82,8 @@ class BoxMethod:
         ahead = dt / self._taken_dt if dt <= 2.0 * self._taken_dt else 0.0
         gain = min(self._gain, LARGEST_FEEDBACK / dt)
         self.loads = self.applied.at(t + dt)
-        self.work.feedback[:] = gain * (self._stretch + ahead * (self._stretch - self._stretch_before))
-        self._guess(dt, consistent)
+        stretch_feedback(self._stretch, self._stretch_before, ahead, gain, self.work.feedback)
+        guess(self.state, self._F_rate, 0.0 if consistent else dt, self.trial.Y)
         self.contact.prepare(self._bending, self.state.r, self.state.Y, dt)
         status, iterations = step(
             self.state, self.trial, self._rule, dt, self.h, self.section, self.loads, self._ends(t, dt),
@@ -97,7 +98,7 @@ class BoxMethod:
         From the ends, from the loads, dissipated, into contact.
         """
         old, new = self.state, self.trial
-        self._F_rate = (new.Y[:, F:] - old.Y[:, F:]) / dt
+        force_rate(old.Y, new.Y, dt, self._F_rate)
         # a step that finds forces knows none at its begin: there those of its end count
         late = 1.0 if self._consistent else 0.5
         enter_step(
@@ -183,12 +184,6 @@ class BoxMethod:
     def _rule(self) -> Scheme:
         """The scheme of the step at hand."""
         return BACKWARD_EULER if self._consistent else self._scheme
-
-    def _guess(self, dt: float, consistent: bool) -> None:
-        self.trial.Y[:] = self.state.Y
-        if not consistent:
-            self.trial.Y[:, :9] += dt * self.state.rate
-            self.trial.Y[:, F:] += dt * self._F_rate
 
     def _ends(self, t: float, dt: float) -> EndValues:
         """What is given at both ends at the end of the step."""

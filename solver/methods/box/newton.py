@@ -76,8 +76,7 @@ def balance_nodes(old: State, new: State, past: Array, c0: float, section: Secti
 def form_residuals(new: State, past: Array, c0: float, h: float, section: Section, ends: EndValues, nodes: Nodes,
                    feedback: Array, system: Linear) -> None:  # fmt: skip
     """Residuals of every equation at the iterate `new`, and the tangents of those of the ends."""
-    interval_residuals(new.Y, past, c0, h, system.space, nodes, feedback, system.rows,
-                       system.mean, system.b)  # fmt: skip
+    interval_residuals(new.Y, past, c0, h, system.space, nodes, feedback, system.rows, system.b)
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
                    nodes, section, system.b_start, system.start)  # fmt: skip
     end_conditions(new.Y, len(new.Y) - 1, ends.end_kinds, ends.end, ends.end_dead, system.rows, system.columns,

@@ -5,8 +5,6 @@ What not every scene has is added in loops of its own: within the others it slow
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.kernel import kernel
 from solver.lanes import LANES, gather, scatter
 from solver.loads.applied import Loads
@@ -14,6 +12,7 @@ from solver.loads.fluid import add_added_mass, add_drag
 from solver.methods.box.fields import KAPPA, OMEGA, Nodes, State, V
 from solver.rod import Array, Section
 from solver.rotation import any_jacobian, cosines_and_sincs, entries, jacobian_series, product, right_jacobian, unit
+from solver.scratch import scratch
 
 
 @kernel
@@ -34,7 +33,7 @@ def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) ->
     Eight abreast (see `lanes`), in rows from 0: r; 3: theta, cos, sinc, |theta|^2; 9: what J is of; 11: quaternion;
     15: R; 24: J; 33: dT; and in the end T from 6.
     """
-    n, scale, rows = len(past), 1.0 / c0, np.empty((42, LANES))
+    n, scale, rows = len(past), 1.0 / c0, scratch((42, LANES))
     for first in range(0, n, LANES):
         gather(past, 6, first, rows, 0)
         gather(new.Y, 6, first, rows, 6)  # V and omega
@@ -133,7 +132,7 @@ def balance_translation(new: State, section: Section, loads: Loads, past: Array,
 @kernel
 def _subtract_material_force(force: Array, nodes: Nodes) -> None:
     """Subtract R force, `force` (n, >= 3), from P, and its tangent from P_w."""
-    b = nodes.scratch[0]
+    b = scratch(3)
     for j in range(len(nodes.P)):
         R, P = nodes.R[j], nodes.P[j]
         for i in range(3):
@@ -146,7 +145,7 @@ def _subtract_material_force(force: Array, nodes: Nodes) -> None:
 @kernel
 def _add_fluid(new: State, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
     """Add the fluid's force with its tangents."""
-    acceleration, u = nodes.scratch[0], nodes.scratch[1]
+    acceleration, u = scratch(3), scratch(3)
     for j in range(len(past)):
         for i in range(3):
             acceleration[i] = c0 * new.Y[j, V + i] + past[j, 6 + i]

@@ -10,10 +10,12 @@ from __future__ import annotations
 import numpy as np
 
 from solver.kernel import kernel
+from solver.methods.box.condensation import Swaps
 from solver.methods.box.fields import Linear, Nodes
 from solver.methods.box.intervals import MEANS, interval_panel
 from solver.methods.box.schemes import BOX
 from solver.rod import Array, Section
+from solver.scratch import scratch, scratch_like
 
 LARGEST_GROWTH = 1e12
 """Beyond it fewer than four digits are left and Newton's iteration cannot be trusted."""
@@ -27,9 +29,9 @@ def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system:
     Returns the growth of the homogeneous solutions from s = 0 to s = L (inf if a block is singular).
     """
     N = len(system.lower)
-    if not _start(system.start, system.b_start, marched[0]):
+    if not _start(system.start, system.b_start, marched[0], scratch_like(6, system.swaps)):
         return np.inf
-    A, panel, mean = np.empty((12, 12)), np.zeros((18, 24)), np.zeros((MEANS, 3))
+    A, panel, mean = scratch((12, 12)), scratch((18, 24)), scratch((MEANS, 3))
     for j in range(N):
         interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 6)
         for i in range(12):
@@ -42,8 +44,8 @@ def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system:
                 marched[j + 1, i, m] = total
         if not _solve_dense(A, marched[j + 1]):
             return np.inf
-    growth = np.max(np.abs(marched[N, :, :6])) / np.max(np.abs(marched[0, :, :6]))
-    A_end, c = np.zeros((6, 6)), np.zeros((6, 1))
+    growth = _largest(marched[N]) / _largest(marched[0])
+    A_end, c = scratch((6, 6)), scratch((6, 1))
     for i in range(6):
         c[i, 0] = system.b_end[i]
         for k in range(12):
@@ -61,15 +63,30 @@ def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system:
 
 
 @kernel
-def _start(start: Array, b: Array, first: Array) -> bool:
-    """Write a basis of the null space of `start` (6, 12) and one solution of start y = b into `first` (12, 7)."""
-    A, rhs = start.copy(), b.copy()
-    pivots = np.empty(6, np.int64)
-    free = np.ones(12, np.bool_)
+def _largest(homogeneous: Array) -> float:
+    """The largest entry of the homogeneous solutions at a node, the first six columns of (12, 7); NaN if one is."""
+    largest, poison = 0.0, 0.0
+    for k in range(12):
+        for m in range(6):
+            largest = max(largest, abs(homogeneous[k, m]))
+            poison += 0.0 * homogeneous[k, m]
+    return largest + poison
+
+
+@kernel
+def _start(start: Array, b: Array, first: Array, pivots: Swaps) -> bool:
+    """Write a basis of the null space of `start` (6, 12) and one solution of start y = b into `first` (12, 7).
+
+    And the column of each row's pivot into `pivots` (6,).
+    """
+    A, rhs = scratch((6, 12)), scratch(6)
+    A[:, :], rhs[:] = start, b
     for i in range(6):
-        column = int(np.argmax(np.abs(A[i])))
+        column = 0
+        for k in range(12):
+            if abs(A[i, k]) > abs(A[i, column]):
+                column = k
         pivots[i] = column
-        free[column] = False
         if A[i, column] == 0.0:
             return False
         inverse = 1.0 / A[i, column]
@@ -85,7 +102,7 @@ def _start(start: Array, b: Array, first: Array) -> bool:
     first[:, :] = 0.0
     m = 0
     for k in range(12):
-        if free[k]:
+        if k not in pivots:
             first[k, m] = 1.0
             for i in range(6):
                 first[pivots[i], m] = -A[i, k]

@@ -10,6 +10,7 @@ from solver.kernel import kernel
 from solver.methods.box.fields import KAPPA, State, V
 from solver.rod import Array
 from solver.rotation import tangent_of
+from solver.scratch import scratch
 
 
 class Measured(NamedTuple):
@@ -61,7 +62,7 @@ def measure_stretch(state: State, h: float, stretch: Array) -> float:
     Gives the largest strain of an interval: what was written, over h, or by how much the chord is longer than h or
     shorter than by 1 - (kappa h)^2 / 8.
     """
-    left, right = np.empty(3), np.empty(3)
+    left, right = scratch(3), scratch(3)
     strain, bend = 0.0, h * h * (state.Y[0, KAPPA] ** 2 + state.Y[0, KAPPA + 1] ** 2)
     tangent_of(state.quaternion[0], right)
     for j in range(len(stretch)):

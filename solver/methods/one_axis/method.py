@@ -12,7 +12,7 @@ from solver.measures.energies import Energies
 from solver.methods.one_axis.axis import Axis, Plane, directions
 from solver.methods.one_axis.chain import Stages, State, about_axis
 from solver.methods.one_axis.energies import energies, stage_powers
-from solver.methods.one_axis.motion import follow_segments
+from solver.methods.one_axis.motion import extrapolate, follow_segments, largest_turn
 from solver.methods.one_axis.newton import Work, estimate_error, step
 from solver.methods.one_axis.segments import Driven
 from solver.methods.staggered import tableau
@@ -90,7 +90,7 @@ class OneAxisMethod(RadauMethod):
 
     def turn(self) -> float:
         """The largest rotation (rad) of the trial within a joint."""
-        return float(np.abs(np.diff(self.stages.phi[-1])).max())
+        return float(largest_turn(self.stages.phi[-1]))
 
     def step_limit(self) -> float:
         """None."""
@@ -130,6 +130,8 @@ class OneAxisMethod(RadauMethod):
 
     def compile(self) -> None:
         """Have every kernel compiled that a run may need."""
+        self._last_dt = 1.0
+        self._guess(1.0)
         self.relative_increment(1.0)
 
     def _solve(self, dt: float) -> tuple[int, int]:
@@ -158,18 +160,17 @@ class OneAxisMethod(RadauMethod):
 
     def _guess(self, dt: float) -> None:
         """The motion of the last step goes on; after a start, that of the state."""
-        stages, state, before = self.stages, self.state, self.trial
-        tau = tableau.C * dt
+        stages, state = self.stages, self.state
         if self._last_dt > 0.0:
             ratio = dt / self._last_dt
             weights = tableau.extrapolation(ratio)
             theta, shift, force = self._last
-            since = self._last_dt + tau[:, None]
-            stages.theta[:] = before.phi - state.phi + since * before.omega - tau[:, None] * state.omega
-            stages.theta[:] += weights @ theta
+            departed = np.matmul(weights, theta, out=stages.theta_t)  # which is not known yet
+            extrapolate(self.trial, state, self._last_dt, tableau.C, dt, departed, stages.theta)
             stages.shift[:] = weights @ shift - shift[2]
-            stages.F[:] = tableau.quadratic_extrapolation(ratio) @ force
+            np.matmul(tableau.quadratic_extrapolation(ratio), force, out=stages.F)
             return
+        tau = tableau.C * dt
         stages.theta[:] = 0.5 * tau[:, None] ** 2 * state.alpha
         stages.shift[:] = tau * state.base[1] + 0.5 * tau**2 * state.base[2]
         stages.F[:] = state.F

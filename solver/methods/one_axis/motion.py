@@ -55,6 +55,29 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
 
 
 @kernel
+def extrapolate(before: State, state: State, last: float, nodes: Array, dt: float, departed: Array,
+                theta: Array) -> None:  # fmt: skip
+    """Guess theta (3, N + 2) of a step of dt, as if the one of `last` (s) from `before` to `state` would go on.
+
+    `departed` (3, N + 2): by how much its rotation, going on, departs from the steady one at its begin.
+    """
+    for i in range(STAGES):
+        tau = nodes[i] * dt
+        for a in range(len(state.phi)):
+            steady = before.phi[a] - state.phi[a] + (last + tau) * before.omega[a] - tau * state.omega[a]
+            theta[i, a] = steady + departed[i, a]
+
+
+@kernel
+def largest_turn(phi: Array) -> float:
+    """The largest rotation (rad) within a joint, for angles phi (N + 2,)."""
+    largest = 0.0
+    for i in range(len(phi) - 1):
+        largest = max(largest, abs(phi[i + 1] - phi[i]))
+    return largest
+
+
+@kernel
 def bend_joints(chain: Chain, phi: Array, q: Array) -> None:
     """Write the moments q of all joints (N + 1,) for angles phi (N + 2,)."""
     for i in range(len(q)):

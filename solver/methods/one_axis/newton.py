@@ -27,6 +27,7 @@ from solver.methods.staggered.newton import (
 )
 from solver.methods.status import CONVERGED, SINGULAR, STALLED
 from solver.rod import Array
+from solver.scratch import scratch
 
 
 class Work(NamedTuple):
@@ -162,7 +163,7 @@ def estimate_error(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stat
         z = mu * (mu * z + z_t) * T.conjugate()
         z = -T * complex(tangents.M[j, 0] * z.real, tangents.M[j, 1] * z.imag)
         factors.load[j, 0], factors.load[j, 1] = z.real, z.imag
-    load_rows(chain, driven, tangents, mu, np.zeros((2, 2)), factors)
+    load_rows(chain, driven, tangents, mu, scratch((2, 2)), factors)
     solve(factors)
     move_error = 0.0
     for j in range(len(factors.moved)):

@@ -18,6 +18,7 @@ from solver.methods.one_axis.chain import Chain, Residuals
 from solver.methods.one_axis.segments import Driven, Tangents
 from solver.methods.staggered.tridiagonal import invert3
 from solver.rod import Array
+from solver.scratch import scratch_like
 
 
 class Factors(NamedTuple):
@@ -106,7 +107,9 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
 
     `frame` is the block that holds the rotation of the end's own frame.
     """
-    rows, beside = D[1:, :].copy(), neighbour[1:, :].copy()
+    before = scratch_like((2, 2, 3), D)
+    rows, beside = before[0], before[1]
+    rows[:, :], beside[:, :] = D[1:, :], neighbour[1:, :]
     sign = 1.0 if side == 0 else -1.0
     for k in range(2):
         kind, d = driven.kinds[side, k], direction(driven, tangents, side, k)
@@ -139,7 +142,7 @@ def _times(A: Array, x: tuple) -> tuple:  # type: ignore[type-arg]
 @kernel
 def _reduce(lower: Array, inverse: Array, upper: Array) -> bool:
     """Eliminate downwards: from the diagonal blocks to the inverses of the reduced ones, `upper` times by them."""
-    D = np.zeros_like(inverse[0])
+    D = scratch_like((3, 3), inverse)
     for a in range(len(inverse)):
         X, W = inverse[a], upper[a]
         for m in range(3):
@@ -234,5 +237,9 @@ def solve_pair(chain: Chain, driven: Driven, tangents: Tangents, pair: complex, 
     for j in range(rows.translation.shape[1]):
         for k in range(2):
             factors.load[j, k] = complex(rows.translation[1, j, k], rows.translation[2, j, k])
-    load_rows(chain, driven, tangents, pair, rows.ends[1] + 1j * rows.ends[2], factors)
+    ends = scratch_like((2, 2), factors.x)
+    for side in range(2):
+        for k in range(2):
+            ends[side, k] = complex(rows.ends[1, side, k], rows.ends[2, side, k])
+    load_rows(chain, driven, tangents, pair, ends, factors)
     solve(factors)

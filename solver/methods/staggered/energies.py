@@ -11,6 +11,7 @@ from solver.measures.energies import Energies
 from solver.methods.staggered.chain import STAGES, Chain, Stages
 from solver.methods.staggered.segments import Driven
 from solver.rod import Array
+from solver.scratch import scratch
 
 
 def energies(chain: Chain, loads: Loads, bend: Array, omega: Array, centres: Array, tangents: Array,
@@ -90,7 +91,7 @@ def _given_by_turned_loads(driven: Driven, stages: Stages, i: int) -> float:
 @kernel
 def _given_by_fluid(loads: Loads, stages: Stages, i: int) -> tuple[float, float]:
     """Power over h that the current gives, and that the fluid takes."""
-    T, T_t = np.zeros(3), np.zeros(3)
+    T, T_t = scratch(3), scratch(3)
     given, lost = 0.0, 0.0
     for j in range(len(stages.V[i])):
         R, w = stages.R[i, j + 1], stages.omega[i, j + 1]

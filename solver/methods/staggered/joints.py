@@ -17,6 +17,7 @@ from solver.lanes import LANES, gather, scatter
 from solver.methods.staggered.chain import Chain
 from solver.rod import Array
 from solver.rotation import angle_by_sine, any_angle_by_sine, cross, is_small, product
+from solver.scratch import scratch
 
 SMALL = 0.25
 """Square of the angle (rad) of a joint below which the series of b is exact to rounding."""
@@ -47,7 +48,7 @@ def bend_joints(chain: Chain, quaternion: Array, bend: Array, moment: Array, lef
     Eight abreast (see `lanes`), in rows from 0: the two quaternions, then sin(a/2), cos(a/2), sin(a/2)^2, a / sin(a/2),
     then Theta, its square and b; 5: stiffness; 8: kappa0; 11: span; 12: q; 15, 18: B q and B^t q.
     """
-    rows, span = np.empty((21, LANES)), chain.span.reshape(-1, 1)
+    rows, span = scratch((21, LANES)), chain.span.reshape(-1, 1)
     for first in range(0, len(bend), LANES):
         gather(quaternion[:-1], 4, first, rows, 0)
         gather(quaternion[1:], 4, first, rows, 4)
@@ -109,7 +110,7 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
 
     `ahead` (N + 1, 2, 3, 3): d(B q) by a rotation of the left and of the right neighbour; `back` likewise d(B^t q).
     """
-    B, G = np.empty((3, 3)), np.empty((3, 3))
+    B, G = scratch((3, 3)), scratch((3, 3))
     for i in range(len(bend)):
         x, y, z = bend[i, 0], bend[i, 1], bend[i, 2]
         b, slope = _coefficient(x * x + y * y + z * z)

@@ -32,6 +32,8 @@ class StaggeredMethod(RadauMethod):
         self.trial = State.empty(N)
         self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=3)
         self.stages, self.driven = Stages.empty(N), Driven.empty(N)
+        for i in range(3):
+            self._load(0.0, i)
         self.work = Work.empty(N, scene.contact is not None)
         self._last = (np.zeros_like(self.stages.theta), np.zeros((3, 3)), np.zeros_like(self.stages.F))
         self._joints = self._bend(self.state.quaternion)[0]
@@ -69,8 +71,8 @@ class StaggeredMethod(RadauMethod):
         return self.contact.refusal(total_bending(self.stages.bend[2]), self._trial_nodes)
 
     def _trial_nodes(self) -> tuple[Array, Array]:
-        # not into the state's own nodes: from them a refused step is tried again
-        stages, (r, V) = self.stages, np.empty_like(self._nodes)
+        """Places and velocities (N + 1, 3) at the end of the trial, where the solve with contact has its own."""
+        stages, r, V = self.stages, self.work.coupling.r[2], self.work.coupling.V[2]
         place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
         return r, V
 
@@ -96,7 +98,7 @@ class StaggeredMethod(RadauMethod):
         self._place_nodes(self._R, self.state.omega, self.state.base, self._centres)
         self._last_dt = dt
         for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
-            kept[:] = now
+                kept[:] = now
         stored, rubbed = self.contact.power().T
         powers = np.column_stack([self._powers, stored])
         powers[:, 2] += rubbed
@@ -208,11 +210,9 @@ class StaggeredMethod(RadauMethod):
 
     def _guess_keeps_apart(self, dt: float) -> bool:
         """Whether the guess leaves parts that press on each other apart: where they rattle, the last step misleads."""
-        stages, (r, V) = self.stages, np.empty_like(self._nodes)
-        spin_steadily(self.state, tableau.C, dt, stages)
-        move(self.state, stages, tableau.INVERSE, dt, self.chain.h)
-        place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
-        return bool(keeps_apart(self.contact.touch, r))
+        spin_steadily(self.state, tableau.C, dt, self.stages)
+        move(self.state, self.stages, tableau.INVERSE, dt, self.chain.h)
+        return bool(keeps_apart(self.contact.touch, self._trial_nodes()[0]))
 
     def _guess_standstill(self, dt: float) -> None:
         """Nothing moves."""
@@ -220,13 +220,18 @@ class StaggeredMethod(RadauMethod):
         self.stages.shift[:] = 0.0
         self.stages.F[:] = self.state.F
 
+    def _load(self, t: float, i: int) -> None:
+        """Write the loads at time t, those of stage i."""
+        self._loads = self.applied.at(t)
+        self.driven.lab[i], self.driven.material[i] = self._loads.lab, self._loads.material
+
     def _drive(self, t: float, dt: float) -> None:
         """Write what is given at the stages of a step."""
         driven = self.driven
         driven.push[:] = 0.0
         for i, c in enumerate(tableau.C):
-            self._loads = self.applied.at(t + c * dt)
-            driven.lab[i], driven.material[i] = self._loads.lab, self._loads.material
+            if not self.applied.steady:
+                self._load(t + c * dt, i)
             for side, end, values, dead in self._ends_at(t, c * dt, dt):
                 driven.values[i, side], driven.dead[i, side] = values, dead
                 driven.kinds[side] = end.kinds

@@ -31,6 +31,7 @@ from solver.rotation import (
     product,
     unit,
 )
+from solver.scratch import scratch
 
 LARGEST_TURN = 2.0
 """Rotation (rad) in one step beyond which the series are not exact to rounding."""
@@ -53,7 +54,7 @@ def spin_steadily(state: State, nodes: Array, dt: float, stages: Stages) -> None
 
     Eight abreast (see `lanes`), in rows from 0: quaternion; 4: omega_n; 7: omega_n tau, cos, sinc, square; 10: matrix.
     """
-    n, rows = len(state.omega), np.empty((19, LANES))
+    n, rows = len(state.omega), scratch((19, LANES))
     for first in range(0, n, LANES):
         gather(state.quaternion, 4, first, rows, 0)
         gather(state.omega, 3, first, rows, 4)
@@ -83,7 +84,7 @@ def turn_segments(state: State, stages: Stages, i: int) -> float:
     Eight abreast (see `lanes`), in rows from 0: theta, cos, sinc, |theta|^2; 6: theta_t; 9: theta_tt; 12: omega_n;
     15: the quaternion of R_n; 19, 23: the steady rotation's, and S; and what comes of them from 32 on.
     """
-    n, largest, rows = stages.theta.shape[1], 0.0, np.empty((51, LANES))
+    n, largest, rows = stages.theta.shape[1], 0.0, scratch((51, LANES))
     for first in range(0, n, LANES):
         gather(stages.theta[i], 3, first, rows, 0)
         gather(stages.theta_t[i], 3, first, rows, 6)
@@ -205,7 +206,7 @@ def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Arr
     Eight abreast (see `lanes`), in rows from 0: quaternion and omega before; 7: those of `state`; 15: theta ahead, then
     departed; 24, 30: the steady rotations ahead, and back; 36: cos(a/2) of the departure, sin(a/2)^2, a / sin(a/2).
     """
-    n, rows = len(state.omega), np.empty((39, LANES))
+    n, rows = len(state.omega), scratch((39, LANES))
     for first in range(0, n, LANES):
         gather(before.quaternion, 4, first, rows, 0)
         gather(before.omega, 3, first, rows, 4)

@@ -22,6 +22,7 @@ from solver.methods.staggered.segments import Driven, Tangents, balance_segments
 from solver.methods.staggered.tridiagonal import Factors, displace, factor, load_rows, node_moves, solve, solve_stages
 from solver.methods.status import CONVERGED, SINGULAR, STALLED
 from solver.rod import Array
+from solver.scratch import scratch
 
 LARGEST_ITERATIONS = 12
 LARGEST_INCREMENT = 1e3
@@ -100,7 +101,7 @@ def _turn_residuals(driven: Driven, stages: Stages, R: Array, residuals: Residua
     the axis of the odd one. Without it a rod that spins by an angle x in a step converges by a factor of only about x.
     """
     n = len(R)
-    old, turned = np.empty(3), np.empty((3, 3))
+    old, turned = scratch(3), scratch((3, 3))
     for i in range(STAGES):
         for a in range(n):
             Q, row = stages.R[i, a], residuals.rotation[i, a]
@@ -282,7 +283,7 @@ def estimate_error(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stat
                 rate += e[i] * stages.theta_t[i, a, k]
             rotation[a, k] = -chain.h * chain.inertia[a - 1, k] * mu * (mu * place + rate)
             turned = max(turned, abs(stages.theta[2, a, k] + dt * state.omega[a, k]))
-    place3, rate3 = np.zeros(3), np.zeros(3)
+    place3, rate3 = scratch(3), scratch(3)
     for j in range(len(translation)):
         for k in range(3):
             place3[k], rate3[k] = centres[1, j, k] / mu, centres[2, j, k] / mu

@@ -21,6 +21,7 @@ from solver.loads.fluid import add_added_mass, add_drag, add_fluid_force
 from solver.methods.staggered.chain import Chain, Residuals, Stages
 from solver.methods.staggered.joints import joint_tangents
 from solver.rod import Array
+from solver.scratch import scratch
 
 
 class Driven(NamedTuple):
@@ -132,7 +133,7 @@ def _turn_loads(h: float, driven: Driven, stages: Stages, residuals: Residuals, 
 @kernel
 def _add_fluid(h: float, loads: Loads, stages: Stages, residuals: Residuals, i: int) -> None:
     """Add the fluid's force."""
-    P, u, T = np.zeros(3), np.zeros(3), np.zeros(3)
+    P, u, T = scratch(3), scratch(3), scratch(3)
     for j in range(len(stages.V[i])):
         for k in range(3):
             P[k], u[k], T[k] = 0.0, stages.V[i, j, k] - loads.current[k], stages.R[i, j + 1, k, 2]
@@ -145,7 +146,7 @@ def _add_fluid(h: float, loads: Loads, stages: Stages, residuals: Residuals, i: 
 def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Residuals, i: int) -> None:
     """Write what the conditions at the ends miss at stage i."""
     N = len(chain.mass)
-    V = np.empty(3)
+    V = scratch(3)
     for side in range(2):
         frame, node = (0, 0) if side == 0 else (N + 1, N)
         R = stages.R[i, frame]
@@ -195,7 +196,7 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     tangents.stiff[:] = 0.0
     tangents.before[:] = 0.0
     tangents.behind[:] = 0.0
-    g, swing = np.zeros(3), np.zeros((3, 3))
+    g, swing = scratch(3), scratch((3, 3))
     for j in range(N):
         R, w = stages.R[i, j + 1], stages.omega[i, j + 1]
         M, C, E, spin, stiff = tangents.M[j], tangents.C[j], tangents.E[j], tangents.spin[j], tangents.stiff[j + 1]
@@ -246,7 +247,7 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
 @kernel
 def _turned_loads_tangents(h: float, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
     """Add the tangents of `_turn_loads`."""
-    g = np.zeros(3)
+    g = scratch(3)
     for j in range(len(driven.lab[i])):
         R, b, E = stages.R[i, j + 1], driven.material[i, j], tangents.E[j]
         for k in range(3):
@@ -260,8 +261,8 @@ def _turned_loads_tangents(h: float, driven: Driven, stages: Stages, i: int, tan
 @kernel
 def _fluid_tangents(h: float, loads: Loads, stages: Stages, i: int, tangents: Tangents) -> None:
     """Add the tangents of `_add_fluid`."""
-    P, u, T = np.zeros(3), np.zeros(3), np.zeros(3)
-    T_w, M, C, E = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+    P, u, T = scratch(3), scratch(3), scratch(3)
+    T_w, M, C, E = scratch((3, 3)), scratch((3, 3)), scratch((3, 3)), scratch((3, 3))
     for j in range(len(stages.V[i])):
         R = stages.R[i, j + 1]
         for k in range(3):
@@ -281,7 +282,7 @@ def _fluid_tangents(h: float, loads: Loads, stages: Stages, i: int, tangents: Ta
 def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents: Tangents, swing: Array) -> None:
     """Tangents of the conditions on a loaded end's rotation (the start's with the opposite sign), and `turn`."""
     N = len(chain.mass)
-    g, V = np.zeros(3), np.zeros(3)
+    g, V = scratch(3), scratch(3)
     for side in range(2):
         frame, node = (0, 0) if side == 0 else (N + 1, N)
         R, dead = stages.R[i, frame], driven.dead[i, side]

@@ -20,6 +20,7 @@ from solver.kernel import inlined, kernel
 from solver.methods.staggered.chain import Chain, Residuals
 from solver.methods.staggered.segments import Driven, Tangents
 from solver.rod import Array
+from solver.scratch import scratch_like
 
 
 class Factors(NamedTuple):
@@ -159,7 +160,9 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
     `frame` is the block that holds the rotation of the end's own frame; `other` is emptied of what is not the frame's.
     """
     R = tangents.R[0] if side == 0 else tangents.R[-1]
-    rows, beside = D[3:, :].copy(), neighbour[3:, :].copy()
+    before = scratch_like((2, 3, 6), D)
+    rows, beside = before[0], before[1]
+    rows[:, :], beside[:, :] = D[3:, :], neighbour[3:, :]
     sign = 1.0 if side == 0 else -1.0
     for k in range(3):
         kind = driven.kinds[side, k]
@@ -201,44 +204,44 @@ def _subtract_times(A: Array, i: int, j: int, B: Array, k: int, m: int, out: Arr
 
 
 @kernel
-def _invert6(D: Array, scratch: Array, inverse: Array) -> bool:
+def _invert6(D: Array, room: Array, inverse: Array) -> bool:
     """Write D^-1 by its 3 x 3 blocks, that of the forces first: it is definite. False if a block is singular.
 
     With D = (A B; C E), P = E^-1, S = (A - B P C)^-1: (S, -S B P; -P C S, P + P C S B P).
     """
-    E, P = scratch[0:3, 0:3], scratch[3:6, 0:3]
+    E, P = room[0:3, 0:3], room[3:6, 0:3]
     for k in range(3):
         for m in range(3):
             E[k, m] = D[3 + k, 3 + m]
     if not invert3(E, P):
         return False
     # (P C) into the lower left block, (B P) into the upper right one, for now
-    _times(scratch, 3, 0, D, 3, 0, inverse, 3, 0)
-    _times(D, 0, 3, scratch, 3, 0, inverse, 0, 3)
+    _times(room, 3, 0, D, 3, 0, inverse, 3, 0)
+    _times(D, 0, 3, room, 3, 0, inverse, 0, 3)
     for k in range(3):
         for m in range(3):
             E[k, m] = D[k, m]
-    _subtract_times(D, 0, 3, inverse, 3, 0, scratch, 0, 0)
+    _subtract_times(D, 0, 3, inverse, 3, 0, room, 0, 0)
     S = inverse[0:3, 0:3]
     if not invert3(E, S):
         return False
-    # S B P into scratch, then P + P C (S B P)
-    _times(inverse, 0, 0, inverse, 0, 3, scratch, 0, 3)
+    # S B P into room, then P + P C (S B P)
+    _times(inverse, 0, 0, inverse, 0, 3, room, 0, 3)
     for k in range(3):
         for m in range(3):
             inverse[3 + k, 3 + m] = P[k, m]
-            scratch[3 + k, 3 + m] = -inverse[3 + k, m]
-            inverse[k, 3 + m] = -scratch[k, 3 + m]
-    _subtract_times(scratch, 3, 3, scratch, 0, 3, inverse, 3, 3)
-    _times(scratch, 3, 3, inverse, 0, 0, inverse, 3, 0)
+            room[3 + k, 3 + m] = -inverse[3 + k, m]
+            inverse[k, 3 + m] = -room[k, 3 + m]
+    _subtract_times(room, 3, 3, room, 0, 3, inverse, 3, 3)
+    _times(room, 3, 3, inverse, 0, 0, inverse, 3, 0)
     return True
 
 
 @kernel
 def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> bool:
     """Factor the system for one eigenvalue; False if it is singular."""
-    D, upper, scratch = (np.zeros_like(factors.lower[0]), np.zeros_like(factors.lower[0]),
-                         np.zeros_like(factors.lower[0]))  # fmt: skip
+    blocks = scratch_like((3, 6, 6), factors.lower)
+    D, upper, room = blocks[0], blocks[1], blocks[2]
     _translate(chain, tangents, eigenvalue, D, factors)
     last = len(factors.lower) - 1
     for a in range(last + 1):
@@ -254,18 +257,18 @@ def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex
                 _subtract_times(lower, 0, 3, before, 3, column, D, 0, column)
                 _subtract_times(lower, 3, 3, before, 3, column, D, 3, column)
         inverse, W = factors.inverse[a], factors.upper[a]
-        if not _invert6(D, scratch, inverse):
+        if not _invert6(D, room, inverse):
             return False
         for row in (0, 3):
             _times(inverse, row, 3, upper, 3, 3, W, row, 3)
             _times(inverse, row, 0, upper, 0, 0, W, row, 0)
             for k in range(3):
                 for m in range(3):
-                    scratch[k, m] = W[row + k, m]
+                    room[k, m] = W[row + k, m]
             _times(inverse, row, 3, upper, 3, 0, W, row, 0)
             for k in range(3):
                 for m in range(3):
-                    W[row + k, m] += scratch[k, m]
+                    W[row + k, m] += room[k, m]
     return True
 
 
@@ -381,6 +384,10 @@ def solve_stages(chain: Chain, driven: Driven, tangents: Tangents, gamma: float,
     for j in range(rows.translation.shape[1]):
         for k in range(3):
             pair_factors.load[j, k] = complex(rows.translation[1, j, k], rows.translation[2, j, k])
-    _complete_rows(chain, driven, tangents, pair, rows.ends[1] + 1j * rows.ends[2], pair_factors)
+    ends = scratch_like((2, 3), pair_factors.x)
+    for side in range(2):
+        for k in range(3):
+            ends[side, k] = complex(rows.ends[1, side, k], rows.ends[2, side, k])
+    _complete_rows(chain, driven, tangents, pair, ends, pair_factors)
     solve(pair_factors)
     displace(pair_factors)

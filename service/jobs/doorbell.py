@@ -67,7 +67,7 @@ class Doorbell:
     def leave(self, wanted: int) -> None:
         """Ring until as many messages lie unanswered as are wanted, or the broker cannot be reached."""
         try:
-            with self._celery.connection_for_write() as connection:
+            with self._celery.connection_or_acquire() as connection:  # one that is kept: a new one takes 1.5 ms
                 connection.ensure_connection(**ONCE_MORE)
                 unanswered = connection.default_channel.queue_declare(QUEUE, passive=False).message_count
         except BROKEN as error:

@@ -12,8 +12,9 @@ from celery.signals import setup_logging, worker_init, worker_process_init
 
 import solver
 from service.jobs import Database
-from service.jobs.doorbell import TASK, celery_settings
+from service.jobs.doorbell import TASK, Doorbell, celery_settings
 from service.jobs.migrations import WrongSchema
+from service.jobs.reconciler import ring_for_all
 from service.logs import write_json
 from service.settings import from_environment
 from worker import run
@@ -34,10 +35,18 @@ def database() -> Database:
     return opened
 
 
+@cache
+def doorbell() -> Doorbell:
+    """What a child rings, with connections of its own."""
+    return Doorbell(settings)
+
+
 @app.task(name=TASK)
 def run_next() -> None:
-    """Run one job; the registry says which."""
-    run.run_next(database(), settings)
+    """Run one job; the registry says which. Then ring for those that wait: when nobody submits, nobody else does for
+    seconds. But not without having run one: messages would go round for a job that nobody can take."""
+    if run.run_next(database(), settings):
+        ring_for_all(database(), doorbell())
 
 
 @setup_logging.connect

@@ -25,8 +25,8 @@ TRY_AGAIN = 0.2
 log = logging.getLogger(__name__)
 
 
-def run_next(database: Database, settings: Settings) -> None:
-    """Run the job whose turn it is, if any waits; a message too many does nothing."""
+def run_next(database: Database, settings: Settings) -> bool:
+    """Run the job whose turn it is, if any waits; a message too many does nothing. Returns whether one was run."""
     sweep(database, settings)
     passed: list[str] = []
     while job_id := next_in_turn(database, passed):
@@ -36,9 +36,10 @@ def run_next(database: Database, settings: Settings) -> None:
             if lock is not None and held is not None:
                 with about(job=job_id, epoch=held.job.epoch):
                     _run(held, Lease(held, settings.lease, asked), lock, settings)
-                return
+                return True
         passed.append(job_id)
     log.info("no job waits")
+    return False
 
 
 def _run(held: HeldJob, lease: Lease, lock: JobLock, settings: Settings) -> None:

@@ -54,12 +54,13 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     first = _transport(tangent, np.array(initial.a1, dtype=float))
     R = np.stack([first, np.cross(tangent, first), tangent], axis=2)
     angle = np.asarray(initial.twist(refined), dtype=float)
-    R = R @ Rotation.from_rotvec(np.outer(angle, [0.0, 0.0, 1.0])).as_matrix()
+    if angle.any():
+        R = R @ Rotation.from_rotvec(np.outer(angle, [0.0, 0.0, 1.0])).as_matrix()
     bend = curve(refined, 2)
     bend -= np.sum(bend * tangent, axis=1)[:, None] * tangent
     kappa_lab = np.cross(tangent, bend)
     kappa = np.einsum("nij,ni->nj", R, kappa_lab)
-    kappa[:, 2] = CubicSpline(refined, angle)(refined, 1)
+    kappa[:, 2] = CubicSpline(refined, angle)(refined, 1) if angle.any() else 0.0
     return path[::8].copy(), quaternion_of(R[::8]), kappa[::8]
 
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.handed import Reference
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.methods.box.fields import KAPPA, OMEGA, F, Nodes, State, V
@@ -40,13 +41,15 @@ class Flows(NamedTuple):
 
 
 @kernel
-def enter_step(old: State, new: State, nodes: Nodes, section: Section, loads: Loads, weight: Array, contact: Array,
-               past: Array, c0: float, dt: float, late: float, h: float, flows: Flows) -> None:  # fmt: skip
+def enter_step(given: Reference, old: State, new: State, weight: Array, contact: Array, c0: float, dt: float,
+               late: float, h: float, flows: Flows) -> None:  # fmt: skip
     """Write what flowed in the step of dt from `old` to `new` into `flows`.
 
-    `contact` (2,): power stored and taken by it; `past`, c0: see `history`; `late`: the part in the means over the step
-    of what acts at its end.
+    `given`: see `newton.step`; `contact` (2,): power stored and taken by it; c0: see `history`; `late`: the part in the
+    means over the step of what acts at its end.
     """
+    section, loads, _, _, work = given.records
+    nodes, past = work.nodes, work.past
     early, power = 1.0 - late, flows.power
     flows.given[1, :] = flows.given[0]
     power[1, :] = power[0]

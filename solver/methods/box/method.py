@@ -7,9 +7,11 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import solveh_banded
 
+from solver.contact.forces import Touch
 from solver.contact.self_contact import SelfContact
 from solver.ends import DrivenEnd
 from solver.frame import Fields
+from solver.handed import Handed
 from solver.initial import nodes_at_rest
 from solver.loads.applied import AppliedLoads, Loads
 from solver.measures.energies import Energies
@@ -70,6 +72,7 @@ class BoxMethod:
         self._F_rate = np.zeros((len(self.s), 3))
         self.loads: Loads = self.applied.at(0.0)
         self._flows = Flows.empty(len(self.s))
+        self._handed = Handed.over(*self._records)
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt into `trial`; how it ended and the Newton iterations.
@@ -85,10 +88,9 @@ class BoxMethod:
         stretch_feedback(self._stretch, self._stretch_before, ahead, gain, self.work.feedback)
         guess(self.state, self._F_rate, 0.0 if consistent else dt, self.trial.Y)
         self.contact.prepare(self._bending, self.state.r, self.state.Y, dt)
-        status, iterations = step(
-            self.state, self.trial, self._rule, dt, self.h, self.section, self.loads, self._ends(t, dt),
-            self._scales, self.contact.touch, self.work,
-        )  # fmt: skip
+        self._handed = self._handed.again(*self._records)
+        status, iterations = step(self._handed.reference, self.state, self.trial, self._rule, dt, self.h,
+                                  self._ends(t, dt))  # fmt: skip
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
         return int(status), int(iterations)
 
@@ -101,10 +103,8 @@ class BoxMethod:
         force_rate(old.Y, new.Y, dt, self._F_rate)
         # a step that finds forces knows none at its begin: there those of its end count
         late = 1.0 if self._consistent else 0.5
-        enter_step(
-            old, new, self.work.nodes, self.section, self.loads, self.applied.weight, self.contact.power()[0],
-            self.work.past, c0_of(self._rule, dt), dt, late, self.h, self._flows,
-        )  # fmt: skip
+        enter_step(self._handed.reference, old, new, self.applied.weight, self.contact.power()[0],
+                   c0_of(self._rule, dt), dt, late, self.h, self._flows)  # fmt: skip
         for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
             shift, turned = self._flows.moved[node, :3], self._flows.moved[node, 3:]
             end.follow(shift if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift[None])[0], turned)
@@ -179,6 +179,11 @@ class BoxMethod:
         """Have every kernel compiled that a run may need."""
         self.contact.compile()
         rescale_aux(self.state, 1.0)
+
+    @property
+    def _records(self) -> tuple[Section, Loads, Scales, Touch, Work]:
+        """What the kernels of a step get by reference."""
+        return self.section, self.loads, self._scales, self.contact.touch, self.work
 
     @property
     def _rule(self) -> Scheme:

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.contact.forces import Touch, touching
+from solver.contact.forces import touching
 from solver.ends import Kinds
+from solver.handed import Reference
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.methods.box.augmented import take_auxiliary, wide_residuals
@@ -137,14 +138,16 @@ def solve_linear(Y: Array, c0: float, h: float, section: Section, scales: Scales
 
 
 @kernel
-def step(old: State, new: State, scheme: Scheme, dt: float, h: float, section: Section, loads: Loads,
-         ends: EndValues, scales: Scales, touch: Touch, work: Work) -> tuple[int, int]:  # fmt: skip
+def step(given: Reference, old: State, new: State, scheme: Scheme, dt: float, h: float,
+         ends: EndValues) -> tuple[int, int]:  # fmt: skip
     """Advance `old` by dt into `new`; `new.Y` is the first guess. Returns how it ended and the iterations.
 
-    `work.feedback` holds the stretch times its feedback rate. Convergence: the increment, or its
-    extrapolation for a quadratically converging iteration, is below 1e-9 of the natural units.
+    `given`: a Section, Loads, Scales, Touch and Work; `work.feedback` holds the stretch times its feedback rate.
+    Convergence: the increment, or its extrapolation for a quadratically converging iteration, is below 1e-9 of the
+    natural units.
     Records of many arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
+    section, loads, scales, touch, work = given.records
     c0, contact = c0_of(scheme, dt), touching(touch)
     past, nodes, system = work.past, work.nodes, work.system
     history(old, scheme, dt, past)

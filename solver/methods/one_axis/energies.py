@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.handed import Reference
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.measures.energies import Energies
 from solver.methods.one_axis.axis import Plane, directions
-from solver.methods.one_axis.chain import Chain, Stages
-from solver.methods.one_axis.segments import Driven, across, along, end_velocity
+from solver.methods.one_axis.chain import Chain
+from solver.methods.one_axis.segments import across, along, end_velocity
 from solver.methods.staggered.chain import STAGES
 from solver.rod import Array
 
@@ -33,22 +34,26 @@ def energies(chain: Chain, loads: Loads, current: complex, weight: Plane, phi: A
 
 
 @kernel
-def stage_powers(chain: Chain, loads: Loads, driven: Driven, stages: Stages, weight: Plane, out: Array) -> None:
-    """Write the power (W) of the ends, of loads other than `weight`, and dissipated, at the stages, into `out`."""
+def stage_powers(given: Reference, weight: Plane, out: Array) -> None:
+    """Write the power (W) of the ends, of loads other than `weight`, and dissipated, at the stages, into `out`.
+
+    `given`: see `newton.step`.
+    """
+    chain, loads, driven, _, stages, _ = given.records
     N = len(chain.mass)
     for i in range(STAGES):
-        given, lost = 0.0, 0.0
+        by_loads, lost = 0.0, 0.0
         work = along(stages.F[i, N], end_velocity(chain, stages, i, 1)) + stages.q[i, N] * stages.omega[i, N + 1]
         work -= along(stages.F[i, 0], end_velocity(chain, stages, i, 0)) + stages.q[i, 0] * stages.omega[i, 0]
         for j in range(N):
             T, V, w = stages.T[i, j + 1], stages.V[i, j], stages.omega[i, j + 1]
-            given += along(driven.force[i, j] - weight[j] + T * driven.following[i, j], V) + driven.moment[i, j] * w
+            by_loads += along(driven.force[i, j] - weight[j] + T * driven.following[i, j], V) + driven.moment[i, j] * w
             lost += loads.damping * (chain.mass[j] * along(V, V) + chain.dry_inertia[j] * w * w)
             if loads.wet:
                 # as in `loads.fluid.fluid_power`
                 u, U = V - driven.current[0], driven.current[0]
                 a, b, pushed = along(T, u), across(T, u), loads.added_mass[j] * across(T, stages.A[i, j])
                 by_a, by_b = loads.drag_tangential[j] * abs(a) * a, loads.drag_normal[j] * abs(b) * b
-                given -= by_a * along(T, U) + (by_b + pushed) * across(T, U)
+                by_loads -= by_a * along(T, U) + (by_b + pushed) * across(T, U)
                 lost += by_a * a + by_b * b + loads.added_mass[j] * a * b * chain.swing * w
-        out[i, 0], out[i, 1], out[i, 2] = work, chain.h * given, chain.h * lost
+        out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads, chain.h * lost

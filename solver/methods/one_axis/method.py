@@ -8,14 +8,17 @@ import numpy as np
 
 from solver.ends import LOAD, DrivenEnd
 from solver.frame import Fields
+from solver.handed import Handed
+from solver.loads.applied import Loads
 from solver.measures.energies import Energies
 from solver.methods.one_axis.axis import Axis, Plane, directions
-from solver.methods.one_axis.chain import Stages, State, about_axis
+from solver.methods.one_axis.chain import Chain, Stages, State, about_axis
 from solver.methods.one_axis.energies import energies, stage_powers
 from solver.methods.one_axis.motion import extrapolate, follow_segments, largest_turn
 from solver.methods.one_axis.newton import Work, estimate_error, step
 from solver.methods.one_axis.segments import Driven
 from solver.methods.staggered import tableau
+from solver.methods.staggered.newton import Scheme
 from solver.methods.staggered.radau import SCHEME, RadauMethod
 from solver.rod import Array
 from solver.scene import Scene
@@ -38,6 +41,7 @@ class OneAxisMethod(RadauMethod):
         self._condition_ends()
         for i in range(3):
             self._load(0.0, i)
+        self._handed = Handed.over(*self._records)
         self._last = (np.zeros_like(self.stages.theta), np.zeros(3, complex), np.zeros_like(self.stages.F))
         self._centres = np.zeros((3, N), complex)
         follow_segments(self.chain, self._tangents(), self.state.omega, self.state.alpha, self.state.base,
@@ -62,7 +66,7 @@ class OneAxisMethod(RadauMethod):
         From the ends, from the loads, dissipated, none into contact. By Radau's own quadrature, of order 5.
         """
         stages, weights = self.stages, tableau.A[2] * dt
-        stage_powers(self.chain, self._loads, self.driven, stages, self._weight, self._powers)
+        stage_powers(self._handed.reference, self._weight, self._powers)
         swing = 0.5j * self.chain.h * self.chain.swing * stages.T[:, -2] * stages.omega[:, -2]
         for end, frame, V in ((self.start, 0, stages.base[:, 1]), (self.end, -1, stages.V[:, -1] + swing)):
             if end.in_lab:
@@ -134,16 +138,21 @@ class OneAxisMethod(RadauMethod):
         self._guess(1.0)
         self.relative_increment(1.0)
 
+    @property
+    def _records(self) -> tuple[Chain, Loads, Driven, Scheme, Stages, Work]:
+        """What the kernels of a step get by reference."""
+        return self.chain, self._loads, self.driven, SCHEME, self.stages, self.work
+
     def _solve(self, dt: float) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""
-        status, iterations = step(self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self._newton_part,
-                                  self.state, self.stages, self.work)  # fmt: skip
+        self._handed = self._handed.again(*self._records)
+        status, iterations = step(self._handed.reference, dt, self._unit, self._newton_part, self.state)
         return int(status), int(iterations)
 
     def _errors(self, dt: float) -> tuple[float, float, float, float]:
         """Of the trial: rotation (rad), error and motion; position (m) likewise."""
         errors: tuple[float, float, float, float] = estimate_error(
-            self.chain, self.driven, SCHEME, dt, self.state, self._centres, self.stages, self.work
+            self._handed.reference, dt, self.state, self._centres
         )
         return errors
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.ends import LOAD, RATE
+from solver.handed import Reference
 from solver.kernel import kernel
-from solver.loads.applied import Loads
 from solver.methods.one_axis.axis import Plane
 from solver.methods.one_axis.chain import Chain, Residuals, Stages, State
 from solver.methods.one_axis.motion import bend_joints, move
@@ -99,9 +99,12 @@ def _largest(x: Array) -> float:
 
 
 @kernel
-def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, unit: float, part: float,
-         state: State, stages: Stages, work: Work) -> tuple[int, int]:  # fmt: skip
-    """Solve for the stages of a step of dt, as `staggered.newton.step` does; how it ended and the iterations."""
+def step(given: Reference, dt: float, unit: float, part: float, state: State) -> tuple[int, int]:
+    """Solve for the stages of a step of dt, as `staggered.newton.step` does; how it ended and the iterations.
+
+    `given`: a Chain, Loads, Driven, Scheme, Stages and Work.
+    """
+    chain, loads, driven, scheme, stages, work = given.records
     before, rows = 0.0, work.transformed
     gamma, pair = scheme.gamma / dt, scheme.pair / dt
     for iteration in range(1, LARGEST_ITERATIONS + 1):
@@ -136,13 +139,13 @@ def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, 
 
 
 @kernel
-def estimate_error(chain: Chain, driven: Driven, scheme: Scheme, dt: float, state: State, centres: Plane,
-                   stages: Stages, work: Work) -> tuple[float, float, float, float]:  # fmt: skip
+def estimate_error(given: Reference, dt: float, state: State, centres: Plane) -> tuple[float, float, float, float]:
     """The embedded estimate of the step's error, and the motion: rotation (rad) error, motion; position (m) likewise.
 
-    `centres` (3, N): position, velocity and acceleration of the centres at the start of the step. As in
-    `staggered.newton`.
+    `given`: see `step`; `centres` (3, N): position, velocity and acceleration of the centres at the start of the step.
+    As in `staggered.newton`.
     """
+    chain, _, driven, scheme, stages, work = given.records
     mu, e, factors, tangents = scheme.gamma / dt, scheme.error, work.real, work.tangents
     turned, moved = 0.0, 0.0
     factors.x[:] = 0.0

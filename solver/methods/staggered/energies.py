@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.handed import Reference
 from solver.kernel import kernel
 from solver.loads.applied import Loads
 from solver.loads.fluid import fluid_power
@@ -48,15 +49,15 @@ def _integrate(chain: Chain, loads: Loads, bend: Array, omega: Array, centres: A
 
 
 @kernel
-def stage_powers(chain: Chain, loads: Loads, driven: Driven, stages: Stages, weight: Array, ends: Array,
-                 out: Array) -> None:  # fmt: skip
+def stage_powers(given: Reference, weight: Array, ends: Array, out: Array) -> None:
     """Write the power (W) of the ends, of loads other than `weight`, and dissipated, at the stages into `out` (3, 3).
 
-    `ends` (3, 2, 3): velocities of the first and the last node at the stages, lab.
+    `given`: see `newton.step`; `ends` (3, 2, 3): velocities of the first and the last node at the stages, lab.
     """
+    chain, loads, driven, _, stages, _, _ = given.records
     N = len(chain.mass)
     for i in range(STAGES):
-        given, lost, work = 0.0, 0.0, 0.0
+        by_loads, lost, work = 0.0, 0.0, 0.0
         for k in range(3):
             work += stages.F[i, N, k] * ends[i, 1, k] - stages.F[i, 0, k] * ends[i, 0, k]
             work += stages.right[i, N, k] * stages.omega[i, N + 1, k] - stages.left[i, 0, k] * stages.omega[i, 0, k]
@@ -64,15 +65,15 @@ def stage_powers(chain: Chain, loads: Loads, driven: Driven, stages: Stages, wei
             V, w = stages.V[i, j], stages.omega[i, j + 1]
             lab, material = driven.lab[i, j], driven.material[i, j]
             for k in range(3):
-                given += (lab[k] - weight[j, k]) * V[k] + material[3 + k] * w[k]
+                by_loads += (lab[k] - weight[j, k]) * V[k] + material[3 + k] * w[k]
                 lost += loads.damping * (chain.mass[j] * V[k] ** 2 + chain.dry_inertia[j, k] * w[k] ** 2)
         if loads.follows or loads.turns:
-            given += _given_by_turned_loads(driven, stages, i)
+            by_loads += _given_by_turned_loads(driven, stages, i)
         if loads.wet:
             from_current, to_fluid = _given_by_fluid(loads, stages, i)
-            given += from_current
+            by_loads += from_current
             lost += to_fluid
-        out[i, 0], out[i, 1], out[i, 2] = work, chain.h * given, chain.h * lost
+        out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads, chain.h * lost
 
 
 @kernel

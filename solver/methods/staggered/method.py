@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.contact.forces import keeps_apart
+from solver.contact.forces import Touch, keeps_apart
 from solver.contact.self_contact import SelfContact
 from solver.frame import Fields
+from solver.handed import Handed
+from solver.loads.applied import Loads
 from solver.measures.energies import Energies
 from solver.methods.staggered import tableau
-from solver.methods.staggered.chain import Stages, State
+from solver.methods.staggered.chain import Chain, Stages, State
 from solver.methods.staggered.coupling import place_nodes
 from solver.methods.staggered.energies import energies, stage_powers, twist
 from solver.methods.staggered.joints import bend_joints, largest_turn, total_bending
 from solver.methods.staggered.motion import extrapolate, follow_segments, move, spin_steadily
-from solver.methods.staggered.newton import Work, estimate_error, finish, step
+from solver.methods.staggered.newton import Scheme, Work, estimate_error, finish, step
 from solver.methods.staggered.radau import SCHEME, RadauMethod
 from solver.methods.staggered.segments import Driven
 from solver.rod import Array
@@ -35,6 +37,7 @@ class StaggeredMethod(RadauMethod):
         for i in range(3):
             self._load(0.0, i)
         self.work = Work.empty(N, scene.contact is not None)
+        self._handed = Handed.over(*self._records)
         self._last = (np.zeros_like(self.stages.theta), np.zeros((3, 3)), np.zeros_like(self.stages.F))
         self._joints = self._bend(self.state.quaternion)[0]
         R = np.zeros((N + 2, 3, 3))
@@ -83,13 +86,13 @@ class StaggeredMethod(RadauMethod):
         """
         stages, weights = self.stages, tableau.A[2] * dt
         ends = self._end_velocities()
-        stage_powers(self.chain, self._loads, self.driven, stages, self.applied.weight, ends, self._powers)
+        stage_powers(self._handed.reference, self.applied.weight, ends, self._powers)
         for side, (end, frame) in enumerate(((self.start, 0), (self.end, -1))):
             velocity = ends[:, side].copy()
             if not end.in_lab:
                 velocity = rotate_back(stages.quaternion[:, frame].copy(), velocity)
             end.follow(weights @ velocity, weights @ stages.omega[:, frame])
-        finish(self.state, stages, self.trial)
+        finish(self._handed.reference, self.trial)
         self.state, self.trial = self.trial, self.state
         self._R[:] = stages.R[2]
         self._joints[:] = stages.bend[2]
@@ -154,20 +157,22 @@ class StaggeredMethod(RadauMethod):
         self._guess_keeps_apart(1.0)
         self.relative_increment(1.0)
 
+    @property
+    def _records(self) -> tuple[Chain, Loads, Driven, Scheme, Stages, Touch, Work]:
+        """What the kernels of a step get by reference."""
+        return self.chain, self._loads, self.driven, SCHEME, self.stages, self.contact.touch, self.work
+
     def _solve(self, dt: float) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""
-        status, iterations = step(
-            self.chain, self._loads, self.driven, SCHEME, dt, self._unit, self._newton_part, self.state, self.stages,
-            self.contact.touch, self.work,
-        )  # fmt: skip
+        self._handed = self._handed.again(*self._records)
+        status, iterations = step(self._handed.reference, dt, self._unit, self._newton_part, self.state)
         return int(status), int(iterations)
 
     def _errors(self, dt: float) -> tuple[float, float, float, float]:
         """Of the trial: rotation (rad), error and motion; position (m) likewise."""
         errors: tuple[float, float, float, float] = estimate_error(
-            self.chain, self.driven, SCHEME, dt, self.state, self._centres, self.stages, self.work.transformed,
-            self.work.tangents, self.work.real,
-        )  # fmt: skip
+            self._handed.reference, dt, self.state, self._centres
+        )
         return errors
 
     def _place_nodes(self, R: Array, omega: Array, base: Array, centres: Array) -> None:
@@ -193,7 +198,7 @@ class StaggeredMethod(RadauMethod):
             ratio = dt / self._last_dt
             weights = tableau.extrapolation(ratio)
             theta, shift, force = self._last
-            extrapolate(self.trial, theta, self._last_dt, state, tableau.C, weights, ratio, stages)
+            extrapolate(self.trial, theta, self._last_dt, state, tableau.C, weights, ratio, stages.theta)
             stages.shift[:] = weights @ shift - shift[2]
             np.matmul(tableau.quadratic_extrapolation(ratio), force.reshape(3, -1), out=stages.F.reshape(3, -1))
             return

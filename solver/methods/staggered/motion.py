@@ -200,8 +200,8 @@ def differentiate(inverse: Array, dt: float, values: Array, rates: Array) -> Non
 
 @kernel
 def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Array, weights: Array, ratio: float,
-                stages: Stages) -> None:  # fmt: skip
-    """Guess theta of a step of ratio dt: the motion of the last step, `theta` from the state `before`, goes on.
+                ahead: Array) -> None:  # fmt: skip
+    """Guess theta of a step of ratio dt into `ahead`: the last step's motion, `theta` from the state `before`, goes on.
 
     Eight abreast (see `lanes`), in rows from 0: quaternion and omega before; 7: those of `state`; 15: theta ahead, then
     departed; 24, 30: the steady rotations ahead, and back; 36: cos(a/2) of the departure, sin(a/2)^2, a / sin(a/2).
@@ -216,12 +216,12 @@ def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Arr
             gather(theta[0], 3, first, rows, 15)
             gather(theta[1], 3, first, rows, 18)
             gather(theta[2], 3, first, rows, 21)
-            back, ahead = dt * ratio * nodes[i], dt * (1.0 + ratio * nodes[i])
+            back, on = dt * ratio * nodes[i], dt * (1.0 + ratio * nodes[i])
             for m in range(LANES):
                 for k in range(3):
                     x = weights[i, 0] * rows[15 + k, m] + weights[i, 1] * rows[18 + k, m]
                     rows[15 + k, m] = x + weights[i, 2] * rows[21 + k, m]
-                    rows[24 + k, m] = ahead * rows[4 + k, m]
+                    rows[24 + k, m] = on * rows[4 + k, m]
                     rows[30 + k, m] = -back * rows[11 + k, m]
             cosines_and_sincs(rows, 15)
             cosines_and_sincs(rows, 24)
@@ -242,4 +242,4 @@ def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Arr
             for m in range(LANES):
                 for k in range(3):
                     rows[15 + k, m] *= rows[38, m]
-            scatter(rows, 15, 3, first, stages.theta[i])
+            scatter(rows, 15, 3, first, ahead[i])

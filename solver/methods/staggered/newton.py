@@ -10,8 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from solver.contact.forces import Touch, touching
+from solver.contact.forces import touching
 from solver.ends import LOAD, RATE
+from solver.handed import Reference
 from solver.kernel import inlined, kernel
 from solver.loads.applied import Loads
 from solver.methods.staggered.chain import STAGES, Chain, Residuals, Stages, State
@@ -203,14 +204,14 @@ def diverges(iteration: int, size: float, before: float) -> bool:
 
 
 @kernel
-def step(chain: Chain, loads: Loads, driven: Driven, scheme: Scheme, dt: float, unit: float, part: float,
-         state: State, stages: Stages, touch: Touch, work: Work) -> tuple[int, int]:  # fmt: skip
+def step(given: Reference, dt: float, unit: float, part: float, state: State) -> tuple[int, int]:
     """Solve for the stages of a step of dt; theta, shift and F hold the first guess. `unit` = EJ/L^2 (N).
 
-    `part` of the step's largest departure from steady rotation may be left, where that is more than TOLERANCE.
-    Returns how it ended and the iterations. Records of many arrays go only to where they are needed: each one passed on
-    costs some ns in every iteration.
+    `given`: a Chain, Loads, Driven, Scheme, Stages, Touch and Work. `part` of the step's largest departure from steady
+    rotation may be left, where that is more than TOLERANCE. Returns how it ended and the iterations. Records of many
+    arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
+    chain, loads, driven, scheme, stages, touch, work = given.records
     before, contact = 0.0, touching(touch)
     residuals, transformed, tangents, real, pair = work.residuals, work.transformed, work.tangents, work.real, work.pair
     spin_steadily(state, scheme.nodes, dt, stages)
@@ -261,15 +262,15 @@ def largest_departure(stages: Stages) -> float:
 
 
 @kernel
-def estimate_error(chain: Chain, driven: Driven, scheme: Scheme, dt: float, state: State, centres: Array,
-                   stages: Stages, residuals: Residuals, tangents: Tangents,
-                   factors: Factors) -> tuple[float, float, float, float]:  # fmt: skip
+def estimate_error(given: Reference, dt: float, state: State, centres: Array) -> tuple[float, float, float, float]:
     """The embedded estimate of the step's error, and the motion: rotation (rad) error, motion; position (m) likewise.
 
-    `centres` (3, N, 3): position, velocity and acceleration of the centres at the start of the step. The estimate of
-    order 3, g = dt/gamma y'(t) + sum of e_i (Y_i - y), is smoothed by the real system, M mu^2 + C mu + K, whose
-    `factors` are given; the first stage of `residuals` is overwritten.
+    `given`: see `step`; `centres` (3, N, 3): position, velocity and acceleration of the centres at the start of the
+    step. The estimate of order 3, g = dt/gamma y'(t) + sum of e_i (Y_i - y), is smoothed by the real system, M mu^2 +
+    C mu + K, as it was factored; the first stage of the transformed residuals is overwritten.
     """
+    chain, _, driven, scheme, stages, _, work = given.records
+    residuals, tangents, factors = work.transformed, work.tangents, work.real
     mu, e = scheme.gamma / dt, scheme.error
     rotation, translation = residuals.rotation[0], residuals.translation[0]
     residuals.ends[0] = 0.0
@@ -309,8 +310,9 @@ def estimate_error(chain: Chain, driven: Driven, scheme: Scheme, dt: float, stat
 
 
 @kernel
-def finish(state: State, stages: Stages, new: State) -> None:
-    """Write the state at the end of the step, the last stage, into `new`."""
+def finish(given: Reference, new: State) -> None:
+    """Write the state at the end of the step, the last stage, into `new`. `given`: see `step`."""
+    _, _, _, _, stages, _, _ = given.records
     last = STAGES - 1
     new.quaternion[:] = stages.quaternion[last]
     new.omega[:] = stages.omega[last]

@@ -37,6 +37,7 @@ def results(points: Iterable[Point]) -> list[str]:
 def at_equal_error(points: Iterable[Point]) -> list[str]:
     """CPU of each peer's best run over that of hockle's cheapest run with no larger error."""
     lines = ["## Times less CPU than the peers", "",
+             "CPU time from the scene to its frames, the construction of simulators and models included, for all. "
              "Against hockle's cheapest run whose error is no larger than the peer's; least and largest over its runs.",
              "", "| scene | quantity | peer | its smallest error | its CPU s | hockle | least | largest | aim |",
              "| --- | --- | --- | ---: | ---: | --- | ---: | ---: | ---: |"]  # fmt: skip

@@ -89,13 +89,13 @@ class Cable:
 
 
 def solve(cantilever: Cantilever, elements: Elements, integrator: str) -> Motion:
-    """The motion; raises `Skipped` if it would take too long."""
+    """The motion, the model's construction included in the time; raises `Skipped` if it would take too long."""
     sample = cantilever.t_end / cantilever.samples
     substeps = ceil(sample / stable_step(elements.length, integrator))
     dt = sample / substeps
     refuse_if_long(_cost_of_a_step(Cable(cantilever, elements, dt, integrator)), substeps * cantilever.samples)
-    cable = Cable(cantilever, elements, dt, integrator)
     started = process_time()
+    cable = Cable(cantilever, elements, dt, integrator)
     states = [(cable.tip(), cable.energy())]
     for _ in range(cantilever.samples):
         _advance(cable, cantilever, substeps)

@@ -67,14 +67,14 @@ def _cantilever(cantilever: Cantilever, elements: Elements) -> tuple[Simulator, 
 
 
 def solve(cantilever: Cantilever, elements: Elements) -> Motion:
-    """The motion; raises `Skipped` if it would take too long."""
+    """The motion, the simulator's construction included in the time; raises `Skipped` if it would take too long."""
     stepper = elastica.PositionVerlet()
     simulator, rod, dt = _cantilever(cantilever, elements)
     substeps = ceil(cantilever.t_end / cantilever.samples / dt)
     dt = cantilever.t_end / cantilever.samples / substeps
     refuse_if_long(cost_of_a_step(stepper, simulator, dt), substeps * cantilever.samples)
-    simulator, rod, _ = _cantilever(cantilever, elements)
     started, t = process_time(), 0.0
+    simulator, rod, _ = _cantilever(cantilever, elements)
     states = [_state(rod)]
     for _ in range(cantilever.samples):
         for _ in range(substeps):

@@ -51,8 +51,8 @@ def solve(
     simulator, rod, dt = build()
     steps = ceil(t_end / dt)
     refuse_if_long(cost_of_a_step(stepper, simulator, dt), steps)
-    simulator, rod, dt = build()
     watch, t = Stopwatch(), 0.0
+    simulator, rod, dt = build()
     for _ in range(steps):
         t = stepper.step(simulator, t, dt)
     return rod.position_collection.T.copy(), watch.read()

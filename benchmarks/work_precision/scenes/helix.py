@@ -4,7 +4,7 @@ Gazzola et al., R. Soc. Open Sci. 5 (2018) 171628, 3.4.1. The envelope is that o
 Heijden & Thompson, Nonlinear Dynamics 21 (2000) 71, with M L/B and T L^2/B that satisfy the end rotation and the end
 shortening of van der Heijden et al., Int. J. Mech. Sci. 45 (2003) 161. MuJoCo's cable is a tree and could hold its far
 end by soft constraints only: not run. The hump forms of two that creep together, which the box method's errors pin
-where they are at these meshes and steps (docs/decisions/0002).
+where they are on all meshes but the finest (docs/decisions/0002).
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ def _by_pyelastica(elements: int, corrected: bool) -> dict[str, Measured]:
 
 def runs() -> list[Run]:
     """By hockle and PyElastica."""
-    boxes = [box(n, 5.0, 0.5, 0.1) for n in (100, 200, 400, 800, 1600)]
+    boxes = [box(n, 100.0 / n, 0.5, 0.1) for n in (100, 200, 400, 800, 1600)]
     theirs = [(50, True), (100, True), (200, True), (100, False)]
     peers = [Run(SCENE, PYELASTICA + ("" if corrected else AS_IT_COMES), f"{n} elements",
                  partial(_by_pyelastica, n, corrected)) for n, corrected in theirs]  # fmt: skip

@@ -101,7 +101,7 @@ class StaggeredMethod(RadauMethod):
         self._place_nodes(self._R, self.state.omega, self.state.base, self._centres)
         self._last_dt = dt
         for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
-                kept[:] = now
+            kept[:] = now
         stored, rubbed = self.contact.power().T
         powers = np.column_stack([self._powers, stored])
         powers[:, 2] += rubbed
@@ -154,7 +154,8 @@ class StaggeredMethod(RadauMethod):
         """Have every kernel compiled that a run may need."""
         self.contact.compile()
         self._guess(1.0)
-        self._guess_keeps_apart(1.0)
+        if self.contact.present:
+            self._guess_keeps_apart(1.0)
         self.relative_increment(1.0)
 
     @property

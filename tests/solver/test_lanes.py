@@ -97,5 +97,5 @@ def test_a_steady_spin_is_guessed_to_go_on(intervals: int) -> None:
     before, state, n = method.state, method.trial, intervals + 2
     before.omega[:] = state.omega[:] = vectors(n)
     state.quaternion[:] = turned(before.quaternion, before.omega)
-    extrapolate(before, np.zeros((3, n, 3)), 1.0, state, SCHEME.nodes, np.eye(3), 0.5, method.stages)
+    extrapolate(before, np.zeros((3, n, 3)), 1.0, state, SCHEME.nodes, np.eye(3), 0.5, method.stages.theta)
     assert method.stages.theta == pytest.approx(np.zeros((3, n, 3)), abs=1e-14)

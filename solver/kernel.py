@@ -3,6 +3,9 @@
 Nothing is contracted or reordered (no fastmath): each operation rounds as IEEE 754 has it, so that a run is the same to
 the bit whatever was inlined where, and on every CPU (docs/decisions/0005). Divide by a constant by multiplying.
 
+A kernel that is called from Python gives up the interpreter's lock. Else a run of short steps could keep another thread
+of its process waiting for a second: one that holds the lock for less than the switch interval is never asked for it.
+
 Numba's cache does not see that a kernel called from another file has changed. So the cache lives in a folder
 named by a digest of the whole solver: another version of the code has another cache, and nothing compiles twice.
 """
@@ -24,7 +27,7 @@ from numba.core.registry import cpu_target
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy"}
+_OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "nogil": True}
 
 APART = "HOCKLE_COMPILES"
 """The environment variable that tells a process that it is the one that compiles."""

@@ -18,8 +18,6 @@ from service.jobs.tables import events, jobs, owners
 from service.settings import Settings
 
 MOST_REDONE = 0.10
-ALLOWED = {"completed", "cancelled"}
-"""Outcomes that any job may have, here; others need the fault that explains them."""
 
 
 @dataclass
@@ -91,11 +89,13 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
 
 def _explained(job: Job, record: Record) -> bool:
     """Whether the job may have ended so, after what was done."""
+    if job.cancel_requested:
+        return job.status is Status.DISMISSED
     if job.outcome == "worker_lost":
         return job.fruitless >= 3
     if job.id in record.starved:
-        return job.outcome in ("out_of_memory", "cancelled")
-    return job.outcome in ALLOWED
+        return job.outcome == "out_of_memory"
+    return job.outcome == "completed"
 
 
 def _all_jobs(registry: Registry) -> list[Job]:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from service.cases import CaseError
 from service.jobs import Dataset, Drift, Job, Status
+from service.jobs.held import CANCELLED
 from service.results import StoreUnreachable
 from solver import Outcome
 from worker.lease import Cancelled, OutOfTime
@@ -34,11 +35,14 @@ class Ending:
     drift: Drift | None = None
 
 
+DISMISSED = Ending(Status.DISMISSED, Outcome.CANCELLED.value, CANCELLED)
+
+
 def ending_of(error: Exception, job: Job, store: Path) -> Ending:
     """What to say of a run that an exception ended. A fault of hockle itself is logged."""
     match error:
         case Cancelled():
-            return Ending(Status.DISMISSED, Outcome.CANCELLED.value, "cancelled while it ran; no dataset is kept")
+            return DISMISSED
         case OutOfTime():
             return _failed("wall_time_exceeded", f"the job has run for more than its {job.limits.wall:g} s: "
                            "give it more, or fewer intervals or a larger dt_max")

@@ -15,7 +15,7 @@ from service.logs import about
 from service.settings import Settings
 from worker import stopping
 from worker.attempt import Attempt
-from worker.endings import Ending, ending_of
+from worker.endings import DISMISSED, Ending, ending_of
 from worker.lease import Lease, LeaseLost
 from worker.lock import JobLock, job_lock
 from worker.memory import memory_limit
@@ -56,26 +56,29 @@ def _run(held: HeldJob, lease: Lease, lock: JobLock, settings: Settings) -> None
             log.info("job %s is handed back: this worker was told to stop", job.id)
             return
         except LeaseLost:
-            kept = False
+            written = None
         except Exception as error:
-            ending = ending_of(error, job, settings.datasets)
-            kept = _finish(held, ending, lease)
+            written = _finish(held, ending_of(error, job, settings.datasets), lease)
         else:
-            kept = _finish(held, ending, lease)
-    if kept:
-        log.info("job %s: %s, %s", job.id, ending.status, ending.outcome)
-        remove_work(settings, job.id, job.epoch, ending.dataset.file if ending.dataset else "")
+            written = _finish(held, ending, lease)
+    if written:
+        log.info("job %s: %s, %s", job.id, written.status, written.outcome)
+        remove_work(settings, job.id, job.epoch, written.dataset.file if written.dataset else "")
     else:
         log.warning("job %s was given to another worker; what was computed here is dropped", job.id)
         remove_datasets(settings, job.id, [job.epoch])
 
 
-def _finish(held: HeldJob, ending: Ending, lease: Lease) -> bool:
-    """Write how the job ended, however long the database is away: the lease bounds it."""
+def _finish(held: HeldJob, ending: Ending, lease: Lease) -> Ending | None:
+    """Write how the job ended, however long the database is away: the lease bounds it. Returns what was written."""
     while True:
         try:
-            return held.finish(ending.status, ending.outcome, ending.message, ending.dataset, lease.reached,
-                               ending.drift)
+            status = held.finish(ending.status, ending.outcome, ending.message, ending.dataset, lease.reached,
+                                 ending.drift)
         except DBAPIError as error:
             log.warning("job %s: its end could not be written, trying again: %s", held.job.id, error)
             time.sleep(TRY_AGAIN)
+        else:
+            if status is None:
+                return None
+            return ending if status is ending.status else DISMISSED

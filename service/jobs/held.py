@@ -11,8 +11,10 @@ from sqlalchemy import ColumnElement, case, exists, func, select, update
 
 from service.jobs.database import Database
 from service.jobs.job import Dataset, Drift, Job, Reached
-from service.jobs.lifecycle import Status
+from service.jobs.lifecycle import ENDED, Status
 from service.jobs.tables import JOB_COLUMNS, job_of, jobs, owners
+
+CANCELLED = "cancelled while it ran; no dataset is kept"
 
 
 def next_in_turn(database: Database, besides: Collection[str] = ()) -> str | None:
@@ -88,19 +90,25 @@ class HeldJob:
             ))  # fmt: skip
 
     def finish(self, status: Status, outcome: str, message: str, dataset: Dataset | None, reached: Reached,
-               drift: Drift | None = None) -> bool:
-        """Write how the job ended; False if it is another's now, and nothing was written.
+               drift: Drift | None = None) -> Status | None:
+        """Write how the job ended: as told, or dismissed and without a dataset if its owner has cancelled it meanwhile.
 
-        It may be tried again after a failure that leaves open whether it was written.
+        Returns with which status it has ended; None if it is another's now, and nothing was written. It may be tried
+        again after a failure that leaves open whether it was written.
         """
         told = {f"dataset_{name}": value for name, value in asdict(dataset).items()} if dataset else {}
         told |= {f"drift_{name}": value for name, value in asdict(drift).items()} if drift else {}
         with self.database.writing() as transaction:
-            transaction.change(*self._mine, event="ended", status=status, outcome=outcome, message=message,
-                               **told, **asdict(reached))
-            written = select(jobs.c.id).where(jobs.c.id == self.job.id, jobs.c.epoch == self.job.epoch,
-                                              jobs.c.status == status)
-            return transaction.connection.scalar(written) is not None
+            (
+                transaction.change(*self._mine, ~jobs.c.cancel_requested, event="ended", status=status,
+                                   outcome=outcome, message=message, **told, **asdict(reached))
+                or transaction.change(*self._mine, event="ended", status=Status.DISMISSED, outcome="cancelled",
+                                      message=CANCELLED, **asdict(reached))
+            )  # fmt: skip
+            ended = select(jobs.c.status).where(jobs.c.id == self.job.id, jobs.c.epoch == self.job.epoch,
+                                                jobs.c.status.in_(ENDED))
+            written = transaction.connection.scalar(ended)
+        return Status(written) if written else None
 
     def release(self) -> None:
         """Hand back a job that could not be finished through no fault of its own: it waits again."""

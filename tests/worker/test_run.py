@@ -21,7 +21,7 @@ from sqlalchemy.exc import OperationalError
 from service.jobs import Job, Limits, NewJob, Registry, Status
 from service.jobs.held import HeldJob, claim
 from service.jobs.measures import measure
-from service.results import DatasetWriter, open_dataset, segments
+from service.results import Datasets, DatasetWriter, open_dataset, segments
 from service.results.segments import Segments
 from service.settings import Settings
 from solver import Outcome, RunFailed, simulate
@@ -146,6 +146,19 @@ def test_a_job_cancelled_while_it_runs_leaves_nothing(job, registry, settings, m
     monkeypatch.setattr(lease, "RENEWAL", 0.01)
     monkeypatch.setattr(HeldJob, "renew", watched)
     monkeypatch.setattr(attempt, "simulate", simulation_that(cancel))
+    done = ended(job, registry, settings)
+    assert (done.status, done.outcome, done.dataset) == (Status.DISMISSED, "cancelled", None)
+    assert left_over(settings) == []
+
+
+def test_a_job_cancelled_after_its_last_step_leaves_nothing(job, registry, settings, monkeypatch):
+    publish = Datasets.publish
+
+    def cancelled(self, path):
+        publish(self, path)
+        registry.cancel(job.id)
+
+    monkeypatch.setattr(Datasets, "publish", cancelled)
     done = ended(job, registry, settings)
     assert (done.status, done.outcome, done.dataset) == (Status.DISMISSED, "cancelled", None)
     assert left_over(settings) == []

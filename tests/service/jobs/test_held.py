@@ -151,6 +151,16 @@ def test_cancelling_an_ended_job_changes_nothing(registry):
     assert registry.cancel(job.job.id) == before
 
 
+@pytest.mark.parametrize("status", [Status.SUCCESSFUL, Status.FAILED])
+def test_a_job_cancelled_before_its_end_is_written_ends_as_dismissed(registry, status):
+    job = held(registry)
+    registry.cancel(job.job.id)
+    told = (status, "x", "", Dataset("x", "ab", 3), Reached(1.0, steps=9))
+    assert [job.finish(*told), job.finish(*told)] == [Status.DISMISSED] * 2
+    done = registry.get(job.job.id)
+    assert (done.status, done.outcome, done.dataset, done.reached.steps) == (Status.DISMISSED, "cancelled", None, 9)
+
+
 def test_a_released_job_waits_again_without_a_lost_attempt(registry):
     job = held(registry)
     job.release()

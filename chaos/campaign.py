@@ -26,7 +26,7 @@ from service.jobs.tables import jobs
 from service.settings import Settings
 
 LEASE, CHECKPOINT = 3.0, 0.1
-STEPS_BETWEEN = 1000.0
+STEPS_BETWEEN = 4000.0
 """Steps that the workers take between two faults, on average: one job."""
 IDLE = 10.0
 """Seconds after which the next fault comes even so."""

@@ -14,12 +14,12 @@ from service.results import DatasetWriter, open_dataset
 from solver import simulate
 
 SETTINGS: dict[str, dict[str, Any]] = {
-    "goyal-2003": {"t_end": 20.0, "numerics.intervals": 160, "output.interval": 0.2, "numerics.dt_max": 0.02},
-    "short-loop": {"t_end": 2.0, "numerics.intervals": 80, "numerics.method": "staggered"},
-    "cantilever-vibration": {"t_end": 40.0, "numerics.intervals": 160, "numerics.dt_max": 0.04,
-                             "numerics.method": "staggered"},  # about one axis
-    "free-flight": {"t_end": 10.0, "numerics.intervals": 120},
-    "hanging-cable": {"t_end": 30.0, "numerics.intervals": 120, "numerics.dt_max": 0.02},
+    "goyal-2003": {"t_end": 20.0, "numerics.intervals": 160, "output.interval": 0.2, "numerics.dt_max": 0.005},
+    "short-loop": {"t_end": 8.0, "numerics.intervals": 80, "output.interval": 0.08, "numerics.method": "staggered"},
+    "cantilever-vibration": {"t_end": 160.0, "numerics.intervals": 160, "output.interval": 0.4,
+                             "numerics.dt_max": 0.04, "numerics.method": "staggered"},  # about one axis
+    "free-flight": {"t_end": 40.0, "numerics.intervals": 120, "output.interval": 0.2},
+    "hanging-cable": {"t_end": 30.0, "numerics.intervals": 120, "numerics.dt_max": 0.005},
 }
 
 

@@ -107,8 +107,9 @@ def test_hosts_are_upgraded_one_by_one_while_jobs_run(
     start, newer, registry, postgresql, broker, slow, quick, until, tmp_path
 ):
     slow = apply_settings(slow, {"t_end": 20.0, "numerics.dt_max": 0.001})
+    no_lease_runs_out = {"HOCKLE_LEASE": "10"}
     shared = {"HOCKLE_STORE": str(tmp_path / "store"), "HOCKLE_DATABASE": postgresql.url(),
-              "REDIS_URL": f"redis://127.0.0.1:{broker}/0"}  # fmt: skip
+              "REDIS_URL": f"redis://127.0.0.1:{broker}/0"} | no_lease_runs_out  # fmt: skip
     upgraded = shared | {"tree": newer, "PYTHONPATH": os.pathsep.join([str(newer), str(TREE)])}
     once = ("successful", 1)
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from time import process_time
 
 from solver import Curve, End, Initial, Numerics, Scene
-from solver.methods.box.method import BoxMethod
-from solver.methods.staggered.method import StaggeredMethod
+from solver.methods.box import BoxMethod
+from solver.methods.staggered import StaggeredMethod
 from validation.free_flight import curled
 from validation.rods import LENGTH, rod_R
 from validation.system import NewtonSystem, StagesSystem

@@ -1,28 +1,23 @@
 """The rod solver: numbers only. `for frame in simulate(scene): ...`."""
 
-from solver.curve import Curve, Vector, constant_vector
-from solver.frame import Frame, Statistics
-from solver.kernel import code_digest
-from solver.methods.statics.ends import check_end
+from solver.kernels.kernel import code_digest
+from solver.measures.frame import Frame, Statistics
 from solver.outcome import REMEDY, Outcome, RunFailed
-from solver.rod import Rod
-from solver.run import Run
-from solver.scene import (
-    FIXED,
-    FREE,
-    Condition,
-    Contact,
-    DistributedLoad,
-    End,
-    Fluid,
-    Initial,
-    Numerics,
-    PointLoad,
-    Scene,
-)
-from solver.simulate import simulate
-from solver.simulation import Simulation, warm
-from solver.verify import Verified, VerifiedFrame
+from solver.run.run import Run
+from solver.run.simulate import simulate
+from solver.run.simulation import Simulation
+from solver.run.verify import Verified, VerifiedFrame
+from solver.run.warming import warm
+from solver.scene.contact import Contact
+from solver.scene.curve import Curve, Vector, constant_vector
+from solver.scene.ends import FIXED, FREE, Condition, End
+from solver.scene.fluid import Fluid
+from solver.scene.initial import Initial
+from solver.scene.loads import DistributedLoad, PointLoad
+from solver.scene.numerics import Numerics
+from solver.scene.rod import Rod
+from solver.scene.scene import Scene
+from solver.statics.ends import check_end
 
 __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",

@@ -19,8 +19,8 @@ from math import isfinite, isnan, pi
 import numpy as np
 
 from solver import Condition, End, Frame, Scene
-from solver.rod import Array
-from solver.rotation import rotate
+from solver.arrays import Array
+from solver.kernels.rotation import rotate
 from stress.ending import Ending
 
 BALANCE = STRETCH = TURNS = 0.1

@@ -16,7 +16,7 @@ from hockle.milestones import milestones
 from service.cases import apply_settings, build_scene, load_case, parse_case, shipped_cases
 from service.results import DatasetWriter, open_dataset
 from solver import Frame, Scene, simulate
-from solver.rotation import rotate
+from solver.kernels.rotation import rotate
 
 Array = NDArray[np.float64]
 

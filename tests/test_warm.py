@@ -9,8 +9,8 @@ import sys
 import pytest
 from numba import config
 
-from solver import kernel
-from solver.kernel import compile_apart
+from solver.kernels import kernel
+from solver.kernels.kernel import compile_apart
 
 SCENES = {"hanging-cable": {"t_end": 1.0}, "short-loop": {"t_end": 3.0}, "free-flight": {"t_end": 0.1}}
 PROGRAM = """
@@ -70,7 +70,7 @@ def test_another_checkout_of_the_same_code_that_shares_the_cache_compiles_for_it
     marks = tmp_path / "marks"
     mark = f"open({str(marks)!r}, 'a').write('compiled ')"
     for place in ("here", "there", "here"):
-        monkeypatch.setattr(kernel, "__file__", str(tmp_path / place / "solver" / "kernel.py"))
+        monkeypatch.setattr(kernel, "__file__", str(tmp_path / place / "solver" / "kernels" / "kernel.py"))
         kernel._good_for.cache_clear()
         compile_apart("some", mark)
     monkeypatch.undo()

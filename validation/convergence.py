@@ -14,8 +14,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from solver import Condition, Contact, Curve, DistributedLoad, End, Frame, Initial, Rod, Scene, simulate
-from solver.initial import nodes_at_rest
-from solver.rod import Array
+from solver.arrays import Array
+from solver.scene.layout import nodes_at_rest
 from validation.rods import DENSITY, DIAMETER, EJ, LENGTH, SHEAR_MODULUS, YOUNGS_MODULUS, fixed_steps
 from validation.row import Row, observed_order
 

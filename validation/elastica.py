@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 
 from solver import Curve, End, Initial, Numerics, PointLoad, RunFailed, Scene, simulate
-from solver.rotation import rotate
+from solver.kernels.rotation import rotate
 from validation.rods import EJ, LENGTH, fixed_steps, rod_R
 from validation.row import Row, against, observed_order
 

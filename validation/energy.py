@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from solver import End, Frame, Initial, Scene, simulate
-from solver.rod import Array
+from solver.arrays import Array
 from validation.cantilever import BENDING, bent, vibration
 from validation.rods import LENGTH, fixed_steps, rod_R
 from validation.row import Row, at_most

@@ -17,10 +17,10 @@ import numpy as np
 from service.cases.build import build_scene
 from service.cases.library import apply_settings, load_case, parse_case
 from solver import Frame, Scene, simulate
-from solver.pilot import Piloted
-from solver.resolution import refine
-from solver.rod import Array
-from solver.verify import UNVERIFIED, VerifiedFrame
+from solver.arrays import Array
+from solver.run.pilot import Piloted
+from solver.run.resolution import refine
+from solver.run.verify import UNVERIFIED, VerifiedFrame
 from validation.elastica import TABLE
 from validation.row import Row, at_most, relative
 

@@ -8,8 +8,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline, PPoly
 
 from solver import End, Frame, Initial, Scene, simulate
-from solver.rod import Array, sample
-from solver.rotation import rotate
+from solver.arrays import Array
+from solver.kernels.rotation import rotate
+from solver.physics.section import sample
 from validation.rods import LENGTH, fixed_steps, rod_R
 from validation.row import Row, at_most
 

@@ -17,7 +17,7 @@ import numpy as np
 from service.cases.build import build_scene
 from service.cases.library import apply_settings, load_case, parse_case
 from solver import Frame, RunFailed, simulate
-from solver.rotation import rotate
+from solver.kernels.rotation import rotate
 from validation.row import Row, against, at_most, relative
 
 REFERENCE: dict[str, Any] = json.loads((Path(__file__).parent / "data" / "goyal2003.json").read_text())

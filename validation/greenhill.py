@@ -10,7 +10,7 @@ from __future__ import annotations
 from scipy.optimize import brentq
 
 from solver import Curve, DistributedLoad, End, Initial, Numerics, Scene, constant_vector
-from solver.methods.box.method import BoxMethod
+from solver.methods.box import BoxMethod
 from validation.rods import EJ, GJ, LENGTH, rod_R
 from validation.row import Row, against, observed_order
 

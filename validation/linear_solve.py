@@ -12,9 +12,10 @@ from typing import Literal
 import numpy as np
 
 from solver import Curve, Numerics, Outcome, PointLoad, RunFailed, Scene, simulate
-from solver.methods.box.method import BoxMethod
-from solver.rod import Array
-from solver.scene import End, Initial
+from solver.arrays import Array
+from solver.methods.box import BoxMethod
+from solver.scene.ends import End
+from solver.scene.initial import Initial
 from validation.free_flight import curled
 from validation.rods import LENGTH, YOUNGS_MODULUS, rod_R
 from validation.row import Row, at_most

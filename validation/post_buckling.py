@@ -19,7 +19,7 @@ from scipy.optimize import brentq, root_scalar
 from scipy.special import j0
 
 from solver import Curve, Frame, Initial, Scene, simulate
-from solver.rod import Array
+from solver.arrays import Array
 from validation.rods import LENGTH, driven_clamp, fixed_steps, rod_R
 from validation.row import Row, against, observed_order
 

@@ -13,9 +13,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from solver import Curve, DistributedLoad, End, Initial, Numerics, Scene
-from solver.methods.box.method import BoxMethod
-from solver.methods.box.newton import CONVERGED
-from solver.rod import Array
+from solver.arrays import Array
+from solver.methods.box import BoxMethod
+from solver.methods.time.generalized_alpha.newton import CONVERGED
 from validation.rods import EJ, GJ, LENGTH, rod_R
 from validation.row import Row, observed_order, relative
 

@@ -12,8 +12,8 @@ from functools import cache
 import numpy as np
 
 from solver import Frame, Numerics, simulate
-from solver.methods.staggered.method import StaggeredMethod
-from solver.rod import Array
+from solver.arrays import Array
+from solver.methods.staggered import StaggeredMethod
 from validation.free_flight import throw
 from validation.goyal import FINE, REFERENCE, at, mismatch, run
 from validation.row import Row, against, at_most

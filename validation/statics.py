@@ -8,8 +8,8 @@ from math import atan2
 import numpy as np
 
 from solver import FIXED, Condition, Curve, End, Frame, Initial, Numerics, PointLoad, Scene, simulate
-from solver.rod import Array
-from solver.rotation import rotate
+from solver.arrays import Array
+from solver.kernels.rotation import rotate
 from validation.elastica import ALPHAS, NAMES, TABLE, exact
 from validation.greenhill import CRITICAL
 from validation.rods import EJ, GJ, LENGTH, rod_R

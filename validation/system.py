@@ -8,18 +8,19 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from solver.methods.box.elimination import factor, solve
-from solver.methods.box.generalized_alpha import history
-from solver.methods.box.intervals import MEANS, interval_panel
-from solver.methods.box.method import BoxMethod
-from solver.methods.box.newton import balance_nodes, form_residuals, set_scales
-from solver.methods.box.schemes import BOX, Scheme, c0_of
-from solver.methods.box.shooting import shoot
-from solver.methods.staggered.method import SCHEME, StaggeredMethod
-from solver.methods.staggered.motion import move, spin_steadily
-from solver.methods.staggered.newton import evaluate, factor_both, transform_residuals, update
-from solver.methods.staggered.tridiagonal import solve_stages
-from solver.rod import Array
+from solver.arrays import Array
+from solver.methods.box import BoxMethod
+from solver.methods.linear.elimination import factor, solve
+from solver.methods.linear.shooting import shoot
+from solver.methods.linear.tridiagonal import solve_stages
+from solver.methods.schemes import Scheme, c0_of
+from solver.methods.space.box.intervals import MEANS, interval_panel
+from solver.methods.space.box.schemes import BOX
+from solver.methods.space.segments.motion import move, spin_steadily
+from solver.methods.staggered import SCHEME, StaggeredMethod
+from solver.methods.time.generalized_alpha.history import history
+from solver.methods.time.generalized_alpha.newton import balance_nodes, form_residuals, set_scales
+from solver.methods.time.radau.newton import evaluate, factor_both, transform_residuals, update
 
 
 class NewtonSystem:

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.measures.topology import writhe, writhe_closed
-from solver.rod import Array
 from validation.row import Row, against, observed_order
 
 OPEN, TREFOIL = 0.120679172516, -3.518239231

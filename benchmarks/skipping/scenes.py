@@ -12,7 +12,7 @@ import numpy as np
 from service.cases.build import build_scene
 from service.cases.library import apply_settings, load_case, parse_case
 from solver import FIXED, FREE, Condition, Curve, End, Fluid, Initial, Numerics, Rod, Scene
-from solver.rod import Array
+from solver.arrays import Array
 
 LENGTH = 1.0
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks.work_precision.measure import Stopwatch
 from solver import Curve, End, Frame, Initial, Numerics, PointLoad, Scene, simulate
-from solver.rod import Array
+from solver.arrays import Array
 from validation.rods import LENGTH, rod_R
 
 

@@ -15,7 +15,7 @@ from service.cases.errors import CaseError, FieldError
 from service.cases.initial import InitialSpec
 from service.cases.rod import RodSpec
 from solver import Curve, Initial, Rod, Scene, Vector, check_end
-from solver.initial import nodes_at_rest
+from solver.scene.layout import nodes_at_rest
 
 Part = TypeVar("Part")
 KEPT = 64

@@ -14,7 +14,7 @@ from service.cases.quantities import Positive, Spec
 from service.cases.rod import RodSpec
 from service.cases.surroundings import ContactSpec, FluidSpec, LoadsSpec
 from solver import Numerics
-from solver.pilot import FIRST_INTERVALS
+from solver.run.pilot import FIRST_INTERVALS
 
 FieldName = Literal["v", "omega", "f", "kappa", "q", "r", "orientation"]
 ALL_FIELDS: tuple[FieldName, ...] = ("v", "omega", "f", "kappa", "q", "r", "orientation")

@@ -15,7 +15,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from service.cases.errors import refusal
 from service.cases.quantities import FrameName, Positive, Schedule, Spec, curve
 from solver import Condition, End
-from solver.scene import Component
+from solver.scene.ends import Component
 
 PresetName = Literal["clamp", "pin", "slider", "free"]
 PRESETS = {"clamp": End.clamp, "pin": End.pin, "slider": End.slider, "free": End.free}

@@ -10,7 +10,7 @@ from pydantic import Discriminator, Tag, model_validator
 from service.cases.errors import refusal
 from service.cases.quantities import Positive, PositiveProfile, ProfileTriple, Spec, curve, curves
 from solver import Rod
-from solver.rod import Profiles
+from solver.scene.rod import Profiles
 
 
 def _one_or_two(value: Any) -> str:

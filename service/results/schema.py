@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from service.cases import CaseSpec
 from solver import Frame, VerifiedFrame
-from solver.verify import UNVERIFIED
+from solver.run.verify import UNVERIFIED
 
 ERROR = "_error"
 

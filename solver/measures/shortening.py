@@ -24,9 +24,9 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from solver.kernel import kernel
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
 from solver.measures.spherical import half_area
-from solver.rod import Array
 
 BLOCK = 8
 RIGHT_ANGLE = sqrt(2.0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import atan2, sqrt
 
-from solver.kernel import inlined, kernel
-from solver.rod import Array
+from solver.arrays import Array
+from solver.kernels.kernel import inlined, kernel
 
 
 @kernel

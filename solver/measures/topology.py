@@ -19,10 +19,10 @@ from math import pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver.kernel import inlined, kernel
+from solver.arrays import Array
+from solver.kernels.kernel import inlined, kernel
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
-from solver.rod import Array
 
 Vector = tuple[float, float, float]
 

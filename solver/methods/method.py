@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from solver.ends import DrivenEnd
-from solver.frame import Fields
-from solver.loads.applied import AppliedLoads
+from solver.arrays import Array
 from solver.measures.energies import Energies
-from solver.rod import Array
+from solver.measures.frame import Fields
+from solver.physics.ends import DrivenEnd
+from solver.physics.loads.applied import AppliedLoads
 
 
 class Method(Protocol):

@@ -10,8 +10,8 @@ import pytest
 
 from service.cases import apply_settings, build_scene, load_case, parse_case
 from solver import simulate
-from solver.initial import nodes_at_rest
-from solver.scene import Scene
+from solver.scene.layout import nodes_at_rest
+from solver.scene.scene import Scene
 
 
 def scene(name: str, **settings: Any) -> Scene:

@@ -8,9 +8,9 @@ from math import pi
 import numpy as np
 
 from solver import Condition, Curve, End, Frame, Initial, Numerics, Rod, Scene, simulate
-from solver.rod import Array
-from solver.rotation import rotate
-from solver.scene import FIXED
+from solver.arrays import Array
+from solver.kernels.rotation import rotate
+from solver.scene.ends import FIXED
 
 LENGTH, DIAMETER = 1.0, 0.01
 YOUNGS_MODULUS, SHEAR_MODULUS, DENSITY = 1.25e7, 5e6, 1500.0

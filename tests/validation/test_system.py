@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse.linalg import spsolve
 
 from benchmarks.kernels import scene_of
-from solver.methods.box.method import BoxMethod
+from solver.methods.box import BoxMethod
 from validation.system import NewtonSystem
 
 

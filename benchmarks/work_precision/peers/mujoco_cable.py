@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.work_precision.cantilever import Cantilever, Elements, Motion, carried_frames
 from benchmarks.work_precision.measure import Skipped, refuse_if_long
-from solver.rod import Array
+from solver.arrays import Array
 from validation.rods import DENSITY, DIAMETER, EJ, GJ, SHEAR_MODULUS, YOUNGS_MODULUS
 
 TRIAL = 200

@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks.work_precision.cantilever import Cantilever, Elements, Motion, carried_frames
 from benchmarks.work_precision.measure import refuse_if_long
-from solver.rod import Array
+from solver.arrays import Array
 from validation.rods import DENSITY, DIAMETER, SHEAR_MODULUS, YOUNGS_MODULUS
 
 TRIAL = 500

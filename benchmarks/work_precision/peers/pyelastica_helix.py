@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.work_precision.measure import Stopwatch, refuse_if_long
 from benchmarks.work_precision.peers.pyelastica import Simulator, cost_of_a_step, stable_step
-from solver.rod import Array
+from solver.arrays import Array
 
 SHEAR = 1e5
 """N, of shear and of stretch; hockle's rod has neither."""

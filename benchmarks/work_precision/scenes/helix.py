@@ -20,7 +20,7 @@ from benchmarks.work_precision.measure import AS_IT_COMES, PYELASTICA, Measured,
 from benchmarks.work_precision.peers import pyelastica_helix
 from benchmarks.work_precision.scenes.ladder import box, ours, staggered
 from solver import FIXED, Condition, Curve, End, Initial, Numerics, Rod, Scene, simulate
-from solver.rod import Array
+from solver.arrays import Array
 
 SCENE = "helical buckling"
 LENGTH, RADIUS = 100.0, 0.35

@@ -10,7 +10,7 @@ from benchmarks.work_precision.cantilever import Cantilever, Motion, solve
 from benchmarks.work_precision.measure import Measured, Run
 from benchmarks.work_precision.peers import peers
 from benchmarks.work_precision.scenes.ladder import box, ours, staggered
-from solver.rod import Array
+from solver.arrays import Array
 from validation.free_flight import curled
 from validation.rods import LENGTH
 

@@ -16,7 +16,7 @@ from benchmarks.work_precision.measure import PYELASTICA, Measured, Run, Skipped
 from benchmarks.work_precision.peers import pyelastica
 from benchmarks.work_precision.scenes.ladder import box, ours, staggered
 from solver import FIXED, FREE, Condition, Curve, End, Initial, Numerics, Rod, Scene, simulate
-from solver.rod import Array
+from solver.arrays import Array
 
 SCENE = "suture thread"
 HALF, RADIUS, E, DENSITY = 0.05, 2e-4, 7.5e8, 1300.0

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from solver import Condition, Curve, DistributedLoad, End, Fluid, Frame, Initial, PointLoad, RunFailed, Scene, simulate
-from solver.curve import constant_vector
-from solver.rod import Array
+from solver.arrays import Array
+from solver.scene.curve import constant_vector
 from tests.solver.scenes import (
     ARC,
     ARC_ROD,
@@ -169,7 +169,7 @@ def test_on_a_uniform_rod_the_time_scheme_alone_keeps_the_balance_open(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Ten intervals all the time: but for the work of the feedback of stretch, the balance falls with dt^2."""
-    monkeypatch.setattr("solver.methods.box.method.STRETCH_FEEDBACK", 0.0)
+    monkeypatch.setattr("solver.methods.box.STRETCH_FEEDBACK", 0.0)
     left = []
     for dt in (0.02, 0.01, 0.005):
         frames = run(replace(SCENES[name], numerics=fixed_steps(10, dt)))

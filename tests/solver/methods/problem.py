@@ -7,22 +7,31 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver import Contact, Initial, Numerics, Rod, Scene
-from solver.contact.forces import change_forces, touching
-from solver.contact.self_contact import SelfContact
-from solver.curve import Curve
-from solver.kernel import kernel
-from solver.loads.applied import Loads
-from solver.methods.box.augmented import wide_panel, wide_start
-from solver.methods.box.coupling import _move, add_contact
-from solver.methods.box.fields import State
-from solver.methods.box.generalized_alpha import history
-from solver.methods.box.intervals import MEANS, interval_panel
-from solver.methods.box.method import _initial_state
-from solver.methods.box.newton import EndValues, Scales, Work, balance_nodes, form_residuals, set_scales
-from solver.methods.box.schemes import Scheme, SpaceScheme, c0_of
-from solver.methods.box.trial import total_bending
-from solver.rod import Array, Section, sample
-from solver.scene import End
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
+from solver.methods.box import _initial_state
+from solver.methods.linear.augmented import wide_panel, wide_start
+from solver.methods.linear.box_contact import _move, add_contact
+from solver.methods.schemes import Scheme, c0_of
+from solver.methods.space.box.fields import State
+from solver.methods.space.box.intervals import MEANS, interval_panel
+from solver.methods.space.box.schemes import SpaceScheme
+from solver.methods.space.box.trial import total_bending
+from solver.methods.time.generalized_alpha.history import history
+from solver.methods.time.generalized_alpha.newton import (
+    EndValues,
+    Scales,
+    Work,
+    balance_nodes,
+    form_residuals,
+    set_scales,
+)
+from solver.physics.contact.forces import change_forces, touching
+from solver.physics.contact.self_contact import SelfContact
+from solver.physics.loads.applied import Loads
+from solver.physics.section import Section, sample
+from solver.scene.curve import Curve
+from solver.scene.ends import End
 
 LENGTH = 0.4
 CLAMPED = np.zeros(6, np.int64)

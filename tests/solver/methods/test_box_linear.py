@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from solver import Contact
-from solver.methods.box.coupling import solve_with_contact
-from solver.methods.box.elimination import factor, solve
-from solver.methods.box.shooting import LARGEST_GROWTH, shoot
-from solver.rod import Array
+from solver.arrays import Array
+from solver.methods.linear.box_contact import solve_with_contact
+from solver.methods.linear.elimination import factor, solve
+from solver.methods.linear.shooting import LARGEST_GROWTH, shoot
 from tests.solver.methods.problem import Problem, problem
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from solver.methods.box.fields import KAPPA, State
-from solver.methods.box.trial import measure_trial
+from solver.methods.space.box.fields import KAPPA, State
+from solver.methods.space.box.trial import measure_trial
 
 H, N = 0.1, 5
 

@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-import solver.simulation
+import solver.methods.registry
 from solver import (
     FIXED,
     FREE,
@@ -25,12 +25,12 @@ from solver import (
     Statistics,
     simulate,
 )
-from solver.curve import constant_vector
-from solver.methods.one_axis.axis import axis_of
-from solver.methods.one_axis.method import OneAxisMethod
-from solver.methods.staggered.method import StaggeredMethod
-from solver.rod import Array
-from solver.rotation import matrix_of
+from solver.arrays import Array
+from solver.kernels.rotation import matrix_of
+from solver.methods.one_axis import OneAxisMethod
+from solver.methods.space.one_axis.axis import axis_of
+from solver.methods.staggered import StaggeredMethod
+from solver.scene.curve import constant_vector
 from tests.solver.scenes import ARC, ARC_ROD, EJ, GJ, LENGTH, ROD, arc, turned_clamp
 
 SAME = 1e-8
@@ -120,7 +120,7 @@ SCENES = {
 def run(scene: Scene, monkeypatch: pytest.MonkeyPatch, in_space: bool = False) -> tuple[list[Frame], Statistics]:
     with monkeypatch.context() as patch:
         if in_space:
-            patch.setattr(solver.simulation, "axis_of", lambda scene: None)
+            patch.setattr(solver.methods.registry, "axis_of", lambda scene: None)
         simulation = simulate(scene)
     assert isinstance(simulation._method, StaggeredMethod if in_space else OneAxisMethod)  # type: ignore[attr-defined]
     return list(simulation), simulation.statistics

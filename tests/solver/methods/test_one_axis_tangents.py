@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from solver import End, Fluid, Initial, Numerics, Scene
-from solver.ends import LOAD, LOAD_LAB, RATE, RATE_LAB
-from solver.loads.applied import Loads
-from solver.methods.one_axis.axis import axis_of
-from solver.methods.one_axis.method import OneAxisMethod
-from solver.methods.one_axis.segments import balance, tangents_at
-from solver.rod import Array
+from solver.arrays import Array
+from solver.methods.one_axis import OneAxisMethod
+from solver.methods.space.one_axis.axis import axis_of
+from solver.methods.space.one_axis.balances import balance, tangents_at
+from solver.physics.ends import LOAD, LOAD_LAB, RATE, RATE_LAB
+from solver.physics.loads.applied import Loads
 from tests.solver.scenes import ROD
 
 N, STAGE, STEP = 5, 1, 1e-6

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from solver import Condition, Curve, DistributedLoad, End, Initial, Numerics, Outcome, RunFailed, Scene, simulate
-from solver.curve import constant_vector
-from solver.methods.staggered.method import StaggeredMethod
-from solver.rod import Array
+from solver.arrays import Array
+from solver.methods.staggered import StaggeredMethod
+from solver.scene.curve import constant_vector
 from tests.solver.scenes import ARC, ARC_ROD, EJ, FIXED_STEPS, LENGTH, ROD, turned_clamp
 from validation.free_flight import curled
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from solver import End, Fluid, Initial, Numerics, Scene
-from solver.loads.applied import Loads
-from solver.methods.staggered.joints import bend_joints
-from solver.methods.staggered.method import StaggeredMethod
-from solver.methods.staggered.segments import balance_segments, condition_ends, segment_tangents
-from solver.rod import Array
-from solver.rotation import matrix_of, turn
+from solver.arrays import Array
+from solver.kernels.rotation import matrix_of, turn
+from solver.methods.space.segments.balances import balance_segments, condition_ends, segment_tangents
+from solver.methods.space.segments.joints import bend_joints
+from solver.methods.staggered import StaggeredMethod
+from solver.physics.loads.applied import Loads
 from tests.solver.scenes import ROD
 
 N, STAGE, STEP = 5, 1, 1e-6

@@ -1,0 +1,92 @@
+"""How every kernel is compiled: single-threaded, cached on disk, no bounds checks, no NaN swallowed.
+
+Nothing is contracted or reordered (no fastmath): each operation rounds as IEEE 754 has it, so that a run is the same to
+the bit whatever was inlined where, and on every CPU (docs/decisions/0005). Divide by a constant by multiplying.
+
+A kernel that is called from Python gives up the interpreter's lock. Else a run of short steps could keep another thread
+of its process waiting for a second: one that holds the lock for less than the switch interval is never asked for it.
+
+Numba's cache does not see that a kernel called from another file has changed. So the cache lives in a folder
+named by a digest of the whole solver: another version of the code has another cache, and nothing compiles twice.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+from numba.core.registry import cpu_target
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "nogil": True}
+
+APART = "HOCKLE_COMPILES"
+"""The environment variable that tells a process that it is the one that compiles."""
+
+
+@cache
+def code_digest() -> str:
+    """What tells this version of the solver from every other: a digest of its sources."""
+    digest = hashlib.sha256()
+    for source in sorted(Path(__file__).parents[1].rglob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def cache_folder() -> Path:
+    """The folder of this version's compiled kernels, below the user's cache."""
+    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return home / "hockle" / f"kernels-{code_digest()}"
+
+
+if "NUMBA_CACHE_DIR" not in os.environ:
+    numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+
+
+def compile_apart(name: str, statement: str) -> None:
+    """Have `statement` compile kernels in a process of its own, once for each cache; `name` says which.
+
+    LLVM takes hundreds of MB, which are not a job's. Where it cannot be done, kernels are compiled as they are called.
+    """
+    done = Path(numba.config.CACHE_DIR) / f"{name}-{_good_for()}.compiled"  # type: ignore[attr-defined]
+    if done.exists() or os.environ.get(APART):
+        return
+    path = os.pathsep.join([str(_sources()), *filter(None, [os.environ.get("PYTHONPATH")])])
+    environment = os.environ | {"PYTHONPATH": path, APART: "1"}
+    ended = subprocess.run([sys.executable, "-c", statement], env=environment, check=False)
+    if ended.returncode == 0:
+        with suppress(OSError):
+            done.touch()
+
+
+def _sources() -> Path:
+    """The folder from which this solver is imported."""
+    return Path(__file__).absolute().parents[2]
+
+
+@cache
+def _good_for() -> str:
+    """A digest of all by which numba tells whether a kernel in a cache is the one that is called: the code and its
+    place, numba's and Python's versions, the CPU."""
+    cpu = cpu_target.target_context.codegen().magic_tuple()
+    told = (code_digest(), str(_sources()), numba.__version__, sys.version_info[:2], cpu)
+    return hashlib.sha256(repr(told).encode()).hexdigest()[:16]
+
+
+def kernel(function: Function) -> Function:
+    """Compile a function of plain arrays and numbers."""
+    return numba.njit(**_OPTIONS)(function)  # type: ignore[no-any-return]
+
+
+def inlined(function: Function) -> Function:
+    """Compile a function that is to vanish into its callers: one that is called for every node or interval."""
+    return numba.njit(inline="always", **_OPTIONS)(function)  # type: ignore[no-any-return]

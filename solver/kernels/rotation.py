@@ -1,0 +1,212 @@
+"""Rotations: unit quaternions (w, x, y, z), their matrices, and the exponential map.
+
+A rotation R takes material components to lab ones. A rotation vector theta is material:
+R(t + dt) = R(t) exp([theta]). Small rotations are material too: delta R = R [delta psi].
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.kernel import inlined, kernel
+from solver.kernels.lanes import LANES
+from solver.kernels.scratch import scratch
+
+Quaternion = tuple[float, float, float, float]
+Entries = tuple[float, float, float, float, float, float, float, float, float]
+"""Of a matrix (3, 3), row by row."""
+
+
+@inlined
+def cross(x: float, y: float, z: float, u: float, v: float, w: float) -> tuple[float, float, float]:
+    """The cross product of two vectors."""
+    return y * w - z * v, z * u - x * w, x * v - y * u
+
+
+@inlined
+def product(a: float, b: float, c: float, d: float, w: float, x: float, y: float, z: float) -> Quaternion:
+    """The product of two quaternions: first the second, then the first."""
+    return (a * w - b * x - c * y - d * z, a * x + b * w + c * z - d * y, a * y - b * z + c * w + d * x,
+            a * z + b * y - c * x + d * w)  # fmt: skip
+
+
+@inlined
+def entries(w: float, x: float, y: float, z: float) -> Entries:
+    """The entries of the rotation matrix of a unit quaternion, row by row."""
+    return (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
+            2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
+            2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))  # fmt: skip
+
+
+@inlined
+def cosine_and_sinc(square: float) -> tuple[float, float]:
+    """cos(a/2) and sin(a/2)/a of a rotation by a, a^2 = `square`, by their series: exact to rounding up to 1 rad."""
+    p, cosine, sinc = 0.25 * square, 1.0, 1.0
+    for k in range(5, -1, -1):
+        cosine = 1.0 - cosine * p * (1.0 / ((2 * k + 1.0) * (2 * k + 2.0)))
+        sinc = 1.0 - sinc * p * (1.0 / ((2 * k + 2.0) * (2 * k + 3.0)))
+    return cosine, 0.5 * sinc
+
+
+@kernel
+def any_cosine_and_sinc(square: float) -> tuple[float, float]:
+    """The same for any angle but zero."""
+    angle = np.sqrt(square)
+    return np.cos(0.5 * angle), np.sin(0.5 * angle) / angle
+
+
+@inlined
+def cosines_and_sincs(rows: Array, at: int) -> None:
+    """Of eight rotation vectors in rows (., 8) from `at` on: write cos(a/2), sin(a/2)/a and a^2 into the next three."""
+    for m in range(LANES):
+        square = rows[at, m] * rows[at, m] + rows[at + 1, m] * rows[at + 1, m] + rows[at + 2, m] * rows[at + 2, m]
+        rows[at + 3, m], rows[at + 4, m] = cosine_and_sinc(square)
+        rows[at + 5, m] = square
+    for m in range(LANES):
+        if rows[at + 5, m] >= 1.0:
+            rows[at + 3, m], rows[at + 4, m] = any_cosine_and_sinc(rows[at + 5, m])
+
+
+@inlined
+def unit(a: float, b: float, c: float, d: float) -> Quaternion:
+    """The quaternion made as long as 1."""
+    norm = 1.0 / np.sqrt(a * a + b * b + c * c + d * d)
+    return a * norm, b * norm, c * norm, d * norm
+
+
+@kernel
+def matrix_of(quaternion: Array, R: Array) -> None:
+    """Write the rotation matrix of a unit quaternion into `R` (3, 3)."""
+    w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
+    R[0, 0], R[0, 1], R[0, 2], R[1, 0], R[1, 1], R[1, 2], R[2, 0], R[2, 1], R[2, 2] = entries(w, x, y, z)
+
+
+@kernel
+def tangent_of(quaternion: Array, T: Array) -> None:
+    """Write the tangent R a3 of a unit quaternion (4,) into `T` (3,)."""
+    w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
+    T[0] = 2.0 * (x * z + w * y)
+    T[1] = 2.0 * (y * z - w * x)
+    T[2] = 1.0 - 2.0 * (x * x + y * y)
+
+
+@kernel
+def tangents_of(quaternion: Array, T: Array) -> None:
+    """Write the tangents R a3 of unit quaternions (n, 4) into `T` (n, 3)."""
+    for j in range(len(T)):
+        tangent_of(quaternion[j], T[j])
+
+
+@kernel
+def turn(quaternion: Array, theta: Array, turned: Array) -> None:
+    """Write quaternion * exp(theta), normalised, into `turned` (4,)."""
+    square = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2]
+    cosine, sinc = cosine_and_sinc(square) if square < 1.0 else any_cosine_and_sinc(square)
+    a, b, c, d = product(quaternion[0], quaternion[1], quaternion[2], quaternion[3],
+                         cosine, sinc * theta[0], sinc * theta[1], sinc * theta[2])  # fmt: skip
+    turned[0], turned[1], turned[2], turned[3] = unit(a, b, c, d)
+
+
+@kernel
+def multiply(left: Array, right: Array, out: Array) -> None:
+    """Write the quaternion left * right into `out` (4,): first `right`, then `left`."""
+    out[0], out[1], out[2], out[3] = product(
+        left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3]
+    )
+
+
+@inlined
+def jacobian_series(square: float) -> tuple[float, float]:
+    """(1 - cos a)/a^2 and (a - sin a)/a^3 of a rotation by a, a^2 = `square`, by their series: exact to rounding up to
+    1 rad."""
+    first, second = 1.0, 1.0
+    for k in range(7, -1, -1):
+        first = 1.0 - first * square * (1.0 / ((2 * k + 3.0) * (2 * k + 4.0)))
+        second = 1.0 - second * square * (1.0 / ((2 * k + 4.0) * (2 * k + 5.0)))
+    return 0.5 * first, (1 / 6) * second
+
+
+@kernel
+def any_jacobian(square: float) -> tuple[float, float]:
+    """The same for any angle but zero."""
+    angle = np.sqrt(square)
+    return (1.0 - np.cos(angle)) / square, (angle - np.sin(angle)) / (square * angle)
+
+
+@inlined
+def right_jacobian(x: float, y: float, z: float, first: float, second: float) -> Entries:
+    """The entries of J_r, row by row: delta psi = J_r(theta) delta theta for theta = (x, y, z).
+
+    J_r = I - (1 - cos a)/a^2 [theta] + (a - sin a)/a^3 [theta]^2 with a = |theta|, whose coefficients are given.
+    """
+    return (1.0 - second * (y * y + z * z), first * z + second * x * y, -first * y + second * x * z,
+            -first * z + second * x * y, 1.0 - second * (x * x + z * z), first * x + second * y * z,
+            first * y + second * x * z, -first * x + second * y * z, 1.0 - second * (x * x + y * y))  # fmt: skip
+
+
+@inlined
+def is_small(square: float, cosine: float) -> bool:
+    """Whether `angle_by_sine` is exact to rounding."""
+    return square < 0.04 * cosine * cosine
+
+
+@inlined
+def angle_by_sine(square: float, cosine: float) -> float:
+    """The angle over sin(angle/2), from its square and cos(angle/2): 2 arctan(t) / t, t = sin / cos, by its series."""
+    t, scale = square / (cosine * cosine), 0.0
+    for k in range(11, -1, -1):
+        scale = 1.0 / (2 * k + 1.0) - t * scale
+    return scale * (2.0 / cosine)
+
+
+@kernel
+def any_angle_by_sine(square: float, cosine: float) -> float:
+    """The same for any angle, the one below pi."""
+    sine = np.sqrt(square)
+    scale: float = 2.0 * np.arctan2(sine, abs(cosine)) / sine
+    return -scale if cosine < 0.0 else scale
+
+
+@kernel
+def relative_rotation(left: Array, right: Array, theta: Array) -> None:
+    """Write the rotation vector of left^-1 right, shorter than pi, into `theta` (3,)."""
+    cosine, x, y, z = product(left[0], -left[1], -left[2], -left[3], right[0], right[1], right[2], right[3])
+    square = x * x + y * y + z * z
+    scale = angle_by_sine(square, cosine) if is_small(square, cosine) else any_angle_by_sine(square, cosine)
+    theta[0], theta[1], theta[2] = scale * x, scale * y, scale * z
+
+
+def quaternion_of(R: Array) -> Array:
+    """The unit quaternions (n, 4) of rotation matrices (n, 3, 3), with w >= 0 first and continuous along n."""
+    from scipy.spatial.transform import Rotation
+
+    quaternions: Array = Rotation.from_matrix(R).as_quat(scalar_first=True)
+    if quaternions[0, 0] < 0:
+        quaternions[0] *= -1.0
+    for i in range(1, len(quaternions)):
+        if np.dot(quaternions[i - 1], quaternions[i]) < 0:
+            quaternions[i] *= -1.0
+    return quaternions
+
+
+@kernel
+def rotate(orientation: Array, vectors: Array) -> Array:
+    """Material vectors (n, 3) in the lab frame, by unit quaternions (n, 4)."""
+    rotated, R = np.empty_like(vectors), scratch((3, 3))
+    for j in range(len(vectors)):
+        matrix_of(orientation[j], R)
+        for i in range(3):
+            rotated[j, i] = R[i, 0] * vectors[j, 0] + R[i, 1] * vectors[j, 1] + R[i, 2] * vectors[j, 2]
+    return rotated
+
+
+@kernel
+def rotate_back(orientation: Array, vectors: Array) -> Array:
+    """Lab vectors (n, 3) in the material frame, by unit quaternions (n, 4)."""
+    rotated, R = np.empty_like(vectors), scratch((3, 3))
+    for j in range(len(vectors)):
+        matrix_of(orientation[j], R)
+        for i in range(3):
+            rotated[j, i] = R[0, i] * vectors[j, 0] + R[1, i] * vectors[j, 1] + R[2, i] * vectors[j, 2]
+    return rotated

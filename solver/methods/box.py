@@ -1,0 +1,248 @@
+"""The box method as the simulation sees it: a state, and steps that are tried and then taken."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import solveh_banded
+
+from solver.arrays import Array
+from solver.kernels.handed import Handed
+from solver.kernels.rotation import relative_rotation, rotate_back, tangents_of
+from solver.measures.energies import Energies
+from solver.measures.frame import Fields
+from solver.methods.schemes import BACKWARD_EULER, Scheme, c0_of
+from solver.methods.space.box.energies import energies
+from solver.methods.space.box.fields import KAPPA, OMEGA, F, State, V
+from solver.methods.space.box.flows import Flows, enter_step
+from solver.methods.space.box.schemes import SpaceScheme
+from solver.methods.space.box.trial import Measured, measure_trial, total_bending
+from solver.methods.time.generalized_alpha.guess import force_rate, guess, stretch_feedback
+from solver.methods.time.generalized_alpha.history import rescale_aux
+from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work, step
+from solver.physics.contact.forces import Touch
+from solver.physics.contact.self_contact import SelfContact
+from solver.physics.ends import DrivenEnd
+from solver.physics.loads.applied import AppliedLoads, Loads
+from solver.physics.section import Section, sample
+from solver.scene.initial import Initial
+from solver.scene.layout import nodes_at_rest
+from solver.scene.scene import Scene
+
+STRETCH_FEEDBACK = 60.0
+"""How many times in a run, to t_end, the stretch is taken back. The rate must not depend on the step, or the order in
+dt is lost; without it |Tw + Wr - Lk| of the paper's scene is three times as large."""
+LARGEST_FEEDBACK = 0.5
+"""Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
+
+SMALL_MOTION = 1e-6
+"""In rod lengths a step: motion below it does not shorten the step."""
+
+
+class BoxMethod:
+    """Generalized-alpha in time and in space on the unknowns V, omega, kappa, F at the nodes."""
+
+    increment_order = 2.0
+    increment_tolerance = 0.1
+    easy_iterations = 4
+
+    def __init__(self, scene: Scene) -> None:
+        numerics = scene.numerics
+        self.s = np.linspace(0.0, scene.rod.length, numerics.intervals + 1)
+        self.h = float(scene.rod.length) / numerics.intervals
+        self.section: Section = sample(scene.rod, self.s)
+        self.applied = AppliedLoads(scene, self.section, self.s)
+        self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
+        self.state, correction = _initial_state(scene.initial, self.s, self.section)
+        self.section.kappa0[:] += correction
+        self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=1)
+        self.trial = State.empty(len(self.s))
+        self._scheme = Scheme.of(numerics.rho_inf)
+        self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
+                              numerics.linear_solver == "shooting")  # fmt: skip
+        self._gain = STRETCH_FEEDBACK / scene.t_end
+        self._measured = Measured(0.0, 0.0, 0.0, 0.0, 0.0)
+        self._bending = total_bending(self.state.Y, self.h)
+        self._stretch, self._stretch_before, self._trial_stretch = np.zeros((3, numerics.intervals, 3))
+        self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space),
+                               scene.contact is not None)  # fmt: skip
+        self.shortest_step = 0.0
+        """Step (s) below which the scheme along s does not resolve the equations; 0 for the box scheme."""
+        if numerics.rho_inf_space < 1.0:
+            self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / self.section.stiffness[:, 0])))
+        self._last_dt, self._taken_dt, self._consistent = 0.0, 0.0, False
+        self._F_rate = np.zeros((len(self.s), 3))
+        self.loads: Loads = self.applied.at(0.0)
+        self._flows = Flows.empty(len(self.s))
+        self._handed = Handed.over(*self._records)
+
+    def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
+        """Try to go from t to t + dt into `trial`; how it ended and the Newton iterations.
+
+        With `consistent`, by backward Euler: dt is tiny, and what is wanted is accelerations and forces.
+        """
+        if not consistent and self._last_dt > 0.0 and dt != self._last_dt:
+            rescale_aux(self.state, dt / self._last_dt)
+        self._last_dt, self._consistent = dt, consistent
+        ahead = dt / self._taken_dt if dt <= 2.0 * self._taken_dt else 0.0
+        gain = min(self._gain, LARGEST_FEEDBACK / dt)
+        self.loads = self.applied.at(t + dt)
+        stretch_feedback(self._stretch, self._stretch_before, ahead, gain, self.work.feedback)
+        guess(self.state, self._F_rate, 0.0 if consistent else dt, self.trial.Y)
+        self.contact.prepare(self._bending, self.state.r, self.state.Y, dt)
+        self._handed = self._handed.again(*self._records)
+        status, iterations = step(self._handed.reference, self.state, self.trial, self._rule, dt, self.h,
+                                  self._ends(t, dt))  # fmt: skip
+        self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
+        return int(status), int(iterations)
+
+    def take_step(self, t: float, dt: float) -> Array:
+        """Make the trial the state; return the energy (4,) in J that flowed in the step.
+
+        From the ends, from the loads, dissipated, into contact.
+        """
+        old, new = self.state, self.trial
+        force_rate(old.Y, new.Y, dt, self._F_rate)
+        # a step that finds forces knows none at its begin: there those of its end count
+        late = 1.0 if self._consistent else 0.5
+        enter_step(self._handed.reference, old, new, self.applied.weight, self.contact.power()[0],
+                   c0_of(self._rule, dt), dt, late, self.h, self._flows)  # fmt: skip
+        for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
+            shift, turned = self._flows.moved[node, :3], self._flows.moved[node, 3:]
+            end.follow(shift if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift[None])[0], turned)
+        self.state, self.trial, self._taken_dt, self._bending = new, old, dt, self._measured.bending
+        self._stretch_before, self._stretch, self._trial_stretch = (
+            self._stretch, self._trial_stretch, self._stretch_before
+        )  # fmt: skip
+        return self._flows.energy
+
+    def switch_ends(self, t: float) -> None:
+        """Put in force the end conditions that hold from t on."""
+        for end, node in ((self.start, 0), (self.end, -1)):
+            velocity = self.state.Y[node, V : V + 3] if end.in_lab else self.velocity()[node]
+            end.switch(t, np.concatenate([velocity, self.state.Y[node, OMEGA : OMEGA + 3]]))
+
+    def velocity(self) -> Array:
+        """v (n, 3), material."""
+        return rotate_back(self.state.quaternion, self.state.Y[:, V : V + 3].copy())
+
+    def relative_increment(self, dt: float) -> float:
+        """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|."""
+        change, motion = self._measured.acceleration, self._measured.motion
+        return dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1]))
+
+    def strain(self) -> float:
+        """The trial's largest strain of an interval."""
+        return self._measured.strain
+
+    def turn(self) -> float:
+        """The largest rotation (rad) of the trial within an interval."""
+        return self._measured.turn
+
+    def refusal(self) -> str:
+        """Why contact does not let the trial be trusted, or nothing."""
+        trial = self.trial
+        return self.contact.refusal(self._measured.bending, lambda: (trial.r, trial.Y))
+
+    def step_limit(self) -> float:
+        """The longest next step (s) that contact allows."""
+        return self.contact.step_limit
+
+    def fields(self) -> Fields:
+        """The state along the rod."""
+        Y, quaternion = self.state.Y, self.state.quaternion
+        kappa = Y[:, KAPPA : KAPPA + 3].copy()
+        return Fields(
+            v=self.velocity(), omega=Y[:, OMEGA : OMEGA + 3].copy(), f=rotate_back(quaternion, Y[:, F:].copy()),
+            kappa=kappa, q=self.section.stiffness * (kappa - self.section.kappa0), r=self.state.r.copy(),
+            orientation=quaternion.copy(),
+        )  # fmt: skip
+
+    def energies(self) -> Energies:
+        """The energies of the state, but for contact."""
+        tangent = np.empty((len(self.s), 3))
+        tangents_of(self.state.quaternion, tangent)
+        return energies(self.state, self.section, self.loads, self.applied.weight, tangent, self.h)
+
+    def twist(self) -> float:
+        """Tw of the state, in turns."""
+        twist = self.state.Y[:, KAPPA + 2]
+        return float(np.sum(0.5 * (twist[1:] + twist[:-1])) * self.h / (2 * np.pi))
+
+    def smallest_gap(self) -> float:
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
+        return self.contact.smallest_gap(self._bending, self.state.r, self.state.Y)
+
+    def pressing(self) -> int:
+        """Number of pairs of points that press on each other."""
+        return self.contact.pressing
+
+    def compile(self) -> None:
+        """Have every kernel compiled that a run may need."""
+        self.contact.compile()
+        rescale_aux(self.state, 1.0)
+
+    @property
+    def _records(self) -> tuple[Section, Loads, Scales, Touch, Work]:
+        """What the kernels of a step get by reference."""
+        return self.section, self.loads, self._scales, self.contact.touch, self.work
+
+    @property
+    def _rule(self) -> Scheme:
+        """The scheme of the step at hand."""
+        return BACKWARD_EULER if self._consistent else self._scheme
+
+    def _ends(self, t: float, dt: float) -> EndValues:
+        """What is given at both ends at the end of the step."""
+        gain, length = LARGEST_FEEDBACK / dt, float(self.s[-1])
+        start = self.applied.driving(self.start, 0.0, t, dt, gain)
+        return EndValues(self.start.kinds, *start,
+                         self.end.kinds, *self.applied.driving(self.end, length, t, dt, gain))  # fmt: skip
+
+
+def _initial_state(initial: Initial, s: Array, section: Section) -> tuple[State, Array]:
+    """The state at t = 0, and by how much its kappa (n, 3) differs from the centreline's own.
+
+    kappa's means must be the relative rotations of the nodes. kappa0 is to be shifted by as much, so that a rod whose
+    natural shape is its initial one starts without stress.
+    """
+    state = State.empty(len(s))
+    r, quaternion, kappa = nodes_at_rest(initial, s)
+    state.quaternion[:] = quaternion
+    state.r[:] = _follow_tangents(r[0], quaternion, s)
+    correction = _kappa_correction(quaternion, kappa, s)
+    state.Y[:, KAPPA : KAPPA + 3] = kappa + correction
+    spin = np.array(initial.angular_velocity, dtype=float)
+    weights = section.mass * np.gradient(s) * np.where((s == s[0]) | (s == s[-1]), 0.5, 1.0)
+    centre = np.average(state.r, axis=0, weights=weights)
+    state.Y[:, V : V + 3] = np.array(initial.velocity, dtype=float) + np.cross(spin, state.r - centre)
+    state.Y[:, OMEGA : OMEGA + 3] = rotate_back(quaternion, np.tile(spin, (len(s), 1)))
+    return state, correction
+
+
+def _follow_tangents(start: Array, quaternion: Array, s: Array) -> Array:
+    """Positions (n, 3) that satisfy the scheme's own Delta r = h T_m, from the first node on."""
+    tangent = np.empty((len(s), 3))
+    tangents_of(quaternion, tangent)
+    steps = 0.5 * np.diff(s)[:, None] * (tangent[1:] + tangent[:-1])
+    return np.vstack([start, start + np.cumsum(steps, axis=0)])
+
+
+def _kappa_correction(quaternion: Array, kappa: Array, s: Array) -> Array:
+    """The smallest change of kappa (n, 3) that makes its means those of the nodes' relative rotations."""
+    turned = np.array([_turn(a, b) for a, b in pairwise(quaternion)])
+    missing = turned / np.diff(s)[:, None] - 0.5 * (kappa[1:] + kappa[:-1])
+    bands = np.full((2, len(missing)), 0.25)
+    bands[1] = 0.5
+    shares = solveh_banded(bands, missing)
+    correction = np.zeros_like(kappa)
+    correction[1:] += 0.5 * shares
+    correction[:-1] += 0.5 * shares
+    return correction
+
+
+def _turn(left: Array, right: Array) -> Array:
+    theta = np.empty(3)
+    relative_rotation(left, right, theta)
+    return theta

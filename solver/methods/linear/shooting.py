@@ -1,0 +1,145 @@
+"""The paper's linear solve: shooting from s = 0.
+
+Six solutions of the homogeneous equations that satisfy the conditions at s = 0, and one of the inhomogeneous, are
+marched to s = L, where six coefficients follow from the conditions there. The solutions grow like
+exp(L (m / (EJ dt^2))^(1/4)), so that digits are lost on thin rods and at small steps: the growth is returned.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
+from solver.kernels.scratch import scratch, scratch_like
+from solver.methods.linear.condensation import Swaps
+from solver.methods.space.box.fields import Linear, Nodes
+from solver.methods.space.box.intervals import MEANS, interval_panel
+from solver.methods.space.box.schemes import BOX
+from solver.physics.section import Section
+
+LARGEST_GROWTH = 1e12
+"""Beyond it fewer than four digits are left and Newton's iteration cannot be trusted."""
+
+
+@kernel
+def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, marched: Array,
+          x: Array) -> float:  # fmt: skip
+    """Solve the system of the iterate `Y` (n, 12) for its residuals into `x` (n, 12); `marched` (n, 12, 7) is scratch.
+
+    Returns the growth of the homogeneous solutions from s = 0 to s = L (inf if a block is singular).
+    """
+    N = len(system.lower)
+    if not _start(system.start, system.b_start, marched[0], scratch_like(6, system.swaps)):
+        return np.inf
+    A, panel, mean = scratch((12, 12)), scratch((18, 24)), scratch((MEANS, 3))
+    for j in range(N):
+        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 6)
+        for i in range(12):
+            for k in range(12):
+                A[i, k] = panel[6 + i, 12 + k]
+            for m in range(7):
+                total = system.b[j, i] if m == 6 else 0.0
+                for k in range(12):
+                    total -= panel[6 + i, k] * marched[j, k, m]
+                marched[j + 1, i, m] = total
+        if not _solve_dense(A, marched[j + 1]):
+            return np.inf
+    growth = _largest(marched[N]) / _largest(marched[0])
+    A_end, c = scratch((6, 6)), scratch((6, 1))
+    for i in range(6):
+        c[i, 0] = system.b_end[i]
+        for k in range(12):
+            c[i, 0] -= system.end[i, k] * marched[N, k, 6]
+            for m in range(6):
+                A_end[i, m] += system.end[i, k] * marched[N, k, m]
+    if not _solve_dense(A_end, c):
+        return np.inf
+    for j in range(N + 1):
+        for k in range(12):
+            x[j, k] = marched[j, k, 6]
+            for m in range(6):
+                x[j, k] += marched[j, k, m] * c[m, 0]
+    return float(growth)
+
+
+@kernel
+def _largest(homogeneous: Array) -> float:
+    """The largest entry of the homogeneous solutions at a node, the first six columns of (12, 7); NaN if one is."""
+    largest, poison = 0.0, 0.0
+    for k in range(12):
+        for m in range(6):
+            largest = max(largest, abs(homogeneous[k, m]))
+            poison += 0.0 * homogeneous[k, m]
+    return largest + poison
+
+
+@kernel
+def _start(start: Array, b: Array, first: Array, pivots: Swaps) -> bool:
+    """Write a basis of the null space of `start` (6, 12) and one solution of start y = b into `first` (12, 7).
+
+    And the column of each row's pivot into `pivots` (6,).
+    """
+    A, rhs = scratch((6, 12)), scratch(6)
+    A[:, :], rhs[:] = start, b
+    for i in range(6):
+        column = 0
+        for k in range(12):
+            if abs(A[i, k]) > abs(A[i, column]):
+                column = k
+        pivots[i] = column
+        if A[i, column] == 0.0:
+            return False
+        inverse = 1.0 / A[i, column]
+        rhs[i] *= inverse
+        for k in range(12):
+            A[i, k] *= inverse
+        for other in range(6):
+            multiplier = A[other, column]
+            if other != i and multiplier != 0.0:
+                rhs[other] -= multiplier * rhs[i]
+                for k in range(12):
+                    A[other, k] -= multiplier * A[i, k]
+    first[:, :] = 0.0
+    m = 0
+    for k in range(12):
+        if k not in pivots:
+            first[k, m] = 1.0
+            for i in range(6):
+                first[pivots[i], m] = -A[i, k]
+            m += 1
+    for i in range(6):
+        first[pivots[i], 6] = rhs[i]
+    return True
+
+
+@kernel
+def _solve_dense(A: Array, X: Array) -> bool:
+    """Overwrite X (n, m) with A^-1 X by Gaussian elimination with row pivoting; A (n, n) is destroyed."""
+    n, m = X.shape
+    for k in range(n):
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > abs(A[pivot, k]):
+                pivot = i
+        if not abs(A[pivot, k]) > 0.0:
+            return False
+        if pivot != k:
+            for c in range(n):
+                A[k, c], A[pivot, c] = A[pivot, c], A[k, c]
+            for c in range(m):
+                X[k, c], X[pivot, c] = X[pivot, c], X[k, c]
+        for i in range(k + 1, n):
+            if A[i, k] != 0.0:
+                multiplier = A[i, k] / A[k, k]
+                for c in range(k + 1, n):
+                    A[i, c] -= multiplier * A[k, c]
+                for c in range(m):
+                    X[i, c] -= multiplier * X[k, c]
+    for k in range(n - 1, -1, -1):
+        for c in range(m):
+            total = X[k, c]
+            for i in range(k + 1, n):
+                total -= A[k, i] * X[i, c]
+            X[k, c] = total / A[k, k]
+    return True

@@ -1,1 +1,0 @@
-"""The staggered method for rods that turn about one axis: one angle a segment instead of a rotation."""

@@ -1,0 +1,47 @@
+"""The chain of a rod, and how it lies at t = 0."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.rotation import rotate_back
+from solver.methods.space.segments.chain import Chain, State
+from solver.methods.space.segments.joints import bend_joints
+from solver.physics.section import Section, sample
+from solver.scene.initial import Initial
+from solver.scene.layout import nodes_at_rest
+from solver.scene.rod import Rod
+
+
+def chain_of(rod: Rod, section: Section, added_mass: Array, s: Array) -> Chain:
+    """The chain of a rod with nodes `s` (N + 1,), its `section` and `added_mass` (N,) at the segments' centres."""
+    h, nodes = float(s[1] - s[0]), sample(rod, s)
+    across = np.array([1.0, 1.0, 0.0]) * h * h / 12.0
+    dry = section.inertia + np.outer(section.mass, across)
+    span = np.full(len(s), h)
+    span[0] = span[-1] = 0.5 * h
+    wet = dry + np.outer(added_mass, across)
+    return Chain(h, section.mass, wet, dry, span, nodes.stiffness, nodes.kappa0.copy())
+
+
+def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
+    """The state at t = 0, and by how much the joints' curvature (N + 1, 3) differs from the centreline's own.
+
+    chain.kappa0 is shifted by as much, so that a rod whose natural shape is its initial one starts without stress.
+    """
+    state = State.empty(len(s) - 1)
+    r, quaternion, _ = nodes_at_rest(initial, np.linspace(0.0, s[-1], 2 * len(s) - 1))
+    _, _, kappa = nodes_at_rest(initial, s)  # where kappa0 has it from: a finer sampling's is another one at the ends
+    state.quaternion[0], state.quaternion[1:-1], state.quaternion[-1] = quaternion[0], quaternion[1::2], quaternion[-1]
+    spin = np.array(initial.angular_velocity, dtype=float)
+    state.omega[:] = rotate_back(state.quaternion, np.tile(spin, (len(state.omega), 1)))
+    arm = r[0] - np.average(r[1::2], axis=0, weights=chain.mass)
+    state.base[0] = r[0]
+    state.base[1] = np.array(initial.velocity, dtype=float) + np.cross(spin, arm)
+    state.base[2] = np.cross(spin, np.cross(spin, arm))
+    bend, moment, left, right = (np.zeros((len(s), 3)) for _ in range(4))
+    bend_joints(chain, state.quaternion, bend, moment, left, right)
+    offset = np.asarray(bend / chain.span[:, None] - kappa)
+    chain.kappa0[:] += offset
+    return state, offset

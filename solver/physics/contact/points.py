@@ -1,0 +1,94 @@
+"""Contact points: samples of the centreline with a spacing of their own, on cubic arcs through the nodes.
+
+Nodes are not contact points: where they lie wider apart than the standoff, the rod would pass through itself. The
+arc from node j to j + 1 is the cubic Hermite arc with the slopes (r_j+1 - r_j-1)/2 and (r_j+2 - r_j)/2 by node (Catmull
+& Rom 1974), so a point's place, tangent and velocity are fixed combinations of those of four neighbouring nodes, and a
+force on it acts on these nodes with the same weights, whatever the method.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.kernel import inlined, kernel
+from solver.scene.contact import Contact
+from solver.scene.rod import Rod
+
+REACH = 4
+"""Nodes that a point hangs on."""
+
+
+class Points(NamedTuple):
+    """M points at even arclengths.
+
+    Fixed: `first` (M,), the first of the four nodes a point hangs on; `weights`, `slopes` (M, 4), their shares in its
+    position and in its tangent; `mass` rho_c A and `diameter` (M,); `spacing` (m). At the current iterate, lab: `p`
+    position, `t` tangent, `w` velocity, each (M, 3). `start` and `checked` (M, 3): positions at the start of the
+    step, and at the last search.
+    """
+
+    first: Array
+    weights: Array
+    slopes: Array
+    mass: Array
+    diameter: Array
+    spacing: float
+    p: Array
+    t: Array
+    w: Array
+    start: Array
+    checked: Array
+
+
+def contact_points(contact: Contact, rod: Rod, s: Array) -> Points:
+    """The points of a rod with evenly spaced nodes `s` (n >= 4,)."""
+    count = max(2, round(float(s[-1]) / contact.spacing) + 1)
+    at = np.linspace(0.0, float(s[-1]), count)
+    h, last = float(s[1] - s[0]), len(s) - 1
+    interval = np.minimum((at / h).astype(np.int64), last - 1)
+    first = np.clip(interval - 1, 0, last + 1 - REACH)
+    x = at / h - interval
+    place = ((1 + 2 * x) * (1 - x) ** 2, x * (1 - x) ** 2, x**2 * (3 - 2 * x), x**2 * (x - 1))
+    along = (6 * x * (x - 1), (1 - x) * (1 - 3 * x), 6 * x * (1 - x), x * (3 * x - 2))
+    weights, slopes = (_shares(interval, first, last, *hermite) for hermite in (place, along))
+    vectors = [np.zeros((count, 3)) for _ in range(5)]
+    return Points(first, weights, slopes / h, np.asarray(rod.mass(at)), np.asarray(rod.diameter(at)), float(at[1]),
+                  *vectors)  # fmt: skip
+
+
+def _shares(interval: Array, first: Array, last: int, start: Array, leave: Array, end: Array, arrive: Array) -> Array:
+    """Shares (M, 4) of the nodes from `first` on, where those of the interval's ends and of the slopes there are known.
+
+    The derivative by node at a node is central, and of second order at the ends of the rod too.
+    """
+    shares, rows = np.zeros((len(interval), REACH)), np.arange(len(interval))
+    for node, own, slope in ((interval, start, leave), (interval + 1, end, arrive)):
+        shares[rows, node - first] += own
+        middle = np.clip(node, 1, last - 1)  # at x = -1, 0 or 1 from the middle of a parabola
+        at = node - middle
+        for k, part in ((-1, at - 0.5), (0, -2.0 * at), (1, at + 0.5)):
+            shares[rows, middle + k - first] += slope * part
+    return shares
+
+
+@inlined
+def place_point(points: Points, i: int, r: Array, velocity: Array) -> None:
+    """Write p, t and w of point i from the nodes' positions (n, 3) and lab velocities (n, >= 3)."""
+    for k in range(3):
+        place, along, speed = 0.0, 0.0, 0.0
+        for m in range(REACH):
+            node = points.first[i] + m
+            place += points.weights[i, m] * r[node, k]
+            along += points.slopes[i, m] * r[node, k]
+            speed += points.weights[i, m] * velocity[node, k]
+        points.p[i, k], points.t[i, k], points.w[i, k] = place, along, speed
+
+
+@kernel
+def place_points(points: Points, r: Array, velocity: Array) -> None:
+    """Place all points."""
+    for i in range(len(points.p)):
+        place_point(points, i, r, velocity)

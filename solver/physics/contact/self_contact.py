@@ -1,0 +1,187 @@
+"""Self-contact as a step sees it: who may touch, whether somebody could have passed through, how long to step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf, nan
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
+from solver.physics.contact.forces import Pressing, Touch
+from solver.physics.contact.law import Law
+from solver.physics.contact.links import links_meet, links_reach
+from solver.physics.contact.points import Points, contact_points, place_points
+from solver.physics.contact.search import (
+    Pairs,
+    find_pairs,
+    harmless_bending,
+    largest_displacement,
+    smallest_distance,
+    smallest_gap,
+)
+from solver.scene.contact import Contact
+from solver.scene.rod import Rod
+
+SKIN = (0.1, 1.5)
+"""In reaches: how much farther than what must be known a search looks, at least and at the most."""
+FORESEEN = 7.5
+"""Steps for which the fastest point may go on within what a search has looked at."""
+LARGEST_PASSAGE = 0.35
+"""Part of its distance that a pair may move in a step: too little to leap from where the force is weak to where the
+aperture hides it (points nearer to each other than they are spaced see each other along the rod)."""
+LARGEST_SHIFT = 0.2
+"""Part of the search's slack that a point may move in a step at its present speed; 0.25 is left before each step."""
+TIME_TO_TOUCH = 0.2
+"""Part of the time to closure, gap / closing speed, that the next step may take; a gap below half the distance counts
+as that much, for what is held by a stiff force does not close at its speed."""
+
+
+class SelfContact:
+    """The contact of one rod through its run; without `contact` it proves itself absent and costs nothing.
+
+    It is told the rod's total bending int |kappa_bending| ds (rad), and the nodes' positions `r` and velocities (n, 3),
+    lab. `stages`: at how many times within a step a method evaluates the forces.
+    """
+
+    def __init__(self, contact: Contact | None, rod: Rod, s: Array, stages: int) -> None:
+        self.present = contact is not None
+        """Whether the scene has contact at all."""
+        self._nodes, self._stages = len(s), stages
+        settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
+        points = contact_points(settings, rod, s)
+        self._law = Law.of(settings, points.spacing)
+        # pairs that press, and those whose links may meet
+        self._reach = max(self._law.cutoff, links_reach(points))
+        self._farthest = (1.0 + SKIN[1]) * self._reach
+        distances = (self._farthest, self._reach, self._law.cutoff)
+        self._not_to_be_searched, self._not_to_be_checked, self._without_a_gap = (
+            harmless_bending(distance, self._law) if contact else inf for distance in distances
+        )
+        self._slack = 0.0
+        self._looked = False
+        self._make_room(points, 1024 if contact else 1)
+        self.step_limit = inf
+        """The longest next step (s)."""
+
+    @property
+    def touching(self) -> bool:
+        """Whether there are pairs that may press: as `forces.touching`, without unpacking all arrays for a kernel."""
+        return self._looked and bool(self.touch.pairs.counts[0] > 0)
+
+    @property
+    def pressing(self) -> int:
+        """Number of pairs that press on each other."""
+        return int(self.touch.pressing.many[-1]) if self.touching else 0
+
+    def prepare(self, bending: float, r: Array, velocity: Array, dt: float) -> None:
+        """Before a step of dt (s) from a state: make the list of pairs good for it."""
+        if bending < self._not_to_be_searched:
+            if self._looked:
+                self.touch.pairs.counts[:] = 0
+                self._looked = False
+            return
+        points = self.touch.points
+        place_points(points, r, velocity)
+        if not self._looked or largest_displacement(points, points.checked) > 0.25 * self._slack:
+            self._search(dt)
+        points.start[:] = points.p
+
+    def refusal(self, bending: float, nodes: Callable[[], tuple[Array, Array]]) -> str:
+        """After a step to a trial state: why it cannot be trusted, or nothing. `nodes` places and moves them."""
+        self.step_limit = inf
+        if bending < self._not_to_be_checked:
+            return ""
+        points, pairs = self.touch.points, self.touch.pairs
+        place_points(points, *nodes())
+        if not self._looked:
+            near = smallest_distance(points, self._law.skip, self._farthest) <= self._reach
+            return "the rod came near itself within one step" if near else ""
+        if largest_displacement(points, points.checked) > 0.5 * self._slack:
+            return "the rod moved farther than the contact search looked"
+        approach, time_to_touch = approaches(points, pairs)
+        speed = fastest(points)
+        self.step_limit = TIME_TO_TOUCH * time_to_touch
+        if speed > 0.0:
+            self.step_limit = min(self.step_limit, LARGEST_SHIFT * self._slack / speed)
+        if approach > LARGEST_PASSAGE:
+            return "two parts of the rod could have passed through each other"
+        if links_meet(points, pairs):
+            return "two parts of the rod slipped into each other between contact points"
+        return ""
+
+    def smallest_gap(self, bending: float, r: Array, velocity: Array) -> float:
+        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
+        if bending < self._without_a_gap:
+            return nan
+        points = self.touch.points
+        place_points(points, r, velocity)
+        gap = smallest_gap(points, self._law.skip)
+        return float(gap) if gap < inf else nan
+
+    def power(self) -> Array:
+        """Power (stages, 2) in W stored in contact, and dissipated by it, at the times of the last evaluation."""
+        return self.touch.pressing.power if self.touching else np.zeros((self._stages, 2))
+
+    def compile(self) -> None:
+        """Have every kernel compiled that a run in contact needs."""
+        points = self.touch.points
+        place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
+        self._search(0.0)
+        smallest_distance(self.touch.points, self._law.skip, 0.0)
+        smallest_gap(self.touch.points, self._law.skip)
+        approaches(self.touch.points, self.touch.pairs)
+        links_meet(self.touch.points, self.touch.pairs)
+        fastest(self.touch.points)
+        largest_displacement(self.touch.points, self.touch.points.checked)
+
+    def _search(self, dt: float) -> None:
+        """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
+        points, skip, reach = self.touch.points, self._law.skip, self._reach
+        points.checked[:] = points.p
+        self._looked = True
+        self._slack = min(max(FORESEEN * fastest(points) * dt, SKIN[0] * reach), SKIN[1] * reach)
+        find_pairs(points, skip, reach + self._slack, self.touch.pairs)
+        if self.touch.pairs.counts[1] > 0:
+            self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))
+            find_pairs(points, skip, reach + self._slack, self.touch.pairs)
+        if self.touch.pairs.counts[0] == 0:
+            self._slack = smallest_distance(points, skip, 2.0 * self._farthest) - reach
+
+    def _make_room(self, points: Points, capacity: int) -> None:
+        n, M = self._nodes, len(points.p)
+        pairs, pressing = Pairs.empty(capacity, M, n), Pressing.empty(self._stages, capacity, M, n)
+        changes = np.zeros((M, 9)), np.zeros((M, 3)), np.zeros((self._stages, n, 3))
+        self.touch = Touch(self.present, self._law, points, pairs, pressing, *changes)
+
+
+@kernel
+def fastest(points: Points) -> float:
+    """The largest speed (m/s) of a point."""
+    largest = 0.0
+    for i in range(len(points.p)):
+        largest = max(largest, points.w[i, 0] ** 2 + points.w[i, 1] ** 2 + points.w[i, 2] ** 2)
+    return float(np.sqrt(largest))
+
+
+@kernel
+def approaches(points: Points, pairs: Pairs) -> tuple[float, float]:
+    """The largest change of a separation relative to the distance before; the shortest time (s) to closure."""
+    largest, shortest = 0.0, np.inf
+    for pair in range(pairs.counts[0]):
+        a, b = pairs.first[pair], pairs.second[pair]
+        change, before, square, closing = 0.0, 0.0, 0.0, 0.0
+        for k in range(3):
+            now = points.p[a, k] - points.p[b, k]
+            then = points.start[a, k] - points.start[b, k]
+            change += (now - then) ** 2
+            before += then * then
+            square += now * now
+            closing -= now * (points.w[a, k] - points.w[b, k])
+        largest = max(largest, change / before)
+        if closing > 0.0:
+            d = np.sqrt(square)
+            gap = max(d - 0.25 * (points.diameter[a] + points.diameter[b]), 0.5 * d)
+            shortest = min(shortest, gap * d / closing)
+    return np.sqrt(largest), shortest

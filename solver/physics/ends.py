@@ -1,0 +1,133 @@
+"""An end in time: which conditions hold in a step, and their values."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solver.arrays import Array
+from solver.scene.ends import Condition, End
+
+RATE, LOAD, RATE_LAB, LOAD_LAB = 0, 1, 2, 3
+"""Kinds of a condition on a translation component; a rotation component is RATE or LOAD."""
+
+Kinds = NDArray[np.int64]
+
+
+def _smoothstep(x: float) -> float:
+    x = min(max(x, 0.0), 1.0)
+    return x * x * (3.0 - 2.0 * x)
+
+
+class DrivenEnd:
+    """The six conditions of one end, followed through the run.
+
+    Motion that is prescribed as a function of time is also followed as an integral: what the time scheme has
+    accumulated is compared with the exact displacement or rotation, and the difference is fed back. So the
+    relative rotation of the ends is the prescribed one, however coarse the steps.
+    """
+
+    def __init__(self, end: End) -> None:
+        self._components = (*end.translation, *end.rotation)
+        self.in_lab = end.frame == "lab"
+        """Whether the translation's components are along e1, e2, e3."""
+        self._active = [0] * 6
+        self._stopping_from = [0.0] * 6
+        self.travel = np.zeros(6)
+        """Displacement along (m) and rotation about (rad) each axis since t = 0, as integrated."""
+        self._travel_at_switch = np.zeros(6)
+        self.kinds = np.zeros(6, np.int64)
+        self._set_kinds()
+
+    def corners(self) -> list[float]:
+        """Times to which steps must be aligned."""
+        times: list[float] = []
+        for component in self._components:
+            for condition in component:
+                times += [condition.since, *condition.curve.corners]
+                if condition.kind == "stop":
+                    times.append(condition.since + condition.within)
+        return times
+
+    def jolts(self) -> list[float]:
+        """Times at which the end's rate may jump: a rod that cannot stretch loses energy there, as in a collision."""
+        times: list[float] = []
+        for component in self._components:
+            for condition in component:
+                curve, start = condition.curve, condition.since
+                times += [start] if start > 0.0 or (condition.kind == "rate" and curve.value(start) != 0.0) else []
+                times += curve.corners if condition.kind in ("rate", "position") else ()
+        return times
+
+    def follow(self, shift: Array, turned: Array) -> None:
+        """Add a step's displacement along, and rotation about, the axes, (3,) each."""
+        self.travel[:3] += shift
+        self.travel[3:] += turned
+
+    def switch(self, t: float, rates: Array) -> None:
+        """Put in force the conditions that hold from `t` on; `rates` (6,): the end's velocity and omega now."""
+        for i, component in enumerate(self._components):
+            while self._active[i] + 1 < len(component) and component[self._active[i] + 1].since <= t:
+                self._active[i] += 1
+                self._stopping_from[i] = float(rates[i])
+                self._travel_at_switch[i] = self.travel[i]
+        self._set_kinds()
+
+    def values(self, t: float, dt: float, gain: float) -> Array:
+        """The six values (6,) at the end of the step from t to t + dt."""
+        values = np.where(self._held, gain * (self._travel_at_switch - self.travel), 0.0)
+        for i in self._moving:
+            values[i] = self._value(i, t, dt, gain)
+        return values
+
+    def rotation_prescribed(self, t: float) -> float | None:
+        """The exact rotation (rad) about a3 since t = 0, if it has been prescribed all along."""
+        total = 0.0
+        component = self._components[5]
+        for i, condition in enumerate(component):
+            until = component[i + 1].since if i + 1 < len(component) else t
+            if condition.kind not in ("rate", "position"):
+                return None
+            total += travel(condition, min(until, t))
+            if until >= t:
+                break
+        return total
+
+    def _set_kinds(self) -> None:
+        self._held = np.zeros(6, np.bool_)
+        """Which components are held where they are. Free ones are worth nothing."""
+        self._moving: list[int] = []
+        for i, component in enumerate(self._components):
+            condition = component[self._active[i]]
+            load = condition.kind == "load"
+            if condition.kind == "stop" or not condition.curve.is_zero:
+                self._moving.append(i)
+            else:
+                self._held[i] = not load
+            if i < 3 and self.in_lab:
+                self.kinds[i] = LOAD_LAB if load else RATE_LAB
+            else:
+                self.kinds[i] = LOAD if load else RATE
+
+    def _value(self, i: int, t: float, dt: float, gain: float) -> float:
+        condition = self._components[i][self._active[i]]
+        if condition.kind == "load":
+            return condition.curve.value(t + dt)
+        if condition.kind == "stop":
+            return self._stopping_from[i] * (1.0 - _smoothstep((t + dt - condition.since) / condition.within))
+        behind = travel(condition, t) - float(self.travel[i] - self._travel_at_switch[i])
+        return _rate(condition, t + dt, dt) + gain * behind
+
+
+def _rate(condition: Condition, t: float, dt: float) -> float:
+    """The rate at the end t of a step; at a corner the one before it."""
+    if condition.kind == "rate":
+        return condition.curve.value(t)
+    return condition.curve.derivative(t - 1e-9 * dt)
+
+
+def travel(condition: Condition, t: float) -> float:
+    """The exact displacement or rotation from the time the condition came into force to t."""
+    if condition.kind == "rate":
+        return condition.curve.integral(t) - condition.curve.integral(condition.since)
+    return condition.curve.value(t) - condition.curve.value(condition.since)

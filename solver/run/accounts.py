@@ -1,0 +1,95 @@
+"""The books of a run: what flows in and out at each step, and the frame that sums them up."""
+
+from __future__ import annotations
+
+from math import nan, pi
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.rotation import rotate
+from solver.measures.frame import Frame
+from solver.measures.topology import writhe
+from solver.methods.method import Method
+from solver.scene.scene import Scene
+
+MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
+"""In the rod's own energy EJ/L, of the softer axis: what the balance may be off by where nothing moves. A mesh's errors
+may be worth a bend by 1e-3 rad, which a rod at rest may lose; it must not make as much."""
+
+
+class Accounts:
+    """Work, dissipation and their balance, linking number, and the numbers of the last step."""
+
+    def __init__(self, scene: Scene, method: Method) -> None:
+        self._scene, self._method = scene, method
+        self._totals = np.zeros(4)
+        self._dt, self._iterations = 0.0, 0
+        self._energy_at_start: float | None = None
+        self._t, self._balance, self._missing, self._entries = 0.0, 0.0, 0.0, np.zeros(9)
+        thrown = any((*scene.initial.velocity, *scene.initial.angular_velocity))
+        self._jolts = [*([0.0] if thrown else []), *method.start.jolts(), *method.end.jolts()]
+        s = np.linspace(0.0, scene.rod.length, 11)
+        self._unit = float(np.min([EJ(s) for EJ in scene.rod.stiffness[:2]], axis=0).mean()) / scene.rod.length
+        self._turnover = 0.0
+        self._Lk_at_start = 0.0
+
+    def after_step(self, dt: float, iterations: int, flowed: Array) -> None:
+        """Enter the step just taken, and the energy (4,) that flowed in it: see `Method.take_step`."""
+        self._totals += flowed
+        self._dt, self._iterations = dt, iterations
+
+    def frame(self, t: float) -> Frame:
+        """The frame at time t."""
+        fields, energy, Tw = self._method.fields(), self._method.energies(), self._method.twist()
+        work_ends, work_loads, dissipation, contact = (float(total) for total in self._totals)
+        total = sum(energy) + contact
+        entries = np.array([*energy, contact, work_ends, work_loads, dissipation])
+        if self._energy_at_start is None:
+            self._energy_at_start = total
+            self._turnover += total - energy.potential
+        else:
+            self._turnover += float(np.abs(entries - self._entries).sum())
+        self._entries = entries
+        self._settle(t, total - self._energy_at_start - work_ends - work_loads + dissipation)
+        Wr = nan
+        if self._scene.topology:
+            tangent = rotate(fields.orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2))
+            Wr = float(writhe(fields.r, tangent[0], tangent[1]))
+        return Frame(
+            t=t, **fields._asdict(),
+            energy_bending=energy.bending, energy_torsion=energy.torsion, energy_kinetic=energy.kinetic,
+            energy_added_mass=energy.added_mass, energy_potential=energy.potential, energy_contact=contact,
+            work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
+            energy_balance=self._balance,
+            Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr), min_gap=self._method.smallest_gap(),
+            contacts=self._method.pressing(), dt=self._dt, newton_iterations=self._iterations,
+        )  # fmt: skip
+
+    @property
+    def made(self) -> float:
+        """Energy that came from nowhere until the last frame, over all that changed its form or hands.
+
+        Negative where energy went nowhere. What an end's jolt took does not count.
+        """
+        floor = MADE_OF_NOTHING if self._missing > 0.0 else LOST_AT_REST
+        return self._missing / (self._turnover + floor * self._unit)
+
+    def _settle(self, t: float, balance: float) -> None:
+        """Enter the balance (J) at time t."""
+        change = balance - self._balance
+        if change > 0.0 or not any(self._t <= jolt <= t for jolt in self._jolts):
+            self._missing += change
+        self._t, self._balance = t, balance
+
+    def _linking_number(self, t: float, Tw: float, Wr: float) -> float:
+        """Relative rotation of the ends in turns, from Tw + Wr at the start on."""
+        if not self._scene.topology:
+            return nan
+        if t == 0.0:
+            self._Lk_at_start = Tw + Wr
+        turned = []
+        for end in (self._method.start, self._method.end):
+            exact = end.rotation_prescribed(t)
+            turned.append(float(end.travel[5]) if exact is None else exact)
+        return self._Lk_at_start + (turned[1] - turned[0]) / (2 * pi)

@@ -1,0 +1,137 @@
+"""A static analysis: the frames of a branch of equilibria."""
+
+from __future__ import annotations
+
+from math import nan, pi
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.kernel import compile_apart
+from solver.kernels.rotation import rotate, rotate_back
+from solver.measures.frame import Fields, Frame, Statistics
+from solver.measures.topology import writhe
+from solver.methods.space.segments.energies import energies, twist
+from solver.methods.staggered import orientations_at_nodes
+from solver.run.run import Run
+from solver.scene.ends import End
+from solver.scene.initial import Initial
+from solver.scene.numerics import Numerics
+from solver.scene.rod import Rod
+from solver.scene.scene import Scene
+from solver.statics.equations import Equations, Point
+from solver.statics.path import Path
+from solver.statics.stability import negative_modes
+
+
+class Equilibria(Run):
+    """A branch of equilibria. Raises `RunFailed` where it cannot be followed.
+
+    First what holds the initial shape is let go at t = 0, then the schedules go on. A frame's `t` is how far their
+    time has travelled along the branch, to and fro; its `parameter` is their time itself.
+    """
+
+    def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
+        super().__init__(scene, statistics)
+        compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
+        self._equations = Equations(scene)
+        self._path = Path(self._equations)
+        self._Lk = self._turns_at_start()
+
+    @property
+    def s(self) -> Array:
+        """Arclengths of the nodes (n,), m."""
+        return self._equations.s
+
+    def warm(self) -> None:
+        """Have every kernel compiled."""
+        self._equations.linearise(self._equations.start)
+        negative_modes(self._equations)
+
+    def _first_frame(self) -> Frame | None:
+        if not self._advance(1.0):
+            return None
+        self._equations.let_go()
+        self._path.begin(self._corners())
+        self._path.advance(0.0)
+        return self._frame(0.0)
+
+    def _next_frame(self, output: float) -> Frame | None:
+        there = self._advance(output / self._scene.t_end)
+        self.t = self._path.travelled * self._scene.t_end
+        return self._frame(output) if there else None
+
+    def _advance(self, stop: float) -> bool:
+        path, told = self._path, self.statistics
+        steps, failed, iterations = path.steps, path.failed, path.iterations
+        there = path.advance(stop)
+        told.steps += path.steps - steps
+        told.failed_steps += path.failed - failed
+        told.newton_iterations += path.iterations - iterations
+        return there
+
+    def _corners(self) -> list[float]:
+        """Values of q at which a schedule bends."""
+        times = [t for end in self._equations.ends for t in end.corners()] + self._equations.applied.corners()
+        return [t / self._scene.t_end for t in times]
+
+    def _turns_at_start(self) -> float:
+        """Tw + Wr of the initial shape, in turns."""
+        equations = self._equations
+        equations.residual(equations.start)
+        return self._twist(equations.start) + self._writhe(self._fields(equations.start))
+
+    def _frame(self, t: float) -> Frame:
+        """The frame of the point that the path has reached."""
+        equations, path, point = self._equations, self._path, self._path.point
+        equations.linearise(point)
+        fields = self._fields(point)
+        stages, weight = equations.stages, equations.applied.weight
+        energy = energies(equations.chain, equations.loads, stages.bend[0], stages.omega[0, 1:-1],
+                          np.stack([stages.r[0], stages.V[0]]), stages.R[0, 1:-1, :, 2], weight)  # fmt: skip
+        return Frame(
+            t=t, **fields._asdict(), energy_bending=energy.bending, energy_torsion=energy.torsion, energy_kinetic=0.0,
+            energy_added_mass=0.0, energy_potential=energy.potential, energy_contact=0.0,
+            work_ends=nan, work_loads=nan, dissipation=nan, energy_balance=nan,
+            Tw=self._twist(point), Wr=self._writhe(fields), Lk=self._linking_number(equations.time(point.q)),
+            min_gap=nan, contacts=0,
+            dt=path.last_dq * self._scene.t_end, newton_iterations=path.last_iterations,
+            parameter=equations.time(point.q), negative_modes=path.modes,
+        )  # fmt: skip
+
+    def _twist(self, point: Point) -> float:
+        return float(twist(point.quaternion) / (2 * pi))
+
+    def _writhe(self, fields: Fields) -> float:
+        if not self._scene.topology:
+            return nan
+        tangent = rotate(fields.orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2))
+        return float(writhe(fields.r, tangent[0], tangent[1]))
+
+    def _linking_number(self, t: float) -> float:
+        """The ends' relative rotation in turns, from Tw + Wr at the start on; NaN where it is not prescribed."""
+        turned = [end.spin(t) for end in self._equations.ends]
+        if turned[0] is None or turned[1] is None:
+            return nan
+        return float(self._Lk + (turned[1] - turned[0]) / (2 * pi))
+
+    def _fields(self, point: Point) -> Fields:
+        """The state along the rod, at the nodes, of the point that was linearised last."""
+        equations, rest = self._equations, np.zeros_like(point.F)
+        stages, orientation = equations.stages, orientations_at_nodes(point.quaternion)
+        tips = stages.r[0] + 0.5 * equations.chain.h * stages.R[0, 1:-1, :, 2]
+        return Fields(
+            v=rest, omega=rest, f=rotate_back(orientation, point.F),
+            kappa=stages.bend[0] / equations.chain.span[:, None] - equations.offset, q=stages.moment[0].copy(),
+            r=np.vstack([point.base, tips]), orientation=orientation,
+        )  # fmt: skip
+
+
+def exercise() -> None:
+    """Call every kernel of a static analysis, for a tiny scene."""
+    rod, numerics = Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), Numerics(intervals=4)
+    scene = Scene(rod=rod, initial=Initial.straight(), start=End.clamp(), end=End.free(), t_end=1.0,
+                  output_interval=1.0, numerics=numerics, analysis="static")  # fmt: skip
+    analysis = Equilibria(scene)
+    analysis.warm()
+    analysis._frame(0.0)

@@ -1,0 +1,152 @@
+"""The loop that turns a scene into frames."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+from solver.arrays import Array
+from solver.measures.frame import Frame, Statistics
+from solver.methods.one_axis import OneAxisMethod
+from solver.methods.registry import discretized, tolerated_increment
+from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
+from solver.outcome import Outcome, RunFailed
+from solver.run.accounts import Accounts
+from solver.run.run import Run
+from solver.run.step_control import CONSISTENT_STEPS, StepControl
+from solver.run.warming import load
+from solver.scene.scene import Scene
+
+FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
+"""Outcomes that a shorter step does not avert."""
+
+LARGEST_STRAIN = 0.1
+"""Beyond this the rod that is computed is another one."""
+LARGEST_MADE = 0.1
+"""Part of the energy that changed its form or hands: a run that made or lost more of it says nothing of the rod."""
+
+class Simulation(Run):
+    """Motion, by steps in time."""
+
+    def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
+        super().__init__(scene, statistics)
+        self._method = discretized(scene)
+        self._accounts = Accounts(scene, self._method)
+        ends = self._method.start.corners() + self._method.end.corners()
+        self._control = StepControl(
+            scene.numerics.dt_max, tolerated_increment(scene.numerics), self._method.increment_order,
+            self._method.easy_iterations, self._method.shortest_step, ends + self._method.applied.corners(),
+            self._outputs,
+        )  # fmt: skip
+        self._switches = sorted({c.since for e in (scene.start, scene.end)
+                                 for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
+        self._turns = 0.0
+        self._turn = self._trial_turn = pi
+        """The largest rotation (rad) within an interval, of the state and of the trial."""
+
+    @property
+    def s(self) -> Array:
+        """Arclengths of the nodes (n,), m."""
+        return self._method.s
+
+    def warm(self) -> None:
+        """Have every kernel compiled."""
+        load(self._scene.numerics.method, touching=not isinstance(self._method, OneAxisMethod))
+
+    def _first_frame(self) -> Frame:
+        frame = self._accounts.frame(0.0)
+        self.t = self._begin()
+        self._turns = frame.Tw + frame.Wr - frame.Lk
+        # forces are no part of what is given at t = 0, they follow from it
+        return replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
+
+    def _next_frame(self, output: float) -> Frame | None:
+        if not self._control.reached(output, self.t):
+            self.t = self._advance(self.t, *self._control.step_from(self.t, self._method.step_limit()))
+        if not self._control.reached(output, self.t):
+            return None
+        frame = self._accounts.frame(output)
+        made = self._accounts.made
+        told = f"{abs(made):.2g} of all that changed hands"
+        if made > LARGEST_MADE:
+            raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, told)
+        if made < -LARGEST_MADE and output == self._outputs[-1]:  # much of what was at first may be little of all
+            raise RunFailed(Outcome.ENERGY_LOST, self.t, self.statistics.steps, told)
+        before, self._turns = self._turns, frame.Tw + frame.Wr - frame.Lk
+        if self._scene.contact is not None and abs(self._turns - before) > 1.0:
+            # a rod that passes through itself makes Tw + Wr - Lk jump by 2
+            raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, "Tw + Wr - Lk jumped")
+        return frame
+
+    def _begin(self) -> float:
+        """Two tiny steps that find consistent accelerations and forces; return the time they reach."""
+        for part in CONSISTENT_STEPS:
+            dt = max(min(part * self._scene.numerics.dt_max, 0.1 * self._outputs[0]), self._method.shortest_step)
+            if 2.0 * dt > self._outputs[0]:
+                refusal = f"the first frame comes sooner than two steps of {dt:.3g} s; rho_inf_space bears none shorter"
+                raise RunFailed(Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
+            status, iterations = self._method.try_step(0.0, dt, consistent=True)
+            self.statistics.newton_iterations += iterations
+            if status == CONVERGED:
+                self._take(0.0, dt, iterations)
+                return self._advance(dt, dt, 2 * dt, consistent=True)
+            self.statistics.failed_steps += 1
+        refusal, outcome = self._judge(status, 0.0)
+        raise RunFailed(outcome if outcome in FATAL else Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
+
+    def _advance(self, t: float, dt: float, target: float, consistent: bool = False) -> float:
+        """Take one step from t, as long as dt or shorter if need be; return the time it reached."""
+        while True:
+            status, iterations = self._method.try_step(t, dt, consistent)
+            self.statistics.newton_iterations += iterations
+            increment = 0.0 if consistent or status != CONVERGED else self._method.relative_increment(dt)
+            refusal, outcome = self._judge(status, increment)
+            if not refusal:
+                break
+            self.statistics.failed_steps += 1
+            if outcome in FATAL or 0.5 * dt < self._control.smallest:
+                if consistent and outcome is Outcome.STEP_TOO_SMALL:
+                    raise RunFailed(Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
+                raise RunFailed(outcome, t, self.statistics.steps, refusal)
+            self._control.rejected(dt)
+            dt *= 0.5
+            target = t + dt
+        self._take(t, dt, iterations)
+        if not consistent:
+            self._control.accepted(dt, increment, iterations)
+            if self._control.stuck:
+                detail = "the motion is faster than the steps, however short"
+                raise RunFailed(Outcome.STEP_TOO_SMALL, self.t, self.statistics.steps, detail)
+        if self._switches and self._control.reached(self._switches[0], target):
+            self._method.switch_ends(max(self._switches.pop(0), target))
+            self._control.restart()
+        return target
+
+    def _judge(self, status: int, increment: float) -> tuple[str, Outcome]:
+        """Why the trial must not be taken, or nothing; and what that is called if no shorter step helps."""
+        if status == LOST_DIGITS:
+            return "the homogeneous solutions grew too much", Outcome.SHOOTING_LOST_DIGITS
+        if status == SINGULAR:
+            return "a pivot vanished", Outcome.SINGULAR_SYSTEM
+        if status != CONVERGED:
+            return "Newton's iteration stalled", Outcome.STEP_TOO_SMALL
+        if self._control.too_coarse(increment):
+            return "the motion is faster than the step", Outcome.STEP_TOO_SMALL
+        if self._method.strain() > LARGEST_STRAIN:
+            return f"an interval stretched by {self._method.strain():.2g} of its length", Outcome.ROD_STRETCHED
+        refusal = self._method.refusal()
+        if refusal:
+            return refusal, Outcome.ROD_CROSSED_ITSELF
+        self._trial_turn = self._method.turn()
+        if self._trial_turn < pi:
+            return "", Outcome.COMPLETED
+        # where the rod was nowhere near that, it is the step that went wrong
+        coarse = Outcome.MESH_TOO_COARSE if self._turn > 0.5 * pi else Outcome.STEP_TOO_SMALL
+        return f"by {self._trial_turn:.3g} rad within an interval", coarse
+
+    def _take(self, t: float, dt: float, iterations: int) -> None:
+        """Make the step that was tried the state, and enter it in the books."""
+        flowed = self._method.take_step(t, dt)
+        self._turn = self._trial_turn
+        self.statistics.steps += 1
+        self._accounts.after_step(dt, iterations, flowed)

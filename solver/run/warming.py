@@ -1,0 +1,54 @@
+"""Kernels compiled, or loaded from the cache, before the clock of a run starts."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from solver.kernels.kernel import compile_apart
+from solver.measures.topology import writhe
+from solver.methods.registry import discretized
+from solver.scene.contact import Contact
+from solver.scene.ends import End
+from solver.scene.fluid import Fluid
+from solver.scene.initial import Initial
+from solver.scene.numerics import Numerics
+from solver.scene.rod import Rod
+from solver.scene.scene import Scene
+
+
+def warm(method: str = Numerics.method) -> None:
+    """Load every kernel of a method from the cache, after another process has compiled what is not there; once."""
+    load(method, touching=True)
+    if method == "staggered":
+        load(method, touching=False)
+
+
+@cache
+def load(method: str, touching: bool) -> None:
+    """Load the kernels for scenes that can touch themselves, or for those that turn about one axis and cannot."""
+    name = f"{method}-touching" if touching else method
+    compile_apart(name, f"from solver.run.warming import exercise; exercise({method!r}, {touching})")
+    exercise(method, touching)
+
+
+def exercise(method: str, touching: bool) -> None:
+    """Call a method's kernels by two steps of a tiny scene, about one axis where it cannot touch itself."""
+    contact = Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05)
+    scene = Scene(
+        rod=Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), initial=Initial.straight(), start=End.clamp(), end=End.free(),
+        t_end=1e-3, output_interval=1e-3, fluid=Fluid(1000.0),
+        numerics=Numerics(method=method, intervals=4, dt_max=1e-3),  # type: ignore[arg-type]
+        contact=contact if touching else None,
+    )  # fmt: skip
+    moving, dt = discretized(scene), 1e-6
+    for t in (0.0, dt):
+        moving.try_step(t, dt, consistent=True)
+        moving.relative_increment(dt)
+        moving.strain(), moving.refusal(), moving.turn()
+        moving.take_step(t, dt)
+    fields = moving.fields()
+    moving.energies(), moving.twist(), moving.smallest_gap()
+    writhe(fields.r, np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 1.0]))
+    moving.compile()

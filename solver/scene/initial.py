@@ -1,0 +1,85 @@
+"""The rod at t = 0, as a scene gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from solver.arrays import Array
+from solver.scene.checks import require_finite
+from solver.scene.curve import Curve
+from solver.scene.rod import Profile
+
+
+@dataclass(frozen=True)
+class Initial:
+    """The rod at t = 0.
+
+    `centreline` maps arclengths s (n,) to lab positions (n, 3) in m with |r_s| = 1; `a1` is the lab
+    direction (made normal to the tangent) of the first principal axis at s = 0; along s the frame
+    follows by parallel transport, turned about the tangent by `twist` (rad). `velocity` (m/s) and
+    `angular_velocity` (rad/s, about the centre of mass) are a rigid motion in the lab frame.
+    """
+
+    centreline: Callable[[Array], Array]
+    a1: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    twist: Profile = field(default_factory=lambda: Curve.constant(0.0))
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for name in ("a1", "velocity", "angular_velocity"):
+            require_finite(f"initial {name}", getattr(self, name))
+
+    @classmethod
+    def straight(
+        cls,
+        origin: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        direction: tuple[float, float, float] = (0.0, 0.0, 1.0),
+        **others: object,
+    ) -> Initial:
+        """A straight rod from `origin` along `direction` (of any length > 0)."""
+        start, along = np.array(origin, dtype=float), np.array(direction, dtype=float)
+        norm = float(np.linalg.norm(along))
+        if not norm > 0:
+            raise ValueError(f"direction must not be zero, got {direction}")
+        return cls(centreline=lambda s: start + np.outer(s, along / norm), **others)  # type: ignore[arg-type]
+
+    @classmethod
+    def through(cls, points: Array, length: float, **others: object) -> Initial:
+        """A smooth centreline through lab points (n >= 4, 3), re-parametrised by arclength.
+
+        Raises ValueError if its length differs from `length` by more than 0.1 %; a smaller
+        difference is taken up by scaling about the first point.
+        """
+        return cls(centreline=arclength_spline(points, length), **others)  # type: ignore[arg-type]
+
+
+def arclength_spline(points: Array, length: float) -> Callable[[Array], Array]:
+    """The C2 curve through `points` (n >= 4, 3) as a function of arclength in [0, length].
+
+    Raises ValueError if the curve's own length differs from `length` by more than 0.1 %.
+    """
+    path = np.asarray(points, dtype=float)
+    if path.ndim != 2 or path.shape[0] < 4 or path.shape[1] != 3 or not np.isfinite(path).all():
+        raise ValueError(f"a centreline needs at least 4 finite points of 3 coordinates, got shape {path.shape}")
+    parameter = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+    if not (np.diff(parameter) > 0).all():
+        raise ValueError("successive points of a centreline must differ")
+    raw = CubicSpline(parameter, path)
+    fine = np.linspace(0.0, parameter[-1], 40 * len(path) + 1)
+    speed = np.linalg.norm(raw(fine, 1), axis=1)
+    arclength = CubicSpline(fine, speed).antiderivative()(fine)
+    if abs(arclength[-1] / length - 1.0) > 1e-3:
+        raise ValueError(
+            f"the centreline is {arclength[-1]:.6g} m long, the rod {length:.6g} m: they must agree to 0.1 %"
+        )
+    by_arclength = CubicSpline(arclength * (length / arclength[-1]), fine)
+
+    def centreline(s: Array) -> Array:
+        return np.asarray(path[0] + (raw(by_arclength(s)) - path[0]) * (length / arclength[-1]), dtype=float)
+
+    return centreline

@@ -1,0 +1,61 @@
+"""The rod at t = 0: centreline, frames and curvature at the nodes."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation
+
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
+from solver.kernels.rotation import quaternion_of
+from solver.scene.initial import Initial
+
+
+def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
+    """Positions (n, 3), orientations (n, 4) and curvature-twist (n, 3) at the nodes `s` (n,) at t = 0.
+
+    The frame follows the centreline by parallel transport (sampled eight times finer), turned by `twist`.
+    """
+    refined = np.linspace(s[0], s[-1], 8 * (len(s) - 1) + 1)
+    path = initial.centreline(refined)
+    curve = CubicSpline(refined, path)
+    tangent = curve(refined, 1)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    first = _transport(tangent, np.array(initial.a1, dtype=float))
+    R = np.stack([first, np.cross(tangent, first), tangent], axis=2)
+    angle = np.asarray(initial.twist(refined), dtype=float)
+    if angle.any():
+        R = R @ Rotation.from_rotvec(np.outer(angle, [0.0, 0.0, 1.0])).as_matrix()
+    bend = curve(refined, 2)
+    bend -= np.sum(bend * tangent, axis=1)[:, None] * tangent
+    kappa_lab = np.cross(tangent, bend)
+    kappa = np.einsum("nij,ni->nj", R, kappa_lab)
+    kappa[:, 2] = CubicSpline(refined, angle)(refined, 1) if angle.any() else 0.0
+    return path[::8].copy(), quaternion_of(R[::8]), kappa[::8]
+
+
+def _transport(tangent: Array, first: Array) -> Array:
+    """Parallel transport of `first`, made normal to tangent[0], along unit tangents (n, 3)."""
+    normal = first - np.dot(first, tangent[0]) * tangent[0]
+    if np.linalg.norm(normal) < 1e-6 * np.linalg.norm(first):
+        raise ValueError(f"a1 must not be parallel to the tangent at s = 0, got {first.tolist()}")
+    carried = np.empty_like(tangent)
+    carried[0] = normal / np.linalg.norm(normal)
+    _carry(tangent, carried)
+    return carried
+
+
+@kernel
+def _carry(tangent: Array, carried: Array) -> None:
+    """Turn carried[0] with the shortest rotations from each tangent to the next: x - (x . b) (a + b) / (1 + a . b)."""
+    for i in range(1, len(tangent)):
+        a, b, x = tangent[i - 1], tangent[i], carried[i - 1]
+        along = x[0] * b[0] + x[1] * b[1] + x[2] * b[2]
+        share = along / (1.0 + a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+        square = 0.0
+        for k in range(3):
+            carried[i, k] = x[k] - share * (a[k] + b[k])
+            square += carried[i, k] ** 2
+        for k in range(3):
+            carried[i, k] /= np.sqrt(square)

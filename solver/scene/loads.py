@@ -1,0 +1,32 @@
+"""Given loads, as a scene gives them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from solver.scene.curve import Curve, Vector, constant_vector
+from solver.scene.rod import Profiles
+
+Frame_ = Literal["material", "lab"]
+ZERO: Vector = constant_vector((0.0, 0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class DistributedLoad:
+    """Force (N/m) and moment (N m/m) per length along s, times `schedule`(t)."""
+
+    force: Profiles = ZERO
+    moment: Profiles = ZERO
+    frame: Frame_ = "lab"
+    schedule: Curve = field(default_factory=lambda: Curve.constant(1.0))
+
+
+@dataclass(frozen=True)
+class PointLoad:
+    """Force (N) and moment (N m) as functions of time at arclength `s`; at s = 0 or L it adds to the end."""
+
+    s: float
+    force: Vector = ZERO
+    moment: Vector = ZERO
+    frame: Frame_ = "lab"

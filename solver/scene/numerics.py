@@ -1,0 +1,52 @@
+"""How the equations are solved, as a scene gives it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from numbers import Integral
+from typing import Literal
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """How the equations are solved.
+
+    `intervals` of equal length along s; `dt_max` the largest step (s); `rho_inf` the spectral radius
+    of generalized-alpha at infinite frequency in time, `rho_inf_space` the same along s (1 is the box
+    scheme); `increment_tolerance` bounds each step's error relative to the step's motion (None: the method's own).
+
+    With a `tolerance` (staggered method) pilot runs choose the intervals, at most `most_intervals`, and the steps, so
+    that the relative error of r, kappa and the energies is below it. `verify`: the scene also runs with intervals and
+    steps half as long, and the frames have the extrapolated solution and an estimate of its error.
+    """
+
+    method: Literal["box", "staggered"] = "box"
+    linear_solver: Literal["block_elimination", "shooting"] = "block_elimination"
+    intervals: int = 200
+    dt_max: float = 0.1
+    rho_inf: float = 0.5
+    rho_inf_space: float = 1.0
+    increment_tolerance: float | None = None
+    tolerance: float | None = None
+    most_intervals: int = 2000
+    verify: bool = False
+
+    def __post_init__(self) -> None:
+        intervals: object = self.intervals  # whatever it was promised to be
+        if isinstance(intervals, bool) or not isinstance(intervals, Integral) or int(intervals) < 2:
+            raise ValueError(f"intervals must be a whole number >= 2, got {self.intervals}")
+        if not (np.isfinite(self.dt_max) and self.dt_max > 0):
+            raise ValueError(f"dt_max must be > 0 s, got {self.dt_max}")
+        for name in ("rho_inf", "rho_inf_space"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise ValueError(f"{name} must be in [0, 1], got {getattr(self, name)}")
+        if self.linear_solver == "shooting" and self.rho_inf_space != 1.0:
+            raise ValueError(f"rho_inf_space must be 1 with linear_solver shooting, got {self.rho_inf_space}")
+        for name in ("increment_tolerance", "tolerance"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise ValueError(f"{name} must be > 0, got {value}")
+        if self.tolerance is not None and self.method != "staggered":
+            raise ValueError(f"method must be staggered with a tolerance, got {self.method}")

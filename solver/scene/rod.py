@@ -1,0 +1,90 @@
+"""The rod: its length and its section properties along s."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.scene.curve import Curve
+
+Profile = Callable[[Array], Array]
+"""A property along the rod: maps arclengths s (n,) in m to values (n,). A `Curve` is one."""
+
+Profiles = tuple[Profile, Profile, Profile]
+
+NO_CURVATURE: Profiles = (Curve.constant(0.0), Curve.constant(0.0), Curve.constant(0.0))
+
+
+@dataclass(frozen=True)
+class Rod:
+    """An inextensible, unshearable Kirchhoff rod (Goyal, Perkins & Lee 2003, eq. (1) and tables 1, 2).
+
+    `stiffness` is (EJ1, EJ2, GJ3) in N m^2, `mass` is rho_c A in kg/m, `inertia` the mass moment of
+    inertia per length about (a1, a2, a3) in kg m, `diameter` in m is what the fluid and the contact
+    see, `kappa0` the stress-free curvature-twist in rad/m, all along s in [0, length].
+    """
+
+    length: float
+    stiffness: Profiles
+    mass: Profile
+    inertia: Profiles
+    diameter: Profile
+    kappa0: Profiles = NO_CURVATURE
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.length) and self.length > 0):
+            raise ValueError(f"length must be > 0 m, got {self.length}")
+        s = np.linspace(0.0, self.length, 201)
+        named = [("diameter", self.diameter), ("mass", self.mass)]
+        named += [(f"stiffness[{i}]", p) for i, p in enumerate(self.stiffness)]
+        named += [(f"inertia[{i}]", p) for i, p in enumerate(self.inertia)]
+        for name, profile in named:
+            lowest = float(np.min(profile(s)))
+            if not lowest > 0:
+                raise ValueError(f"{name} must be > 0 everywhere along the rod, got {lowest}")
+        for i, profile in enumerate(self.kappa0):
+            values = np.asarray(profile(s))
+            if not np.isfinite(values).all():
+                wrong = values[~np.isfinite(values)][0]
+                raise ValueError(f"kappa0[{i}] must be finite everywhere along the rod, got {wrong}")
+
+    @classmethod
+    def circular(
+        cls,
+        length: float,
+        diameter: Profile | float,
+        youngs_modulus: float,
+        shear_modulus: float,
+        density: float,
+        kappa0: Profiles = NO_CURVATURE,
+    ) -> Rod:
+        """A solid circular section: A = pi D^2/4, J1 = J2 = A D^2/16, J3 = A D^2/8, I = rho_c J."""
+        width: Profile = Curve.constant(diameter) if isinstance(diameter, (int, float)) else diameter
+        for name, value in (
+            ("youngs_modulus", youngs_modulus),
+            ("shear_modulus", shear_modulus),
+            ("density", density),
+        ):
+            if not (np.isfinite(value) and value > 0):
+                raise ValueError(f"{name} must be > 0, got {value}")
+
+        def area(factor: float) -> Profile:
+            return lambda s: factor * pi / 4 * width(s) ** 2
+
+        def second_moment(factor: float) -> Profile:
+            return lambda s: factor * pi / 64 * (width(s) ** 2) ** 2
+
+        bending, torsion = second_moment(youngs_modulus), second_moment(2 * shear_modulus)
+        about_diameter, about_axis = second_moment(density), second_moment(2 * density)
+        return cls(
+            length=length,
+            stiffness=(bending, bending, torsion),
+            mass=area(density),
+            inertia=(about_diameter, about_diameter, about_axis),
+            diameter=width,
+            kappa0=kappa0,
+        )

@@ -1,0 +1,88 @@
+"""Everything that a simulation is told: plain data, checked when it is made. SI units throughout.
+
+Material frame: a3 is the centreline's tangent, a1 and a2 the principal axes of the section.
+Lab frame: e1, e2, e3. An end condition or a load says in which frame its components are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from solver.scene.checks import require_finite
+from solver.scene.contact import Contact
+from solver.scene.ends import End
+from solver.scene.fluid import Fluid
+from solver.scene.initial import Initial
+from solver.scene.loads import DistributedLoad, PointLoad
+from solver.scene.numerics import Numerics
+from solver.scene.rod import Rod
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One case, ready to be simulated."""
+
+    rod: Rod
+    initial: Initial
+    start: End
+    end: End
+    t_end: float
+    output_interval: float
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    distributed: tuple[DistributedLoad, ...] = ()
+    points: tuple[PointLoad, ...] = ()
+    damping: float = 0.0
+    """Viscous damping c (1/s): B = -c rho_c A v, Q = -c I omega."""
+    fluid: Fluid | None = None
+    contact: Contact | None = None
+    numerics: Numerics = field(default_factory=Numerics)
+    topology: bool = True
+    """Whether the frames carry Wr and Lk."""
+    analysis: Literal["dynamic", "static"] = "dynamic"
+    """"static": a branch of equilibria, with time as the parameter of loads and ends."""
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.t_end) and self.t_end > 0):
+            raise ValueError(f"t_end must be > 0 s, got {self.t_end}")
+        if not 0 < self.output_interval <= self.t_end:
+            raise ValueError(f"output_interval must be in (0, t_end], got {self.output_interval}")
+        if not (np.isfinite(self.damping) and self.damping >= 0):
+            raise ValueError(f"damping must be >= 0 1/s, got {self.damping}")
+        require_finite("gravity", self.gravity)
+        if self.analysis == "static":
+            self._check_statics()
+        if self.contact is not None and self.numerics.intervals < 3:
+            raise ValueError(f"intervals must be >= 3 with contact, got {self.numerics.intervals}")
+        for load in self.points:
+            if not 0 <= load.s <= self.rod.length:
+                raise ValueError(f"s of a point load must be in [0, {self.rod.length}] m, got {load.s}")
+            self._check_frame(load)
+
+    def _check_frame(self, load: PointLoad) -> None:
+        """A force that follows the rod cannot be added to a condition on the components of f along lab axes."""
+        end = {0.0: self.start, self.rod.length: self.end}.get(load.s)
+        if end is None or self.analysis == "static" or (load.frame, end.frame) != ("material", "lab"):
+            return
+        loaded = any(condition.kind == "load" for component in end.translation for condition in component)
+        if loaded and not all(curve.is_zero for curve in load.force):
+            raise ValueError('frame of a force at an end that is free along lab axes must be "lab", got "material"')
+
+    def _check_statics(self) -> None:
+        if self.contact is not None:
+            raise ValueError("contact must not be given with a static analysis")
+        if any((*self.initial.velocity, *self.initial.angular_velocity)):
+            raise ValueError("velocity and angular_velocity must be 0 in a static analysis")
+        if self.numerics.tolerance is not None:
+            raise ValueError("tolerance must not be given with a static analysis: give intervals")
+
+    @property
+    def outputs(self) -> list[float]:
+        """The times (s) of the frames, but for that of t = 0."""
+        count = round(self.t_end / self.output_interval)
+        times = [min(k * self.output_interval, self.t_end) for k in range(1, count + 1)]
+        if not times or times[-1] < self.t_end * (1 - 1e-12):
+            times.append(self.t_end)
+        return times

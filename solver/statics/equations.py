@@ -1,0 +1,250 @@
+"""Equilibrium of the chain: residual and tangent of one point, and the banded solve.
+
+Unknown at block a = 0 ... N + 1: the rotation psi of orientation a, the displacement x (of the start, of segment a's
+centre, of the end), and the force F at node a - 1. Rows: moments, forces, and that neighbours stay joined, of which F
+is the multiplier; so where the loads have a potential the tangent is symmetric at equilibrium. All is made
+dimensionless by L and EJ. Balances and their tangents are the staggered method's own, at rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg.lapack import dgbtrf, dgbtrs
+
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
+from solver.kernels.rotation import matrix_of, relative_rotation, turn
+from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, segment_tangents
+from solver.methods.space.segments.chain import Chain, Residuals, Stages
+from solver.methods.space.segments.initial import chain_of, lay_out
+from solver.methods.space.segments.joints import bend_joints
+from solver.methods.space.segments.motion import follow_segments
+from solver.physics.loads.applied import AppliedLoads
+from solver.physics.section import sample
+from solver.scene.scene import Scene
+from solver.statics.ends import StaticEnd
+
+BLOCK, BAND = 9, 17
+SOFTEST = 1e-8
+"""Stiffness (in EJ/L, shared by all segments) given to every rotation in the iteration, which does not change what it
+converges to: a rod that may spin freely about its own axis has one state, the nearest."""
+PSI, X, FORCE = slice(0, 3), slice(3, 6), slice(6, 9)
+
+
+@dataclass
+class Point:
+    """A state at rest: `quaternion` (N + 2, 4), `base` (3,), `F` (N + 1, 3), lab; at the parameter `q` = t / t_end."""
+
+    quaternion: Array
+    base: Array
+    F: Array
+    q: float
+
+    def moved(self, z: Array, dq: float) -> Point:
+        """The point displaced by `z` (N + 2, 9), in units of rotation, place and force."""
+        quaternion = np.empty_like(self.quaternion)
+        _turn_all(self.quaternion, np.ascontiguousarray(z[:, PSI]), quaternion)
+        return Point(quaternion, self.base + z[0, X], self.F + z[1:, FORCE], self.q + dq)
+
+
+@kernel
+def _turn_all(quaternion: Array, psi: Array, turned: Array) -> None:
+    for a in range(len(psi)):
+        turn(quaternion[a], psi[a], turned[a])
+
+
+@kernel
+def _lay_down(chain: Chain, quaternion: Array, base: Array, stages: Stages) -> None:
+    """Write rotations, places and moments of stage 0; velocities and accelerations stay zero."""
+    stages.quaternion[0] = quaternion
+    for a in range(len(quaternion)):
+        matrix_of(quaternion[a], stages.R[0, a])
+    stages.base[0, 0] = base
+    follow_segments(stages.R[0], stages.omega[0], stages.alpha[0], stages.base[0], chain.h,
+                    stages.r[0], stages.V[0], stages.A[0])  # fmt: skip
+    bend_joints(chain, quaternion, stages.bend[0], stages.moment[0], stages.left[0], stages.right[0])
+
+
+class Equations:
+    """Residual and tangent of a scene's equilibrium."""
+
+    def __init__(self, scene: Scene) -> None:
+        N, length = scene.numerics.intervals, float(scene.rod.length)
+        self.s, self.t_end = np.linspace(0.0, length, N + 1), scene.t_end
+        middles = 0.5 * (self.s[1:] + self.s[:-1])
+        section = sample(scene.rod, middles)
+        self.applied = AppliedLoads(scene, section, middles, (middles, np.full(N, length / N)))
+        self.loads = self.applied.at(0.0)
+        self.chain = chain_of(scene.rod, section, self.loads.added_mass, self.s)
+        state, self.offset = lay_out(scene.initial, self.chain, self.s)
+        self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
+        self.stages, self.tangents = Stages.empty(N), Tangents.empty(N)
+        self._driven, self._residuals = Driven.empty(N), Residuals.empty(N)
+        _lay_down(self.chain, state.quaternion, self.start.base, self.stages)
+        R = self.stages.R[0]
+        self.ends = (StaticEnd(scene.start, R[0]), StaticEnd(scene.end, R[-1]))
+        self._home = (state.quaternion[[0, -1]].copy(), np.stack([self.start.base, self.tip()]))
+        self.stiffness = float(self.chain.stiffness[:, :2].mean())
+        moment, force = self.stiffness / length, self.stiffness / length**2
+        self.units = np.repeat([1.0, length, force], 3)
+        self._rows = 1.0 / np.repeat([moment, force, length], 3)
+        self.letting_go = False
+        self._holding = self.residual(self.start)
+        self.letting_go = True
+        """Whether what holds the initial shape is taken away, as q goes from 0 to 1 at t = 0."""
+
+    def let_go(self) -> None:
+        """Nothing holds the initial shape any more; q is now the schedules' time."""
+        self.letting_go = False
+
+    def time(self, q: float) -> float:
+        """The schedules' time (s) at the parameter q."""
+        return 0.0 if self.letting_go else q * self.t_end
+
+    def tip(self) -> Array:
+        """Where the end of the rod is (3,), of the point evaluated last."""
+        return np.asarray(self.stages.r[0, -1] + 0.5 * self.chain.h * self.stages.R[0, -2, :, 2])
+
+    def residual(self, point: Point) -> Array:
+        """What is left of the equations at a point (N + 2, 9), dimensionless."""
+        t, stages, driven = self.time(point.q), self.stages, self._driven
+        _lay_down(self.chain, point.quaternion, point.base, stages)
+        stages.F[0] = point.F
+        self.loads = self.applied.at(t)
+        driven.lab[0], driven.material[0] = self.loads.lab, self.loads.material
+        balance_segments(self.chain, self.loads, driven, stages, self._residuals, 0)
+        left = np.zeros((len(point.quaternion), BLOCK))
+        left[1:-1, PSI], left[1:-1, X] = self._residuals.rotation[0, 1:-1], self._residuals.translation[0]
+        for side in (0, 1):
+            self._balance_end(side, t, point, left)
+        left *= self._rows
+        if self.letting_go:
+            left -= (1.0 - point.q) * self._holding
+        return left
+
+    def slope(self, point: Point, ahead: float, step: float = 1e-6) -> Array:
+        """How the residual changes with q beside a point, at q + `ahead` (N + 2, 9)."""
+        sides = [Point(point.quaternion, point.base, point.F, point.q + ahead + x) for x in (step, -step)]
+        up, down = (self.residual(side) for side in sides)
+        return (up - down) / (2.0 * step)
+
+    def _balance_end(self, side: int, t: float, point: Point, left: Array) -> None:
+        """Write the rows of an end: what is not balanced, or by how much it is away from where it is held."""
+        end, frame, sign = self.ends[side], -side, 2.0 * side - 1.0
+        R, values, s = self.stages.R[0, frame], end.values(t), float(self.s[-1]) * side
+        dead, follower = self.applied.at_end(t, s, "lab"), self.applied.at_end(t, s, "material")
+        self._driven.dead[0, side] = dead
+        inner = self.stages.left[0, 0] if side == 0 else self.stages.right[0, -1]
+        loaded = np.where(end.held, 0.0, values)
+        self._follower(side)[:] = follower[:3] + (loaded[:3] if end.follows else 0.0)
+        force = dead[:3] + R @ self._follower(side) + (0.0 if end.follows else loaded[:3])
+        across = end.axes.T @ (sign * (point.F[frame] - force)) / self._unit(X)
+        place = point.base if side == 0 else self.tip()
+        away = (end.axes.T @ (place - self._home[1][side]) - values[:3]) / self.units[3]
+        moment = sign * (inner - R.T @ dead[3:] - follower[3:] - loaded[3:]) / self._unit(PSI)
+        turned = self._turned(side, t, point.quaternion[frame])
+        left[frame, PSI] = np.where(end.held[3:], turned, moment) * self._unit(PSI)
+        left[frame, X] = np.where(end.held[:3], away, across) * self._unit(X)
+
+    def _follower(self, side: int) -> Array:
+        """Forces (3,) that follow an end's frame."""
+        return self._driven.values[0, side, :3]
+
+    def _unit(self, rows: slice) -> float:
+        return float(1.0 / self._rows[rows.start])
+
+    def _turned(self, side: int, t: float, quaternion: Array) -> Array:
+        """By how much an end's frame is turned away from where it is held (3,)."""
+        end, there, away = self.ends[side], np.empty(4), np.empty(3)
+        turn(self._home[0][side], end.turned(t), there)
+        if end.held[3:].all():
+            relative_rotation(there, quaternion, away)
+            return away
+        if not end.held[3:].any():
+            return np.zeros(3)
+        free = np.eye(3)[int(np.argmin(end.held[3:]))]
+        R, R_there = np.empty((3, 3)), np.empty((3, 3))
+        matrix_of(quaternion, R)
+        matrix_of(there, R_there)
+        return np.cross(R.T @ R_there @ free, free)
+
+    def linearise(self, point: Point) -> tuple[Array, Solver]:
+        """The residual (N + 2, 9) and the factored tangent at a point."""
+        left = self.residual(point)
+        segment_tangents(self.chain, self.loads, self._driven, self.stages, 0, self.tangents)
+        D, lower, upper = self._blocks()
+        scale = self._rows[:, None] * self.units
+        return left, Solver(D * scale, lower * scale, upper * scale, _places(len(D)), self.units)
+
+    def _blocks(self) -> tuple[Array, Array, Array]:
+        """Diagonal (N + 2, 9, 9), and the blocks before and behind it, with dimensions."""
+        T, R, n = self.tangents, self.stages.R[0], len(self.start.quaternion)
+        D, lower, upper = (np.zeros((n, BLOCK, BLOCK)) for _ in range(3))
+        lever, one = levers(R, self.chain.h), np.eye(3)
+        D[:, PSI, PSI], lower[:, PSI, PSI], upper[:, PSI, PSI] = T.stiff, T.before, T.behind
+        D[:, PSI, PSI] += SOFTEST * self.stiffness * self.chain.h / self.s[-1] ** 2 * one
+        D[1:, PSI, FORCE], upper[:-1, PSI, FORCE] = lever[1:], lever[:-1]
+        D[1:-1, X, PSI] = -T.E
+        D[1:, X, FORCE], upper[:-1, X, FORCE] = one, -one
+        D[1:, FORCE, PSI], lower[1:, FORCE, PSI] = lever[1:].transpose(0, 2, 1), lever[:-1].transpose(0, 2, 1)
+        D[1:, FORCE, X], lower[1:, FORCE, X] = one, -one
+        D[0, FORCE, FORCE] = one * self.units[3] / self.units[6]
+        for side, end in enumerate(self.ends):
+            a, sign = -side, 2.0 * side - 1.0
+            D[a, X, PSI] = sign * R[a] @ _cross(self._follower(side))
+            for block in (D[a], lower[a], upper[a]):
+                block[X] = end.axes.T @ block[X]
+                block[PSI][end.held[3:]] = 0.0
+                block[X][end.held[:3]] = 0.0
+            D[a, PSI, PSI][end.held[3:]] = one[end.held[3:]] * self._unit(PSI)
+            D[a, X, X][end.held[:3]] = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
+        return D, lower, upper
+
+
+def levers(R: Array, h: float) -> Array:
+    """(h/2) a3 x R^t (n, 3, 3): the moment of a unit force at a segment's node; none for the ends' frames."""
+    lever = np.zeros((len(R), 3, 3))
+    lever[1:-1, 0], lever[1:-1, 1] = 0.5 * h * R[1:-1, :, 1], -0.5 * h * R[1:-1, :, 0]
+    return lever
+
+
+def _cross(x: Array) -> Array:
+    return np.array([[0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]])
+
+
+Places = tuple[tuple[NDArray[np.bool_], tuple[NDArray[np.int64], NDArray[np.int64]]], ...]
+
+
+@cache
+def _places(n: int) -> Places:
+    """Where the entries of the diagonal, lower and upper blocks lie in LAPACK's band storage."""
+    a, p, q = np.meshgrid(np.arange(n), np.arange(BLOCK), np.arange(BLOCK), indexing="ij")
+    found = []
+    for shift in (0, -1, 1):
+        row, column = BLOCK * a + p, BLOCK * (a + shift) + q
+        keep = (np.abs(row - column) <= BAND) & (column >= 0) & (column < BLOCK * n)
+        found.append((keep, (2 * BAND + (row - column)[keep], column[keep])))
+    return tuple(found)
+
+
+class Solver:
+    """The factored tangent of one point."""
+
+    def __init__(self, D: Array, lower: Array, upper: Array, places: Places,
+                 units: Array) -> None:  # fmt: skip
+        self._units, self._shape = units, (len(D), BLOCK)
+        bands = np.zeros((3 * BAND + 1, BLOCK * len(D)), order="F")
+        for block, (keep, place) in zip((D, lower, upper), places, strict=True):
+            bands[place] = block[keep]
+        self._factors, self._pivots, info = dgbtrf(bands, BAND, BAND, overwrite_ab=True)
+        pivots = np.abs(self._factors[2 * BAND])
+        self.singular = bool(info > 0) or not np.isfinite(pivots).all()
+
+    def solve(self, right: Array) -> Array:
+        """The displacement (N + 2, 9) that the tangent takes to `right` (N + 2, 9)."""
+        x, _ = dgbtrs(self._factors, BAND, BAND, right.ravel(), self._pivots)
+        return np.asarray(x.reshape(self._shape) * self._units)

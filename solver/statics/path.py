@@ -1,0 +1,184 @@
+"""Pseudo-arclength continuation of equilibria (Keller 1977; Allgower & Georg, Numerical Continuation Methods, 6).
+
+A point and the direction of its branch: rotations and the parameter q change along it at unit rate, in the norm
+
+    |z|^2 = mean |psi|^2 + q^2.
+
+A step follows the direction and is corrected by Newton's iteration across it, so that q may turn back at a fold.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.outcome import Outcome, RunFailed
+from solver.statics.equations import FORCE, PSI, Equations, Point
+from solver.statics.stability import negative_modes
+
+LONGEST, FIRST, SHORTEST = 0.5, 0.05, 1e-8
+"""Lengths of a step: rms rotation (rad) of the sections and part of t_end."""
+SHARPEST = 0.9
+"""Least cosine of the angle by which a branch may turn in a step."""
+EASY_ITERATIONS, MOST_ITERATIONS = 5, 10
+TOLERANCE = 1e-10
+"""Remaining correction, rotation (rad) and force relative to EJ/L^2 and to its largest, at an equilibrium."""
+LARGEST_CORRECTION = 1.0
+MOST_STEPS = 5000
+"""Steps from one frame to the next after which a branch is given up."""
+AHEAD = 3e-6
+"""How far ahead of a corner of a schedule the branch's direction is taken."""
+CROSSING = 1e-3
+"""Longest step across which stability may change but at a fold: a longer one may have left the branch for another."""
+REACHED = 1e-10
+STEEP = 0.02
+"""Least dq at which a step may end at a given q."""
+
+
+@dataclass
+class Direction:
+    """The branch at a point: `z` (N + 2, 9), dimensional, and `dq` a unit of arclength."""
+
+    z: Array
+    dq: float
+
+    def dot(self, z: Array, dq: float) -> float:
+        """The inner product with a displacement."""
+        return float(np.sum(self.z[:, PSI] * z[:, PSI])) / len(z) + self.dq * dq
+
+
+class Path:
+    """A branch, followed from stop to stop.
+
+    `travelled`: by how much q has changed since the start, back and forth; `point` and `direction` where it is;
+    `modes`: in how many directions the energy falls there; `last_dq`, `last_iterations` of the last step.
+    """
+
+    def __init__(self, equations: Equations) -> None:
+        self._equations = equations
+        self.point = equations.start.moved(np.zeros((len(equations.start.quaternion), 9)), 0.0)
+        self.direction = Direction(np.zeros((len(equations.start.quaternion), 9)), 1.0)
+        self.steps, self.iterations, self.failed, self.last_iterations = 0, 0, 0, 0
+        self.travelled, self.last_dq, self.modes = 0.0, 0.0, 0
+        self._corners: list[float] = []
+        self._length, self._easy, self._begun, self._idle = FIRST, True, False, 0
+
+    def begin(self, corners: list[float]) -> None:
+        """Go on with q from 0, from where the path is; the schedules bend at `corners`."""
+        self.point.q, self.travelled, self.last_dq = 0.0, 0.0, 0.0
+        self._corners, self._length, self._begun, self._idle = corners, FIRST, False, 0
+
+    def advance(self, stop: float) -> bool:
+        """Take one step towards where q has travelled as far as `stop`; whether it is there.
+
+        Raises RunFailed where the branch cannot be followed.
+        """
+        if not self._begun:
+            self.direction = self._direction(self.point, 1.0)
+            self.modes = negative_modes(self._equations)
+            self._begun = True
+        if stop - self.travelled > REACHED:
+            if self._idle == MOST_STEPS:
+                raise self._failure(Outcome.EQUILIBRIUM_LOST, f"{MOST_STEPS} steps did not reach the next frame")
+            self._step(stop - self.travelled)
+            self._idle += 1
+            if self.point.q < -REACHED and not self._equations.letting_go:
+                raise self._failure(Outcome.PATH_TURNED_BACK)
+        if stop - self.travelled > REACHED:
+            return False
+        self.travelled, self._idle = stop, 0
+        return True
+
+    def _step(self, remaining: float) -> None:
+        """Take one step, no farther than the next corner and `remaining` of q."""
+        point, dq = self.point, self.direction.dq
+        forward = 1.0 if dq > 0.0 else -1.0
+        to_corner = min((forward * (c - point.q) for c in self._corners if forward * (c - point.q) > REACHED),
+                        default=np.inf)  # fmt: skip
+        room, length = min(remaining, to_corner), self._length
+        while length > SHORTEST:
+            length = min(length, room / max(abs(dq), REACHED))
+            lands = abs(dq) > STEEP and length * abs(dq) > room * (1.0 - 1e-9)
+            guess = point.moved(length * self.direction.z, forward * room if lands else length * dq)
+            found = self._correct(guess, None if lands else self.direction)
+            if found is not None:
+                cornered = lands and room == to_corner
+                direction = self._direction(found, forward if cornered else 0.0)
+                modes = negative_modes(self._equations)
+                smooth = cornered or direction.dot(self.direction.z, dq) > SHARPEST
+                if smooth and (modes == self.modes or direction.dq * dq < 0.0 or length < CROSSING):
+                    swept, part = (room, 1.0) if lands else _sweep(found.q - point.q, dq, direction.dq, length, room)
+                    if part > 0.99:
+                        self._accept(found, direction, modes, swept, length)
+                        return
+                    length *= part
+                    continue
+            self.failed += 1
+            length *= 0.5
+        _, solver = self._equations.linearise(point)
+        if solver.singular:
+            raise self._failure(Outcome.SINGULAR_SYSTEM, "a pivot vanished")
+        raise self._failure(Outcome.EQUILIBRIUM_LOST, "no step was short enough")
+
+    def _accept(self, found: Point, direction: Direction, modes: int, swept: float, length: float) -> None:
+        self.last_dq = found.q - self.point.q
+        self.point, self.direction, self.modes = found, direction, modes
+        self.travelled += swept
+        self.steps += 1
+        self._length = min(LONGEST, 2.0 * length if self._easy else length, 4.0 * self._length)
+
+    def _correct(self, guess: Point, across: Direction | None) -> Point | None:
+        """The equilibrium across a direction from a guess, or at the guess's own q; None if there is none near."""
+        before = np.inf
+        for iteration in range(1, MOST_ITERATIONS + 1):
+            self.iterations += 1
+            left, solver = self._equations.linearise(guess)
+            if solver.singular:
+                return None
+            z, dq = -solver.solve(left), 0.0
+            if across is not None:
+                w = -solver.solve(self._equations.slope(guess, 0.0))
+                dq = -across.dot(z, 0.0) / across.dot(w, 1.0)
+                z += dq * w
+            size = self._size(z, guess)
+            if not size < min(LARGEST_CORRECTION, 2.0 * before):
+                return None
+            guess = guess.moved(z, dq)
+            # Newton converges quadratically: what remains is some size^2, measured by the correction before
+            if size < TOLERANCE or (iteration > 1 and size < 0.1 * before and size * size / before < TOLERANCE):
+                self._easy, self.last_iterations = iteration <= EASY_ITERATIONS, iteration
+                return guess
+            before = size
+        return None
+
+    def _size(self, z: Array, point: Point) -> float:
+        units = self._equations.units
+        force = max(units[6], float(np.abs(point.F).max()))
+        return float(max(np.abs(z[:, PSI]).max(), np.abs(z[:, FORCE]).max() / force))
+
+    def _direction(self, point: Point, forward: float = 0.0) -> Direction:
+        """The branch's direction at a point: as it was, or right behind a corner with q going `forward` (+-1)."""
+        _, solver = self._equations.linearise(point)
+        new = Direction(-solver.solve(self._equations.slope(point, forward * AHEAD)), 1.0)
+        size = np.sqrt(new.dot(new.z, 1.0)) * np.sign(forward or self.direction.dot(new.z, 1.0))
+        return Direction(new.z / size, float(1.0 / size))
+
+    def _failure(self, outcome: Outcome, detail: str = "") -> RunFailed:
+        q = self.point.q
+        if self._equations.letting_go:
+            return RunFailed(outcome, 0.0, self.steps, f"{100.0 * q:.3g} % of what holds the initial shape was let go")
+        return RunFailed(outcome, self._equations.time(q), self.steps, detail)
+
+
+def _sweep(dq: float, slope: float, end_slope: float, length: float, room: float) -> tuple[float, float]:
+    """By how much q changes, back and forth, on a step; and the part of the step within which that is `room`.
+
+    q is taken as the cubic with the values and slopes of both ends.
+    """
+    x = np.linspace(0.0, 1.0, 1001)
+    q = x * (1 - x) ** 2 * slope * length + x**2 * (3 - 2 * x) * dq - x**2 * (1 - x) * end_slope * length
+    swept = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(q)))])
+    part = float(np.interp(room, swept, x)) if swept[-1] > room * (1.0 + 1e-6) else 1.0
+    return float(min(swept[-1], room)), part

@@ -1,0 +1,74 @@
+"""Stability of an equilibrium: in how many directions the energy falls.
+
+With the forces held as they are, the Lagrangian's second variation by the rotations is block tridiagonal, H; G are the
+conditions that tie the rotations to where both ends are held, W those on the place of the start. By Haynsworth
+(Linear Algebra Appl. 1 (1968) 73) the negative eigenvalues of [H G^t; G W] are those of H, counted by the signs of the
+pivots of its factorisation, and those of W - G H^-1 G^t; each condition accounts for one that is no direction.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.linalg import eigvalsh, solve_banded
+
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
+from solver.statics.equations import SOFTEST, Equations, levers
+
+BAND = 5
+
+
+def negative_modes(equations: Equations) -> int:
+    """Directions of falling energy at the point that `equations` has linearised last; loads are held as they are."""
+    chain, n, length = equations.chain, len(equations.start.quaternion), float(equations.s[-1])
+    T, R = equations.tangents, equations.stages.R[0]
+    bands = _second_variation(T.stiff, T.behind, equations) * (length / equations.stiffness)
+    held = [end.axes[:, end.held[:3]] for end in equations.ends]
+    G, W = np.zeros((3 * n, 3 + held[0].shape[1] + held[1].shape[1])), np.zeros((0, 0))
+    G[:, 3 + held[0].shape[1] :] = (-2.0 / length * levers(R, chain.h) @ held[1]).reshape(3 * n, -1)
+    ties = np.hstack(held)
+    W = np.zeros((G.shape[1], G.shape[1]))
+    W[:3, 3:], W[3:, :3] = ties, ties.T
+    full = np.vstack([bands[:0:-1], [bands[0]], bands[1:]])
+    for k in range(1, BAND + 1):
+        full[BAND - k] = np.roll(bands[k], k)
+    S = W - G.T @ solve_banded((BAND, BAND), full, G)
+    falling = int(np.sum(eigvalsh(S) < 0.0))
+    return int(_negative_pivots(bands.copy())) + falling - int(ties.shape[1])
+
+
+def _second_variation(stiff: Array, behind: Array, equations: Equations) -> Array:
+    """H's symmetric part in lower bands (6, 3 n); rotations that are held count as stiff."""
+    n, unit = len(stiff), equations.stiffness / float(equations.s[-1])
+    soft = SOFTEST * unit * equations.chain.h / float(equations.s[-1])
+    D = 0.5 * (stiff + stiff.transpose(0, 2, 1)) + soft * np.eye(3)
+    B = np.zeros_like(D)
+    B[:-1] = 0.5 * (behind[:-1] + equations.tangents.before[1:].transpose(0, 2, 1))
+    for side, end in enumerate(equations.ends):
+        fixed = end.held[3:]
+        for block in (D[-side], D[-side].T, B[0] if side == 0 else B[-2].T):
+            block[fixed] = 0.0
+        D[-side][fixed, fixed] = unit
+    bands = np.zeros((BAND + 1, 3 * n))
+    for p in range(3):
+        for q in range(3):
+            if p >= q:
+                bands[p - q, q::3] = D[:, p, q]
+            # the block below the diagonal is B^t
+            bands[3 + p - q, q::3] = B[:, q, p]
+    return bands
+
+
+@kernel
+def _negative_pivots(bands: Array) -> int:
+    """Number of negative pivots of the symmetric matrix with these lower bands, which are overwritten."""
+    count, wide, n = 0, bands.shape[0] - 1, bands.shape[1]
+    for j in range(n):
+        pivot = bands[0, j]
+        if pivot < 0.0:
+            count += 1
+        for p in range(1, min(wide, n - 1 - j) + 1):
+            factor = bands[p, j] / pivot
+            for q in range(p, min(wide, n - 1 - j) + 1):
+                bands[q - p, j + p] -= factor * bands[q, j]
+    return count

@@ -1,0 +1,60 @@
+"""Records by reference: a kernel sees the arrays that Python has, and a record that was replaced is seen anew."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver import Contact
+from solver.arrays import Array
+from solver.kernels.handed import Handed
+from solver.kernels.kernel import kernel
+from solver.physics.contact.self_contact import SelfContact
+from tests.solver.scenes import LENGTH, ROD
+
+
+class Record(NamedTuple):
+    values: Array
+    factor: float
+
+
+@kernel
+def scaled(given, i):
+    record, others = given.records
+    others[i] += 1.0
+    return record.factor * record.values[i]
+
+
+def test_a_kernel_reads_and_writes_the_arrays_that_python_has():
+    record, others = Record(np.arange(3.0), 2.0), np.zeros(3)
+    handed = Handed.over(record, others)
+    assert scaled(handed.reference, 2) == 4.0
+    record.values[2] = 7.0
+    assert scaled(handed.reference, 2) == 14.0
+    assert others.tolist() == [0.0, 0.0, 2.0]
+
+
+def test_arrays_outlive_those_who_made_them():
+    def made() -> Handed:
+        return Handed.over(Record(np.full(1000, 3.0), 1.0), np.zeros(1000))
+
+    several = [made() for _ in range(20)]
+    assert [scaled(one.reference, 999) for one in several] == [3.0] * 20
+
+
+def test_a_record_that_was_replaced_is_handed_over_anew():
+    record, others = Record(np.arange(3.0), 2.0), np.zeros(3)
+    handed = Handed.over(record, others)
+    assert handed.again(record, others) is handed
+    anew = handed.again(record._replace(factor=5.0), others)
+    assert anew is not handed
+    assert scaled(anew.reference, 1) == 5.0
+
+
+def test_a_contact_search_that_needs_more_room_replaces_its_record():
+    contact = Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.01)
+    search = SelfContact(contact, ROD, np.linspace(0.0, LENGTH, 41), stages=1)
+    handed = Handed.over(search.touch)
+    search._make_room(search.touch.points, 5000)
+    assert handed.again(search.touch) is not handed

@@ -1,0 +1,147 @@
+"""Applied loads: weight, distributed and point loads as densities at the nodes."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from solver import Curve, DistributedLoad, End, Fluid, Initial, PointLoad, Rod, Scene, constant_vector
+from solver.arrays import Array
+from solver.physics.loads.applied import AppliedLoads, effective_weight, nodes_act, point_weights
+from solver.physics.section import sample
+
+LENGTH, INTERVALS = 2.0, 8
+S = np.linspace(0.0, LENGTH, INTERVALS + 1)
+H = LENGTH / INTERVALS
+ZERO = constant_vector((0.0, 0.0, 0.0))
+RAMP = Curve.table([0.0, 4.0], [0.0, 1.0])
+
+
+def applied(**loads: object) -> AppliedLoads:
+    scene = scene_with(**loads)
+    return AppliedLoads(scene, sample(scene.rod, S), S)
+
+
+def scene_with(**loads: object) -> Scene:
+    rod = Rod.circular(LENGTH, 0.02, 1e7, 5e6, 2000.0)
+    return Scene(
+        rod=rod, initial=Initial.straight(), start=End.clamp(), end=End.free(),
+        t_end=1.0, output_interval=1.0, **loads,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+def force_and_moment_at_the_root(density: Array) -> tuple[float, float]:
+    """What a clamp at s = 0 feels of a transverse density on a straight rod: the box scheme's own sums.
+
+    Delta F = -h B_m from the free end on, and the moment is the sum of h F_m.
+    """
+    F = np.zeros(len(density))
+    for j in range(len(density) - 1, 0, -1):
+        F[j - 1] = F[j] + 0.5 * H * (density[j - 1] + density[j])
+    return float(F[0]), float(np.sum(0.5 * H * (F[1:] + F[:-1])))
+
+
+@given(st.floats(0.0, LENGTH))
+def test_a_point_load_acts_with_its_force_and_its_moment_wherever_it_is(at: float) -> None:
+    force, moment = force_and_moment_at_the_root(point_weights(at, *nodes_act(S)))
+    assert force == pytest.approx(1.0, abs=1e-14)
+    assert moment == pytest.approx(at, abs=1e-13)
+
+
+@pytest.mark.parametrize("at", [0.0, 0.1 * H, 0.5 * H, 0.9 * H, LENGTH - 0.5 * H, LENGTH - 0.01 * H, LENGTH])
+def test_a_point_load_near_an_end_is_as_exact_as_elsewhere(at: float) -> None:
+    assert_allclose(force_and_moment_at_the_root(point_weights(at, *nodes_act(S))), (1.0, at), atol=1e-14)
+
+
+def test_a_point_load_on_a_node_is_that_nodes_alone() -> None:
+    weights = point_weights(float(S[3]), *nodes_act(S))
+    assert weights[3] == pytest.approx(1.0 / H)
+    assert np.count_nonzero(np.abs(weights) > 1e-12) == 1
+
+
+def test_a_point_load_moves_smoothly_along_the_rod() -> None:
+    along = np.linspace(0.0, LENGTH, 2001)
+    weights = np.array([point_weights(float(at), *nodes_act(S)) for at in along])
+    # piecewise linear: a step of 1 mm may change a weight by 1e-3 m / (H/2) / (H/2)
+    assert np.abs(np.diff(weights, axis=0)).max() <= 1e-3 / (0.5 * H) ** 2 * (1 + 1e-9)
+
+
+def test_weight_is_less_buoyancy() -> None:
+    scene = scene_with(gravity=(0.0, 0.0, -9.81), fluid=Fluid(density=1025.0))
+    weight = effective_weight(scene, sample(scene.rod, S))
+    expected = -(2000.0 - 1025.0) * pi * 0.02**2 / 4 * 9.81
+    assert_allclose(weight, np.tile([0.0, 0.0, expected], (INTERVALS + 1, 1)), rtol=1e-14)
+    assert_allclose(applied(gravity=(0.0, 0.0, -9.81), fluid=Fluid(density=1025.0)).at(0.0).lab[:, :3], weight)
+
+
+def test_a_distributed_load_follows_its_profile_and_its_schedule() -> None:
+    along = Curve.table([0.0, LENGTH], [1.0, 3.0])
+    load = DistributedLoad(force=(along, ZERO[1], ZERO[2]), moment=(ZERO[0], along, ZERO[2]), schedule=RAMP)
+    loads = applied(distributed=(load,))
+    for t in (0.0, 1.0, 4.0, 9.0, 2.0):
+        now = loads.at(t)
+        assert_allclose(now.lab[:, 0], along(S) * min(t / 4.0, 1.0))
+        assert_allclose(now.lab[:, 4], along(S) * min(t / 4.0, 1.0))
+        assert_allclose(now.material, 0.0)
+    assert not loads.at(1.0).follows
+
+
+def test_a_load_in_the_material_frame_follows_the_rod() -> None:
+    moment = constant_vector((0.0, 0.0, 2.0))
+    loads = applied(distributed=(DistributedLoad(moment=moment, frame="material"),)).at(0.0)
+    assert loads.follows
+    assert_allclose(loads.material[:, 5], 2.0)
+    assert_allclose(loads.lab, 0.0)
+
+
+def test_loads_add_up() -> None:
+    one = DistributedLoad(force=constant_vector((1.0, 0.0, 0.0)))
+    point = PointLoad(1.0, force=(Curve.constant(5.0), ZERO[1], ZERO[2]))
+    now = applied(distributed=(one, one), points=(point, point)).at(0.0)
+    assert_allclose(now.lab[:, 0], 2.0 + 10.0 * point_weights(1.0, *nodes_act(S)))
+
+
+def test_a_point_load_at_an_end_is_the_ends_and_no_density() -> None:
+    force = (Curve.constant(1.0), RAMP, ZERO[2])
+    loads = applied(points=(PointLoad(LENGTH, force=force), PointLoad(0.0, force=force, frame="material")))
+    assert_allclose(loads.at(2.0).lab, 0.0)
+    # f at s = L is the force that the outside exerts on the rod; at s = 0 it is minus that
+    assert_allclose(loads.at_end(2.0, LENGTH, "lab"), [1.0, 0.5, 0.0, 0.0, 0.0, 0.0])
+    assert_allclose(loads.at_end(2.0, 0.0, "material"), [-1.0, -0.5, 0.0, 0.0, 0.0, 0.0])
+    assert_allclose(loads.at_end(2.0, LENGTH, "material"), 0.0)
+    assert_allclose(loads.at_end(2.0, 0.0, "lab"), 0.0)
+
+
+def test_steps_are_aligned_with_the_corners_of_every_load() -> None:
+    later = Curve.table([5.0, 6.0], [0.0, 1.0])
+    load = DistributedLoad(force=constant_vector((1.0, 0.0, 0.0)), schedule=RAMP)
+    points = (
+        PointLoad(1.0, force=(later, ZERO[1], ZERO[2])),
+        PointLoad(LENGTH, moment=(ZERO[0], ZERO[1], Curve.table([7.0, 8.0], [0.0, 1.0]))),
+    )
+    assert sorted(applied(distributed=(load,), points=points).corners()) == [0.0, 4.0, 5.0, 6.0, 7.0, 8.0]
+
+
+def test_a_scene_without_loads_has_none() -> None:
+    loads = applied()
+    now = loads.at(3.0)
+    assert not now.follows
+    assert not now.wet
+    assert loads.corners() == []
+    for density in (now.lab, now.material, now.added_mass, now.drag_normal, now.drag_tangential):
+        assert_allclose(density, 0.0, atol=0.0)
+
+
+def test_the_fluids_coefficients_are_morisons() -> None:
+    fluid = Fluid(1025.0, added_mass=1.1, drag_normal=1.2, drag_tangential=0.01, current=(0.3, 0.0, 0.0))
+    now = applied(fluid=fluid).at(0.0)
+    assert now.wet
+    assert_allclose(now.added_mass, 1.1 * 1025.0 * pi * 0.02**2 / 4)
+    assert_allclose(now.drag_normal, 0.5 * 1025.0 * 0.02 * 1.2)
+    assert_allclose(now.drag_tangential, 0.5 * 1025.0 * pi * 0.02 * 0.01)
+    assert_allclose(now.current, [0.3, 0.0, 0.0])

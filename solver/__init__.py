@@ -17,10 +17,12 @@ from solver.scene.loads import DistributedLoad, PointLoad
 from solver.scene.numerics import Numerics
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
+from solver.scene.user import UserLoad
 from solver.statics.ends import check_end
 
 __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
     "Initial", "Numerics", "Outcome", "PointLoad", "Rod", "Run", "RunFailed", "Scene", "Simulation", "Statistics",
-    "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest", "constant_vector", "simulate", "warm",
+    "UserLoad", "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest", "constant_vector", "simulate",
+    "warm",
 ]

@@ -41,7 +41,7 @@ class NewtonSystem:
     def assemble(self) -> None:
         """Residuals, and what the tangents are made of."""
         method, work = self._method, self._method.work
-        balance_nodes(method.state, method.trial, work.past, self._c0, method.section, method.loads, work.nodes)
+        balance_nodes(method.state, method.trial, work.past, self._c0, method.section, method.applied.records, work.nodes)
         form_residuals(method.trial, work.past, self._c0, method.h, method.section, self._ends, work.nodes,
                        work.feedback, work.system)  # fmt: skip
 
@@ -104,12 +104,12 @@ class StagesSystem:
     def evaluate(self) -> None:
         """Residuals."""
         method = self._method
-        evaluate(method.chain, method._loads, method.driven, method.stages, method.work.residuals)
+        evaluate(method.chain, method.applied.records, method.driven, method.stages, method.work.residuals)
 
     def factor(self) -> bool:
         """Tangents, and the real and the complex system factored."""
         method, work = self._method, self._method.work
-        return bool(factor_both(method.chain, method._loads, method.driven, SCHEME, self._dt, method.stages,
+        return bool(factor_both(method.chain, method.applied.records, method.driven, SCHEME, self._dt, method.stages,
                                 work.tangents, work.real, work.pair))  # fmt: skip
 
     def solve(self) -> None:

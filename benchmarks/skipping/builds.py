@@ -16,12 +16,13 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("solver", "service", "validation", "benchmarks")
 CONTACT = (("return bool(touch.present and touch.pairs.counts[0] > 0)", "return False"),
            ("self.present = contact is not None", "self.present = False"))  # fmt: skip
-FLUID = (("if loads.wet", "if False"),)
-LOADS = (("if loads.follows", "if False"), ("if loads.turns", "if False"))
+FLUID = (("    added_mass,\n", ""), ("    drag,\n", ""))
+LOADS = (("    dead,\n", ""), ("    following,\n", ""))
 SPACE = (("axis = axis_of(scene)", "axis = None"),)
 WITHOUT: dict[str, tuple[tuple[str, str], ...]] = {"": (), "contact": CONTACT, "fluid": FLUID, "loads": LOADS,
                                                  "turning in space": SPACE}  # fmt: skip
-"""By the feature that is left out: what is replaced, wherever it stands in the solver's sources.
+"""By the feature that is left out: what is replaced, wherever it stands in the solver's sources. A load is left out by
+its line in the registry.
 
 Turning in space is the other way about: the whole build leaves it out by itself, and the one named after it never does.
 """

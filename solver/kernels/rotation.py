@@ -83,6 +83,13 @@ def matrix_of(quaternion: Array, R: Array) -> None:
 
 
 @kernel
+def matrices_of(quaternion: Array, R: Array) -> None:
+    """Write the rotation matrices of unit quaternions (n, 4) into `R` (n, 3, 3)."""
+    for j in range(len(R)):
+        matrix_of(quaternion[j], R[j])
+
+
+@kernel
 def tangent_of(quaternion: Array, T: Array) -> None:
     """Write the tangent R a3 of a unit quaternion (4,) into `T` (3,)."""
     w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]

@@ -24,7 +24,8 @@ from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work
 from solver.physics.contact.forces import Touch
 from solver.physics.contact.self_contact import SelfContact
 from solver.physics.ends import DrivenEnd
-from solver.physics.loads.applied import AppliedLoads, Loads
+from solver.physics.loads.applied import AppliedLoads
+from solver.physics.loads.registry import Loads
 from solver.physics.section import Section, sample
 from solver.scene.initial import Initial
 from solver.scene.layout import nodes_at_rest
@@ -73,7 +74,6 @@ class BoxMethod:
             self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / self.section.stiffness[:, 0])))
         self._last_dt, self._taken_dt, self._consistent = 0.0, 0.0, False
         self._F_rate = np.zeros((len(self.s), 3))
-        self.loads: Loads = self.applied.at(0.0)
         self._flows = Flows.empty(len(self.s))
         self._handed = Handed.over(*self._records)
 
@@ -87,13 +87,14 @@ class BoxMethod:
         self._last_dt, self._consistent = dt, consistent
         ahead = dt / self._taken_dt if dt <= 2.0 * self._taken_dt else 0.0
         gain = min(self._gain, LARGEST_FEEDBACK / dt)
-        self.loads = self.applied.at(t + dt)
+        self.applied.set_time(t + dt)
         stretch_feedback(self._stretch, self._stretch_before, ahead, gain, self.work.feedback)
         guess(self.state, self._F_rate, 0.0 if consistent else dt, self.trial.Y)
         self.contact.prepare(self._bending, self.state.r, self.state.Y, dt)
         self._handed = self._handed.again(*self._records)
         status, iterations = step(self._handed.reference, self.state, self.trial, self._rule, dt, self.h,
                                   self._ends(t, dt))  # fmt: skip
+        self.applied.check()
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
         return int(status), int(iterations)
 
@@ -106,8 +107,8 @@ class BoxMethod:
         force_rate(old.Y, new.Y, dt, self._F_rate)
         # a step that finds forces knows none at its begin: there those of its end count
         late = 1.0 if self._consistent else 0.5
-        enter_step(self._handed.reference, old, new, self.applied.weight, self.contact.power()[0],
-                   c0_of(self._rule, dt), dt, late, self.h, self._flows)  # fmt: skip
+        enter_step(self._handed.reference, old, new, self.contact.power()[0], c0_of(self._rule, dt), dt, late, self.h,
+                   self._flows)  # fmt: skip
         for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
             shift, turned = self._flows.moved[node, :3], self._flows.moved[node, 3:]
             end.follow(shift if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift[None])[0], turned)
@@ -161,9 +162,7 @@ class BoxMethod:
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""
-        tangent = np.empty((len(self.s), 3))
-        tangents_of(self.state.quaternion, tangent)
-        return energies(self.state, self.section, self.loads, self.applied.weight, tangent, self.h)
+        return energies(self.state, self.section, self.applied.records, self.h)
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
@@ -186,7 +185,7 @@ class BoxMethod:
     @property
     def _records(self) -> tuple[Section, Loads, Scales, Touch, Work]:
         """What the kernels of a step get by reference."""
-        return self.section, self.loads, self._scales, self.contact.touch, self.work
+        return self.section, self.applied.records, self._scales, self.contact.touch, self.work
 
     @property
     def _rule(self) -> Scheme:

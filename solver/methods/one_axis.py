@@ -11,16 +11,17 @@ from solver.kernels.handed import Handed
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.methods.space.one_axis.axis import Axis, Plane, directions
-from solver.methods.space.one_axis.balances import Driven
+from solver.methods.space.one_axis.balances import Driven, Motion
 from solver.methods.space.one_axis.chain import Chain, Stages, State, about_axis
 from solver.methods.space.one_axis.energies import energies, stage_powers
 from solver.methods.space.one_axis.motion import extrapolate, follow_segments, largest_turn
+from solver.methods.space.segments.chain import STAGES
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import SCHEME, RadauMethod
 from solver.methods.time.radau.newton import Scheme
 from solver.methods.time.radau.one_axis import Work, estimate_error, step
 from solver.physics.ends import LOAD, DrivenEnd
-from solver.physics.loads.applied import Loads
+from solver.physics.loads.registry import LoadsAbout
 from solver.scene.scene import Scene
 
 
@@ -28,19 +29,15 @@ class OneAxisMethod(RadauMethod):
     """The rigid segments and the steps of `StaggeredMethod` for a scene that turns about `axis`: the same solution."""
 
     def __init__(self, scene: Scene, axis: Axis) -> None:
-        super().__init__(scene)
+        super().__init__(scene, axis)
         N = scene.numerics.intervals
         chain, state, offset = self._lay_out(scene)
         self._axis, self._offset = axis, offset[:, axis.index].copy()
         self.chain, self.state = about_axis(axis, chain, state)
         self._origin = state.base[0] - axis.in_lab(self.state.base[0])
-        self.trial, self.stages, self.driven = State.empty(N), Stages.empty(N), Driven.empty(N)
+        self.trial, self.stages, self.driven = State.empty(N), Stages.empty(N), Driven.empty()
         self.work = Work.empty(N)
-        self._weight = self.applied.weight @ axis.lab
-        self.driven.current[:] = self._loads.current @ axis.lab
         self._condition_ends()
-        for i in range(3):
-            self._load(0.0, i)
         self._handed = Handed.over(*self._records)
         self._last = (np.zeros_like(self.stages.theta), np.zeros(3, complex), np.zeros_like(self.stages.F))
         self._centres = np.zeros((3, N), complex)
@@ -66,7 +63,7 @@ class OneAxisMethod(RadauMethod):
         From the ends, from the loads, dissipated, none into contact. By Radau's own quadrature, of order 5.
         """
         stages, weights = self.stages, tableau.A[2] * dt
-        stage_powers(self._handed.reference, self._weight, self._powers)
+        stage_powers(self._handed.reference, self._powers)
         swing = 0.5j * self.chain.h * self.chain.swing * stages.T[:, -2] * stages.omega[:, -2]
         for end, frame, V in ((self.start, 0, stages.base[:, 1]), (self.end, -1, stages.V[:, -1] + swing)):
             if end.in_lab:
@@ -114,10 +111,9 @@ class OneAxisMethod(RadauMethod):
 
     def energies(self) -> Energies:
         """The energies of the state."""
-        found = energies(self.chain, self._loads, complex(self.driven.current[0]), self._weight, self.state.phi,
-                         self.state.omega[1:-1], self._centres[:2])  # fmt: skip
-        away = self.chain.h * float(np.sum(self.applied.weight @ self._origin))
-        return found._replace(potential=found.potential - away)
+        r, V, A = self._centres
+        motion = Motion(r, V, A, self._tangents(), self.state.omega, self.chain.swing)
+        return energies(self.chain, self.applied.records, STAGES - 1, self.state.phi, motion)
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
@@ -139,9 +135,9 @@ class OneAxisMethod(RadauMethod):
         self.relative_increment(1.0)
 
     @property
-    def _records(self) -> tuple[Chain, Loads, Driven, Scheme, Stages, Work]:
+    def _records(self) -> tuple[Chain, LoadsAbout, Driven, Scheme, Stages, Work]:
         """What the kernels of a step get by reference."""
-        return self.chain, self._loads, self.driven, SCHEME, self.stages, self.work
+        return self.chain, self.applied.records, self.driven, SCHEME, self.stages, self.work
 
     def _solve(self, dt: float) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""
@@ -188,19 +184,10 @@ class OneAxisMethod(RadauMethod):
         """Write what is given at the stages of a step."""
         driven, axis = self.driven, self._axis
         for i, c in enumerate(tableau.C):
-            if not self.applied.steady:
-                self._load(t + c * dt, i)
+            self.applied.set_time(t + c * dt, i)
             for side, end, values, dead in self._ends_at(t, c * dt, dt):
                 driven.values[i, side] = values[self._components(end)]
                 driven.dead[i, side], driven.couple[i, side] = dead[:3] @ axis.lab, dead[3:] @ axis.n
-
-    def _load(self, t: float, i: int) -> None:
-        """Write the loads at time t, those of stage i."""
-        driven, axis = self.driven, self._axis
-        self._loads = self.applied.at(t)
-        lab, material = self._loads.lab, self._loads.material
-        driven.force[i], driven.following[i] = lab[:, :3] @ axis.lab, material[:, :3] @ axis.material
-        driven.moment[i] = lab[:, 3:] @ axis.n + material[:, 3 + axis.index]
 
     def _components(self, end: DrivenEnd) -> list[int]:
         """Which of an end's six conditions are not fulfilled by themselves."""

@@ -10,8 +10,8 @@ from solver.kernels.rotation import matrix_of, rotate_back
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.methods.linear.segments_contact import place_nodes
-from solver.methods.space.segments.balances import Driven
-from solver.methods.space.segments.chain import Chain, Stages, State
+from solver.methods.space.segments.balances import Driven, Motion
+from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
 from solver.methods.space.segments.energies import energies, stage_powers, twist
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
 from solver.methods.space.segments.motion import extrapolate, follow_segments, move, spin_steadily
@@ -20,7 +20,7 @@ from solver.methods.time.radau.method import SCHEME, RadauMethod
 from solver.methods.time.radau.newton import Scheme, Work, estimate_error, finish, step
 from solver.physics.contact.forces import Touch, keeps_apart
 from solver.physics.contact.self_contact import SelfContact
-from solver.physics.loads.applied import Loads
+from solver.physics.loads.registry import Loads
 from solver.scene.scene import Scene
 
 
@@ -34,8 +34,6 @@ class StaggeredMethod(RadauMethod):
         self.trial = State.empty(N)
         self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=3)
         self.stages, self.driven = Stages.empty(N), Driven.empty(N)
-        for i in range(3):
-            self._load(0.0, i)
         self.work = Work.empty(N, scene.contact is not None)
         self._handed = Handed.over(*self._records)
         self._last = (np.zeros_like(self.stages.theta), np.zeros((3, 3)), np.zeros_like(self.stages.F))
@@ -86,7 +84,7 @@ class StaggeredMethod(RadauMethod):
         """
         stages, weights = self.stages, tableau.A[2] * dt
         ends = self._end_velocities()
-        stage_powers(self._handed.reference, self.applied.weight, ends, self._powers)
+        stage_powers(self._handed.reference, ends, self._powers)
         for side, (end, frame) in enumerate(((self.start, 0), (self.end, -1))):
             velocity = ends[:, side].copy()
             if not end.in_lab:
@@ -135,8 +133,9 @@ class StaggeredMethod(RadauMethod):
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""
-        return energies(self.chain, self._loads, self._joints, self.state.omega[1:-1], self._centres[:2],
-                        self._R[1:-1, :, 2], self.applied.weight)  # fmt: skip
+        r, V, A = self._centres
+        return energies(self.chain, self.applied.records, STAGES - 1, self._joints,
+                        Motion(r, V, A, self._R, self.state.omega))  # fmt: skip
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
@@ -161,12 +160,13 @@ class StaggeredMethod(RadauMethod):
     @property
     def _records(self) -> tuple[Chain, Loads, Driven, Scheme, Stages, Touch, Work]:
         """What the kernels of a step get by reference."""
-        return self.chain, self._loads, self.driven, SCHEME, self.stages, self.contact.touch, self.work
+        return self.chain, self.applied.records, self.driven, SCHEME, self.stages, self.contact.touch, self.work
 
     def _solve(self, dt: float) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""
         self._handed = self._handed.again(*self._records)
         status, iterations = step(self._handed.reference, dt, self._unit, self._newton_part, self.state)
+        self.applied.check()
         return int(status), int(iterations)
 
     def _errors(self, dt: float) -> tuple[float, float, float, float]:
@@ -226,18 +226,12 @@ class StaggeredMethod(RadauMethod):
         self.stages.shift[:] = 0.0
         self.stages.F[:] = self.state.F
 
-    def _load(self, t: float, i: int) -> None:
-        """Write the loads at time t, those of stage i."""
-        self._loads = self.applied.at(t)
-        self.driven.lab[i], self.driven.material[i] = self._loads.lab, self._loads.material
-
     def _drive(self, t: float, dt: float) -> None:
         """Write what is given at the stages of a step."""
         driven = self.driven
         driven.push[:] = 0.0
         for i, c in enumerate(tableau.C):
-            if not self.applied.steady:
-                self._load(t + c * dt, i)
+            self.applied.set_time(t + c * dt, i)
             for side, end, values, dead in self._ends_at(t, c * dt, dt):
                 driven.values[i, side], driven.dead[i, side] = values, dead
                 driven.kinds[side] = end.kinds

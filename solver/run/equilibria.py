@@ -11,6 +11,7 @@ from solver.kernels.kernel import compile_apart
 from solver.kernels.rotation import rotate, rotate_back
 from solver.measures.frame import Fields, Frame, Statistics
 from solver.measures.topology import writhe
+from solver.methods.space.segments.balances import motion_at
 from solver.methods.space.segments.energies import energies, twist
 from solver.methods.staggered import orientations_at_nodes
 from solver.run.run import Run
@@ -86,9 +87,8 @@ class Equilibria(Run):
         equations, path, point = self._equations, self._path, self._path.point
         equations.linearise(point)
         fields = self._fields(point)
-        stages, weight = equations.stages, equations.applied.weight
-        energy = energies(equations.chain, equations.loads, stages.bend[0], stages.omega[0, 1:-1],
-                          np.stack([stages.r[0], stages.V[0]]), stages.R[0, 1:-1, :, 2], weight)  # fmt: skip
+        stages = equations.stages
+        energy = energies(equations.chain, equations.loads, 0, stages.bend[0], motion_at(stages, 0))
         return Frame(
             t=t, **fields._asdict(), energy_bending=energy.bending, energy_torsion=energy.torsion, energy_kinetic=0.0,
             energy_added_mass=0.0, energy_potential=energy.potential, energy_contact=0.0,

@@ -6,8 +6,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
 
+import numpy as np
+
 from solver.scene.curve import Curve
 from solver.scene.loads import Frame_
+from solver.scene.view import NONE, View
 
 
 @dataclass(frozen=True)
@@ -81,3 +84,23 @@ class End:
     def free(cls) -> End:
         """No force, no moment."""
         return cls((FREE, FREE, FREE), (FREE, FREE, FREE))
+
+    def keeps(self, view: View) -> bool:
+        """Whether the end asks for no motion and no load but along the motion about an axis, at all times."""
+        moves = view.moves
+        if self.frame == "lab":
+            along = np.abs(view.n) > 0.5
+            if np.abs(np.abs(view.n) - along).max() > NONE:
+                return False
+            moves = along if view.index == 2 else ~along
+        asked = [*zip(self.translation, moves, strict=True), *zip(self.rotation, view.turns, strict=True)]
+        return all(allowed or _is_nothing(component) for component, allowed in asked)
+
+
+def _is_nothing(component: Component) -> bool:
+    """Whether the conditions ask for rest and no load at all times."""
+    return all(_is_rest(condition.kind, condition.curve) for condition in component)
+
+
+def _is_rest(kind: str, curve: Curve) -> bool:
+    return kind == "stop" or (curve.is_constant if kind == "position" else curve.is_zero)

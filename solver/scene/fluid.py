@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.scene.checks import require_finite
+from solver.scene.view import View
 
 
 @dataclass(frozen=True)
@@ -30,3 +31,7 @@ class Fluid:
             if not (np.isfinite(value) and value >= 0):
                 raise ValueError(f"fluid {name} must be >= 0, got {value}")
         require_finite("fluid current", self.current)
+
+    def keeps(self, view: View) -> bool:
+        """Whether the current flows along the motion about an axis."""
+        return view.moved_by(self.current)

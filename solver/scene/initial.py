@@ -9,9 +9,11 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from solver.arrays import Array
+from solver.kernels.rotation import rotate
 from solver.scene.checks import require_finite
 from solver.scene.curve import Curve
 from solver.scene.rod import Profile
+from solver.scene.view import NONE, View
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,14 @@ class Initial:
     def __post_init__(self) -> None:
         for name in ("a1", "velocity", "angular_velocity"):
             require_finite(f"initial {name}", getattr(self, name))
+
+    def keeps(self, view: View) -> bool:
+        """Whether the rod lies, and is thrown, along the motion about an axis."""
+        still = rotate(view.quaternion, np.tile(np.eye(3)[view.index], (len(view.s), 1)))
+        bends = np.abs(view.kappa[:, ~view.turns]).max() * view.s[2]
+        if np.abs(still - still[0]).max() > NONE or bends > NONE:
+            return False
+        return view.moved_by(self.velocity) and view.turned_by(self.angular_velocity)
 
     @classmethod
     def straight(

@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
+
 from solver.scene.curve import Curve, Vector, constant_vector
 from solver.scene.rod import Profiles
+from solver.scene.view import View, at_all_times
 
 Frame_ = Literal["material", "lab"]
 ZERO: Vector = constant_vector((0.0, 0.0, 0.0))
@@ -21,6 +24,11 @@ class DistributedLoad:
     frame: Frame_ = "lab"
     schedule: Curve = field(default_factory=lambda: Curve.constant(1.0))
 
+    def keeps(self, view: View) -> bool:
+        """Whether force and moment act along the motion about an axis."""
+        force, moment = (np.stack([p(view.s) for p in profiles], axis=1) for profiles in (self.force, self.moment))
+        return view.moved_by(force, self.frame) and view.turned_by(moment, self.frame)
+
 
 @dataclass(frozen=True)
 class PointLoad:
@@ -30,3 +38,8 @@ class PointLoad:
     force: Vector = ZERO
     moment: Vector = ZERO
     frame: Frame_ = "lab"
+
+    def keeps(self, view: View) -> bool:
+        """Whether force and moment act along the motion about an axis, at all times."""
+        force, moment = at_all_times(self.force), at_all_times(self.moment)
+        return view.moved_by(force, self.frame) and view.turned_by(moment, self.frame)

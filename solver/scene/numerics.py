@@ -33,6 +33,10 @@ class Numerics:
     most_intervals: int = 2000
     verify: bool = False
 
+    def keeps(self, _view: object) -> bool:
+        """How equations are solved has no direction."""
+        return True
+
     def __post_init__(self) -> None:
         intervals: object = self.intervals  # whatever it was promised to be
         if isinstance(intervals, bool) or not isinstance(intervals, Integral) or int(intervals) < 2:

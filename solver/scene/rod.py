@@ -10,6 +10,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.scene.curve import Curve
+from solver.scene.view import NONE, View
 
 Profile = Callable[[Array], Array]
 """A property along the rod: maps arclengths s (n,) in m to values (n,). A `Curve` is one."""
@@ -51,6 +52,11 @@ class Rod:
             if not np.isfinite(values).all():
                 wrong = values[~np.isfinite(values)][0]
                 raise ValueError(f"kappa0[{i}] must be finite everywhere along the rod, got {wrong}")
+
+    def keeps(self, view: View) -> bool:
+        """Whether the rod is free of stress along the motion about an axis."""
+        kappa0 = np.stack([p(view.s) for p in self.kappa0], axis=1)
+        return bool(np.abs(kappa0[:, ~view.turns]).max() * self.length <= NONE)
 
     @classmethod
     def circular(

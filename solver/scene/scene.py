@@ -6,7 +6,7 @@ Lab frame: e1, e2, e3. An end condition or a load says in which frame its compon
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Literal
 
 import numpy as np
@@ -19,6 +19,8 @@ from solver.scene.initial import Initial
 from solver.scene.loads import DistributedLoad, PointLoad
 from solver.scene.numerics import Numerics
 from solver.scene.rod import Rod
+from solver.scene.user import UserLoad
+from solver.scene.view import View, answer
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,8 @@ class Scene:
     """Viscous damping c (1/s): B = -c rho_c A v, Q = -c I omega."""
     fluid: Fluid | None = None
     contact: Contact | None = None
+    user: tuple[UserLoad, ...] = ()
+    """Loads of the user's own."""
     numerics: Numerics = field(default_factory=Numerics)
     topology: bool = True
     """Whether the frames carry Wr and Lk."""
@@ -60,6 +64,11 @@ class Scene:
             if not 0 <= load.s <= self.rod.length:
                 raise ValueError(f"s of a point load must be in [0, {self.rod.length}] m, got {load.s}")
             self._check_frame(load)
+
+    def keeps(self, view: View) -> bool:
+        """Whether all of the scene keeps the motion about an axis."""
+        parts = [getattr(self, part.name) for part in fields(self) if part.name != "gravity"]
+        return view.moved_by(self.gravity) and all(answer(part, view) for part in parts)
 
     def _check_frame(self, load: PointLoad) -> None:
         """A force that follows the rod cannot be added to a condition on the components of f along lab axes."""

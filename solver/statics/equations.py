@@ -20,11 +20,9 @@ from solver.kernels.kernel import kernel
 from solver.kernels.rotation import matrix_of, relative_rotation, turn
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, segment_tangents
 from solver.methods.space.segments.chain import Chain, Residuals, Stages
-from solver.methods.space.segments.initial import chain_of, lay_out
+from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.segments.joints import bend_joints
 from solver.methods.space.segments.motion import follow_segments
-from solver.physics.loads.applied import AppliedLoads
-from solver.physics.section import sample
 from solver.scene.scene import Scene
 from solver.statics.ends import StaticEnd
 
@@ -75,11 +73,9 @@ class Equations:
     def __init__(self, scene: Scene) -> None:
         N, length = scene.numerics.intervals, float(scene.rod.length)
         self.s, self.t_end = np.linspace(0.0, length, N + 1), scene.t_end
-        middles = 0.5 * (self.s[1:] + self.s[:-1])
-        section = sample(scene.rod, middles)
-        self.applied = AppliedLoads(scene, section, middles, (middles, np.full(N, length / N)))
-        self.loads = self.applied.at(0.0)
-        self.chain = chain_of(scene.rod, section, self.loads.added_mass, self.s)
+        self.applied = loads_on_segments(scene, self.s, times=1)
+        self.loads = self.applied.records
+        self.chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
         state, self.offset = lay_out(scene.initial, self.chain, self.s)
         self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
         self.stages, self.tangents = Stages.empty(N), Tangents.empty(N)
@@ -114,9 +110,9 @@ class Equations:
         t, stages, driven = self.time(point.q), self.stages, self._driven
         _lay_down(self.chain, point.quaternion, point.base, stages)
         stages.F[0] = point.F
-        self.loads = self.applied.at(t)
-        driven.lab[0], driven.material[0] = self.loads.lab, self.loads.material
+        self.applied.set_time(t)
         balance_segments(self.chain, self.loads, driven, stages, self._residuals, 0)
+        self.applied.check()
         left = np.zeros((len(point.quaternion), BLOCK))
         left[1:-1, PSI], left[1:-1, X] = self._residuals.rotation[0, 1:-1], self._residuals.translation[0]
         for side in (0, 1):
@@ -188,7 +184,7 @@ class Equations:
         D[:, PSI, PSI], lower[:, PSI, PSI], upper[:, PSI, PSI] = T.stiff, T.before, T.behind
         D[:, PSI, PSI] += SOFTEST * self.stiffness * self.chain.h / self.s[-1] ** 2 * one
         D[1:, PSI, FORCE], upper[:-1, PSI, FORCE] = lever[1:], lever[:-1]
-        D[1:-1, X, PSI] = -T.E
+        D[1:-1, X, PSI], D[1:-1, X, X] = -T.E, T.K
         D[1:, X, FORCE], upper[:-1, X, FORCE] = one, -one
         D[1:, FORCE, PSI], lower[1:, FORCE, PSI] = lever[1:].transpose(0, 2, 1), lever[:-1].transpose(0, 2, 1)
         D[1:, FORCE, X], lower[1:, FORCE, X] = one, -one

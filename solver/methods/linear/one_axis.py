@@ -1,7 +1,7 @@
 """Newton's linear system about one axis: that of `staggered.tridiagonal` with 3 x 3 blocks.
 
 Unknown at block a = 0 ... N + 1: the rotation psi of orientation a and the force F at node a, as a pair (none in the
-last block). With P = M lambda^2 + C lambda, along T and across it, and X = P^-1 in the lab, a segment moves by
+last block). With P = M lambda^2 + C lambda + K and X = P^-1, a segment moves by
 
     delta r_j = X (delta F_j+1 - delta F_j + E psi - residual).
 """
@@ -48,13 +48,11 @@ def _translate(tangents: Tangents, eigenvalue: complex, factors: Factors) -> Non
     """Write X and Y of all segments."""
     square = eigenvalue * eigenvalue
     for j in range(len(tangents.M)):
-        T, E, X, Y = tangents.T[j + 1], tangents.E[j], factors.X[j], factors.Y[j]
-        a = 1.0 / (tangents.M[j, 0] * square + tangents.C[j, 0] * eigenvalue)
-        b = 1.0 / (tangents.M[j, 1] * square + tangents.C[j, 1] * eigenvalue)
-        X[0, 0] = a * T.real**2 + b * T.imag**2
-        X[0, 1] = (a - b) * T.real * T.imag
-        X[1, 0] = X[0, 1]
-        X[1, 1] = a * T.imag**2 + b * T.real**2
+        M, C, K, E, X, Y = tangents.M[j], tangents.C[j], tangents.K[j], tangents.E[j], factors.X[j], factors.Y[j]
+        a, b = M[0, 0] * square + C[0, 0] * eigenvalue + K[0, 0], M[0, 1] * square + C[0, 1] * eigenvalue + K[0, 1]
+        c, d = M[1, 0] * square + C[1, 0] * eigenvalue + K[1, 0], M[1, 1] * square + C[1, 1] * eigenvalue + K[1, 1]
+        inverse = 1.0 / (a * d - b * c)
+        X[0, 0], X[0, 1], X[1, 0], X[1, 1] = d * inverse, -b * inverse, -c * inverse, a * inverse
         Y[0], Y[1] = X[0, 0] * E.real + X[0, 1] * E.imag, X[1, 0] * E.real + X[1, 1] * E.imag
 
 

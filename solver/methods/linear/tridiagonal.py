@@ -1,7 +1,7 @@
 """Newton's linear system: 6 x 6 block tridiagonal, for one eigenvalue lambda of the time scheme, real or complex.
 
 Unknown at block a = 0 ... N + 1: the rotation psi of orientation a and the force F at node a (none in the last block).
-A segment's displacement is eliminated by its own balance: with P = M lambda^2 + C lambda and X = P^-1,
+A segment's displacement is eliminated by its own balance: with P = M lambda^2 + C lambda + K and X = P^-1,
 
     delta r_j = X (delta F_j+1 - delta F_j + E psi - residual),
 
@@ -72,7 +72,7 @@ def _translate(chain: Chain, tangents: Tangents, eigenvalue: complex, P: Array, 
     for j in range(len(chain.mass)):
         for k in range(3):
             for m in range(3):
-                P[k, m] = tangents.M[j, k, m] * square + tangents.C[j, k, m] * eigenvalue
+                P[k, m] = tangents.M[j, k, m] * square + tangents.C[j, k, m] * eigenvalue + tangents.K[j, k, m]
         invert3(P, factors.X[j])
         X, Y = factors.X[j], factors.Y[j]
         for k in range(3):

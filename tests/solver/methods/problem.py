@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver import Contact, Initial, Numerics, Rod, Scene
+from solver import Contact, Fluid, Initial, Numerics, Rod, Scene, UserLoad
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.methods.box import _initial_state
@@ -28,7 +28,8 @@ from solver.methods.time.generalized_alpha.newton import (
 )
 from solver.physics.contact.forces import change_forces, touching
 from solver.physics.contact.self_contact import SelfContact
-from solver.physics.loads.applied import Loads
+from solver.physics.loads.applied import AppliedLoads
+from solver.physics.loads.registry import Loads
 from solver.physics.section import Section, sample
 from solver.scene.curve import Curve
 from solver.scene.ends import End
@@ -172,12 +173,17 @@ def problem(
     dt: float = 0.02,
     diameter: float = 0.004,
     seed: int = 1,
-    **loads: object,
+    damping: float = 0.0,
+    fluid: Fluid | None = None,
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    user: tuple[UserLoad, ...] = (),
+    **loads: tuple[Array, Array],
 ) -> Problem:
-    """A step with a random past and a random iterate; `loads` replaces fields of `Loads` (all are zero)."""
+    """A step with a random past and a random iterate; `loads`: forces and moments (n, 3) of given loads by name."""
     random = np.random.default_rng(seed)
     numerics = Numerics(intervals=intervals, rho_inf=0.6, rho_inf_space=rho_inf_space)
-    scene = Scene(rod(diameter), two_turns(), End.clamp(), End.clamp(), 1.0, 1.0, contact=contact, numerics=numerics)
+    scene = Scene(rod(diameter), two_turns(), End.clamp(), End.clamp(), 1.0, 1.0, contact=contact, numerics=numerics,
+                  damping=damping, fluid=fluid, gravity=gravity, user=user)  # fmt: skip
     n, s, h = intervals + 1, np.linspace(0.0, LENGTH, intervals + 1), LENGTH / intervals
     section = sample(scene.rod, s)
     old, new = _initial_state(scene.initial, s, section)[0], State.empty(n)
@@ -186,8 +192,10 @@ def problem(
     old.rate[:] = natural[:9] * random.normal(size=(n, 9))
     old.aux[:] = np.concatenate([natural[:6], natural[:9]]) * random.normal(size=(n, 15))
     new.Y[:] = old.Y + 0.1 * natural * random.normal(size=(n, 12))
-    none = Loads(np.zeros((n, 6)), np.zeros((n, 6)), False, False, 0.0, np.zeros(n), np.zeros(n), np.zeros(n),
-                 np.zeros(3), False)  # fmt: skip
+    records = AppliedLoads(scene, section, s).records
+    for name, (force, moment) in loads.items():
+        kind = type(getattr(records, name))
+        records = records._replace(**{name: kind(True, force[None].copy(), moment[None].copy())})
     values = [np.where(kind % 2 == 1, 1e-4, natural[:6]) * random.normal(size=6) for kind in kinds]
     dead = [1e-4 * random.normal(size=6), 1e-4 * random.normal(size=6)]
     ends = EndValues(kinds[0], values[0], dead[0], kinds[1], values[1], dead[1])
@@ -200,4 +208,4 @@ def problem(
     touching = SelfContact(contact, scene.rod, s, stages=1)
     if contact is not None:
         touching.prepare(total_bending(old.Y, float(s[1])), old.r, old.Y, dt)
-    return Problem(old, new, section, none._replace(**loads), ends, scheme, dt, work, touching, h)  # type: ignore[arg-type]
+    return Problem(old, new, section, records, ends, scheme, dt, work, touching, h)

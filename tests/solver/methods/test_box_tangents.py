@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from solver import Contact
+from solver import Contact, Fluid, UserLoad
+from solver.arrays import Array
 from tests.solver.methods.problem import Problem, problem
 
 N = 12
@@ -20,18 +21,31 @@ def error(case: Problem) -> float:
     return float((np.abs(analytic - differences).max(axis=1) / np.abs(analytic).max(axis=1)).max())
 
 
+DENSITY = 1000.0
+"""Of a fluid, kg/m^3."""
+
+
+class Bed(UserLoad):
+    """A bed that is pressed in, and rubs."""
+
+    account = "lost"
+
+    def force(self, t: float, s: Array, r: Array, V: Array) -> Array:
+        depth = 0.05 - r[:, 2:]
+        return np.where(depth > 0.0, 40.0 * depth**2 * (np.array([0.0, 0.0, 1.0]) - 0.3 * V), 0.0)
+
+
 TERMS: dict[str, dict[str, object]] = {
     "inertia and elasticity alone": {},
-    "dead forces and moments": {"lab": RANDOM.normal(size=(N + 1, 6)), "turns": True},
-    "following forces and moments": {"material": RANDOM.normal(size=(N + 1, 6)), "follows": True},
+    "weight": {"gravity": (1.0, -2.0, 3.0)},
+    "dead forces and moments": {"dead": RANDOM.normal(size=(2, N + 1, 3))},
+    "following forces and moments": {"following": RANDOM.normal(size=(2, N + 1, 3))},
     "damping": {"damping": 3.0},
-    "added mass": {"added_mass": np.full(N + 1, 0.02), "wet": True},
-    "normal drag": {"drag_normal": np.full(N + 1, 0.4), "wet": True},
-    "tangential drag": {"drag_tangential": np.full(N + 1, 0.4), "wet": True},
-    "drag in a current": {
-        "drag_normal": np.full(N + 1, 0.4), "drag_tangential": np.full(N + 1, 0.1), "added_mass": np.full(N + 1, 0.02),
-        "current": np.array([0.1, -0.2, 0.3]), "wet": True,
-    },
+    "added mass": {"fluid": Fluid(DENSITY, added_mass=1.0)},
+    "normal drag": {"fluid": Fluid(DENSITY, drag_normal=0.2)},
+    "tangential drag": {"fluid": Fluid(DENSITY, drag_tangential=0.06)},
+    "drag in a current": {"fluid": Fluid(DENSITY, 1.0, 0.2, 0.016, (0.1, -0.2, 0.3))},
+    "a user's load by place and velocity": {"user": (Bed(),)},
 }  # fmt: skip
 
 

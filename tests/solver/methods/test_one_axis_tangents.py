@@ -14,7 +14,8 @@ from solver.methods.one_axis import OneAxisMethod
 from solver.methods.space.one_axis.axis import axis_of
 from solver.methods.space.one_axis.balances import balance, tangents_at
 from solver.physics.ends import LOAD, LOAD_LAB, RATE, RATE_LAB
-from solver.physics.loads.applied import Loads
+from solver.physics.loads.following import Record as Following
+from solver.physics.loads.registry import LoadsAbout
 from tests.solver.scenes import ROD
 
 N, STAGE, STEP = 5, 1, 1e-6
@@ -33,7 +34,7 @@ class Problem:
     """One stage of a chain in an arbitrary state."""
 
     method: OneAxisMethod
-    loads: Loads
+    loads: LoadsAbout
 
     def residuals(self) -> Array:
         """Of rotation (N + 2), of translation (N, 2), and of the ends (2, 2), one after the other."""
@@ -59,15 +60,15 @@ def problem(kinds: str, fluid: Fluid | None) -> Problem:
     axis = axis_of(scene)
     assert axis is not None
     method = OneAxisMethod(scene, axis)
-    stages, driven = method.stages, method.driven
+    stages, driven, following = method.stages, method.driven, np.zeros((3, N), complex)
     for array in (stages.phi, stages.omega, stages.alpha, stages.V, stages.A, stages.base):
         array[:] = random.normal(size=array.shape)
     for array in (stages.V, stages.A, stages.base):
         array += 1j * random.normal(size=array.shape)
-    for array in (stages.F, driven.force, driven.following, driven.dead):
+    for array in (stages.F, driven.dead, following):
         array[:] = FORCE * (random.normal(size=array.shape) + 1j * random.normal(size=array.shape))
     driven.kinds[:] = KINDS[kinds]
-    found = Problem(method, method.applied.at(0.0)._replace(follows=True))
+    found = Problem(method, method.applied.records._replace(following=Following(True, following, np.zeros((3, N)))))
     found.residuals()
     tangents_at(method.chain, found.loads, driven, stages, STAGE, method.work.tangents)
     return found
@@ -108,14 +109,13 @@ def test_the_tangents_by_rates_are_derivatives(fluid: Fluid | None) -> None:
     case = problem("free", fluid)
     chain, stages, tangents = case.method.chain, case.method.stages, case.method.work.tangents
     for array, blocks in ((stages.V, tangents.C), (stages.A, tangents.M)):
-        for side, direction in ((0, 1.0), (1, 1j)):
-            T = direction * tangents.T[1:-1]
+        for side, T in ((0, 1.0), (1, 1j)):
 
-            def push(step: float, array: Array = array, T: Array = T) -> None:
+            def push(step: float, array: Array = array, T: complex = T) -> None:
                 array[STAGE] += step * T
 
             found = case.changed(push)[N + 2 : -4].reshape(N, 2)
-            assert np.abs(found - pairs(blocks[:, side] * T)).max() <= LARGEST_ERROR * np.abs(blocks).max()
+            assert np.abs(found - blocks[:, :, side]).max() <= LARGEST_ERROR * np.abs(blocks).max()
     for rates, expected in ((stages.omega, tangents.spin), (stages.alpha, chain.h * chain.inertia)):
         def spin(step: float, rates: Array = rates) -> None:
             rates[STAGE] += step

@@ -13,19 +13,18 @@ from solver.kernels.rotation import matrix_of, turn
 from solver.methods.space.segments.balances import balance_segments, condition_ends, segment_tangents
 from solver.methods.space.segments.joints import bend_joints
 from solver.methods.staggered import StaggeredMethod
-from solver.physics.loads.applied import Loads
+from solver.physics.loads.registry import Loads
 from tests.solver.scenes import ROD
 
 N, STAGE, STEP = 5, 1, 1e-6
 FORCE = 1e-3
 LARGEST_ERROR = 1e-7
 
-TERMS: dict[str, dict[str, object]] = {
-    "nothing else": {},
-    "damping": {"damping": 0.7},
-    "following forces and moments": {"follows": True},
-    "moments in the lab frame": {"turns": True},
-    "all of them": {"damping": 0.7, "follows": True, "turns": True},
+TERMS = {
+    "nothing else": (),
+    "damping": ("damping",),
+    "following forces and moments": ("following", "dead"),
+    "all of them": ("damping", "following", "dead"),
 }
 KINDS = {
     "held": [[0] * 6, [0] * 6],
@@ -82,6 +81,7 @@ class Problem:
 def problem(term: str, kinds: str, fluid: Fluid | None = None) -> Problem:
     random = np.random.default_rng(7)
     scene = Scene(ROD, Initial.straight(), End.clamp(), End.free(), 1.0, 1.0, fluid=fluid,
+                  damping=0.7 if "damping" in TERMS[term] else 0.0,
                   numerics=Numerics(method="staggered", intervals=N))  # fmt: skip
     method = StaggeredMethod(scene)
     stages, driven = method.stages, method.driven
@@ -90,10 +90,14 @@ def problem(term: str, kinds: str, fluid: Fluid | None = None) -> Problem:
         matrix_of(stages.quaternion[STAGE, a], stages.R[STAGE, a])
     for array in (stages.omega, stages.alpha, stages.V, stages.A, stages.base):
         array[STAGE] = random.normal(size=array[STAGE].shape)
-    for array in (stages.F, driven.dead, driven.lab, driven.material, driven.push):
+    for array in (stages.F, driven.dead, driven.push):
         array[:] = FORCE * random.normal(size=array.shape)
     driven.kinds[:] = KINDS[kinds]
-    found = Problem(method, method.applied.at(0.0)._replace(**TERMS[term]))
+    loads = method.applied.records
+    for name in {"following", "dead"}.intersection(TERMS[term]):
+        arrays = (FORCE * random.normal(size=array.shape) for array in getattr(loads, name)[1:])
+        loads = loads._replace(**{name: type(getattr(loads, name))(True, *arrays)})
+    found = Problem(method, loads)
     found.residuals()
     segment_tangents(method.chain, found.loads, driven, stages, STAGE, method.work.tangents)
     return found

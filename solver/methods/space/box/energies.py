@@ -6,31 +6,39 @@ bending, torsion and kinetic energy is conserved by the discretization in space.
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
 from solver.arrays import Array
+from solver.kernels.forms import for_each_field
 from solver.kernels.kernel import kernel
+from solver.kernels.rotation import matrices_of
+from solver.kernels.vectors import dot, plus
 from solver.measures.energies import Energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, State, V
-from solver.physics.loads.applied import Loads
+from solver.methods.space.box.nodes import Motion
+from solver.physics.loads.load import energy, entrained, point, prepare
+from solver.physics.loads.registry import Loads
 from solver.physics.section import Section
 
 
-def energies(state: State, section: Section, loads: Loads, weight: Array, tangent: Array, h: float) -> Energies:
-    """The energies at a state; `weight` (n, 3) in N/m is what the potential comes from, `tangent` (n, 3)."""
-    return Energies(*_integrate(state, section, loads, weight, tangent, h))
+def energies(state: State, section: Section, loads: Loads, h: float) -> Energies:
+    """The energies at a state."""
+    R, by_loads = np.empty((len(state.r), 3, 3)), np.zeros(2)
+    matrices_of(state.quaternion, R)
+    _sum_loads(state, R, loads, h, by_loads)
+    bending, torsion, kinetic = _integrate(state, section, h)
+    return Energies(bending, torsion, kinetic, added_mass=float(by_loads[1]), potential=float(by_loads[0]))
 
 
 @kernel
-def _integrate(state: State, section: Section, loads: Loads, weight: Array, tangent: Array,
-               h: float) -> tuple[float, float, float, float, float]:  # fmt: skip
-    """The energies in their order: each interval's mean density, of mean strains and velocities."""
-    Y, kappa0, T = state.Y, section.kappa0, tangent
-    bending, torsion, kinetic, added, potential = 0.0, 0.0, 0.0, 0.0, 0.0
+def _integrate(state: State, section: Section, h: float) -> tuple[float, float, float]:
+    """Bending, torsion and motion: each interval's mean density, of mean strains and velocities."""
+    Y, kappa0 = state.Y, section.kappa0
+    bending, torsion, kinetic = 0.0, 0.0, 0.0
     for j in range(len(Y) - 1):
-        mass, added_mass = section.mass[j] + section.mass[j + 1], loads.added_mass[j] + loads.added_mass[j + 1]
-        along, along_next = 0.0, 0.0
-        for i in range(3):
-            along += T[j, i] * (Y[j, V + i] - loads.current[i])
-            along_next += T[j + 1, i] * (Y[j + 1, V + i] - loads.current[i])
+        mass = section.mass[j] + section.mass[j + 1]
         for i in range(3):
             stiffness = section.stiffness[j, i] + section.stiffness[j + 1, i]
             strain = Y[j, KAPPA + i] - kappa0[j, i] + Y[j + 1, KAPPA + i] - kappa0[j + 1, i]
@@ -41,8 +49,41 @@ def _integrate(state: State, section: Section, loads: Loads, weight: Array, tang
             velocity, omega = Y[j, V + i] + Y[j + 1, V + i], Y[j, OMEGA + i] + Y[j + 1, OMEGA + i]
             kinetic += mass * velocity * velocity
             kinetic += (section.inertia[j, i] + section.inertia[j + 1, i]) * omega * omega
-            across = velocity - 2.0 * loads.current[i] - along * T[j, i] - along_next * T[j + 1, i]
-            added += added_mass * across * across
-            potential -= (weight[j, i] + weight[j + 1, i]) * (state.r[j, i] + state.r[j + 1, i])
     part = 0.0625 * h  # 1/2, and three means of two
-    return part * bending, part * torsion, part * kinetic, part * added, 0.25 * h * potential
+    return part * bending, part * torsion, part * kinetic
+
+
+@kernel
+def _sum_loads(state: State, R: Array, loads: Loads, h: float, out: Array) -> None:
+    """Write the potential energy of the loads, and the kinetic energy of the mass that they entrain, into `out`."""
+    add_energies(loads, Motion(state.r, state.Y, state.aux, R, 0.0), h, out)
+
+
+@kernel
+def _add_energies(load: Any, motion: Motion, h: float, out: Array) -> None:
+    """Means of the nodes' potential energies; entrained mass moves with the mean of the nodes' velocities."""
+    prepare(load, 0, motion, False)
+    at = point(motion, 0)
+    stored, moving = energy(load, 0, 0, at), entrained(load, 0, at)
+    for j in range(1, len(motion.r)):
+        at = point(motion, j)
+        behind, following = energy(load, 0, j, at), entrained(load, j, at)
+        out[0] += 0.5 * h * (stored + behind)
+        out[1] += h * mean_motion(moving, following)
+        stored, moving = behind, following
+
+
+@kernel
+def mean_motion(left: Any, right: Any) -> float:
+    """The kinetic energy per length of mass entrained between two nodes, of `load.entrained`."""
+    if left is None:
+        return 0.0
+    velocity = plus(left[1], right[1])
+    return float(0.0625 * (left[0] + right[0]) * dot(velocity, velocity))
+
+
+def add_energies(loads: Loads, motion: Motion, h: float, out: Array) -> None:
+    """Add the energies of every load that is present."""
+
+
+for_each_field(add_energies, _add_energies)

@@ -40,17 +40,15 @@ class State(NamedTuple):
 class Nodes(NamedTuple):
     """What the nodes bring to the balances, at the current iterate, and its tangents.
 
-    (n, 3): `T` = R a3 (lab); `P` = rho_c A dV/dt - B (lab); `q` moment (material); `W` = I omega_t + omega x I omega
+    (n, 3): `P` = rho_c A dV/dt - B (lab); `q` moment (material); `W` = I omega_t + omega x I omega
     - Q (material). (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V or omega (`w`)).
     """
 
     R: Array
     J: Array
-    T: Array
     P: Array
     q: Array
     W: Array
-    T_w: Array
     P_V: Array
     P_w: Array
     W_w: Array
@@ -58,7 +56,7 @@ class Nodes(NamedTuple):
     @classmethod
     def empty(cls, n: int) -> Nodes:
         """Zeros for n nodes."""
-        return cls(*(np.zeros((n, 3) if name in ("T", "P", "q", "W") else (n, 3, 3)) for name in cls._fields))
+        return cls(*(np.zeros((n, 3) if name in ("P", "q", "W") else (n, 3, 3)) for name in cls._fields))
 
 
 class Wide(NamedTuple):

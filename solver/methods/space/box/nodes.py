@@ -1,11 +1,15 @@
 """The physics at a node: frames, inertia, moments and loads at the current iterate, with their tangents.
 
-What not every scene has is added in loops of its own: within the others it slows down scenes without it, too.
+What not every scene has is added in loops of its own: within the others it slows down scenes without it, too. How a
+load's tangents become derivatives by the unknowns V and omega is said in `_take_tangents`, and nowhere else.
 """
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 from solver.arrays import Array
+from solver.kernels.forms import forms_of
 from solver.kernels.kernel import kernel
 from solver.kernels.lanes import LANES, gather, scatter
 from solver.kernels.rotation import (
@@ -18,31 +22,21 @@ from solver.kernels.rotation import (
     unit,
 )
 from solver.kernels.scratch import scratch
+from solver.kernels.vectors import add_matrix, add_product, add_vector, matrix, tangent_by_rotation, vector
 from solver.methods.space.box.fields import KAPPA, OMEGA, Nodes, State, V
-from solver.physics.loads.applied import Loads
-from solver.physics.loads.fluid import add_added_mass, add_drag
+from solver.physics.loads.load import Point, Tangents, add_forces, add_tangents, point, take_force, take_tangents
+from solver.physics.loads.registry import Loads
 from solver.physics.section import Section
 
 
 @kernel
-def rotation_tangent(R: Array, x: Array, J: Array, out: Array) -> None:
-    """Write d(R x)/d omega = -R [x] J into `out` (3, 3), for a material vector x held fixed."""
-    for i in range(3):
-        a = x[1] * R[i, 2] - x[2] * R[i, 1]
-        b = x[2] * R[i, 0] - x[0] * R[i, 2]
-        c = x[0] * R[i, 1] - x[1] * R[i, 0]
-        for k in range(3):
-            out[i, k] = a * J[0, k] + b * J[1, k] + c * J[2, k]
-
-
-@kernel
 def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) -> None:
-    """Write positions and orientations of `new` and the nodes' R, J, T with its tangent.
+    """Write positions and orientations of `new` and the nodes' R and J.
 
     Eight abreast (see `lanes`), in rows from 0: r; 3: theta, cos, sinc, |theta|^2; 9: what J is of; 11: quaternion;
-    15: R; 24: J; 33: dT; and in the end T from 6.
+    15: R; 24: J.
     """
-    n, scale, rows = len(past), 1.0 / c0, scratch((42, LANES))
+    n, scale, rows = len(past), 1.0 / c0, scratch((33, LANES))
     for first in range(0, n, LANES):
         gather(past, 6, first, rows, 0)
         gather(new.Y, 6, first, rows, 6)  # V and omega
@@ -71,94 +65,100 @@ def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) ->
             rows[24, m], rows[25, m], rows[26, m] = J00, J01, J02
             rows[27, m], rows[28, m], rows[29, m] = J10, J11, J12
             rows[30, m], rows[31, m], rows[32, m] = scale * J20, scale * J21, scale * J22
-            # T = R a3, T_w = R [J1, -J0, 0]
-            rows[33, m], rows[34, m], rows[35, m] = R00 * J10 - R01 * J00, R00 * J11 - R01 * J01, R00 * J12 - R01 * J02
-            rows[36, m], rows[37, m], rows[38, m] = R10 * J10 - R11 * J00, R10 * J11 - R11 * J01, R10 * J12 - R11 * J02
-            rows[39, m], rows[40, m], rows[41, m] = R20 * J10 - R21 * J00, R20 * J11 - R21 * J01, R20 * J12 - R21 * J02
-            rows[6, m], rows[7, m], rows[8, m] = R02, R12, R22
         scatter(rows, 0, 3, first, new.r)
-        scatter(rows, 6, 3, first, nodes.T)
         scatter(rows, 11, 4, first, new.quaternion)
         scatter(rows, 15, 9, first, nodes.R.reshape(n, 9))
         scatter(rows, 24, 9, first, nodes.J.reshape(n, 9))
-        scatter(rows, 33, 9, first, nodes.T_w.reshape(n, 9))
 
 
 @kernel
-def balance_rotation(new: State, section: Section, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
-    """Write q = K (kappa - kappa0) and W = I omega_t + omega x I omega + c I omega - Q with its tangent by omega."""
+def balance_rotation(new: State, section: Section, past: Array, c0: float, nodes: Nodes) -> None:
+    """Write q = K (kappa - kappa0) and W = I omega_t + omega x I omega with its tangent by omega, but for loads."""
     for j in range(len(past)):
         W, D = nodes.W[j], nodes.W_w[j]
         I0, I1, I2 = section.inertia[j, 0], section.inertia[j, 1], section.inertia[j, 2]
         w0, w1, w2 = new.Y[j, OMEGA], new.Y[j, OMEGA + 1], new.Y[j, OMEGA + 2]
         for i in range(3):
             nodes.q[j, i] = section.stiffness[j, i] * (new.Y[j, KAPPA + i] - section.kappa0[j, i])
-            rate = c0 * new.Y[j, OMEGA + i] + past[j, 9 + i] + loads.damping * new.Y[j, OMEGA + i]
-            W[i] = section.inertia[j, i] * rate - loads.material[j, 3 + i]
-            D[i, i] = section.inertia[j, i] * (c0 + loads.damping)
+            W[i] = section.inertia[j, i] * (c0 * new.Y[j, OMEGA + i] + past[j, 9 + i])
+            D[i, i] = section.inertia[j, i] * c0
         W[0] += (I2 - I1) * w1 * w2
         W[1] += (I0 - I2) * w2 * w0
         W[2] += (I1 - I0) * w0 * w1
         D[0, 1], D[0, 2] = (I2 - I1) * w2, (I2 - I1) * w1
         D[1, 0], D[1, 2] = (I0 - I2) * w2, (I0 - I2) * w0
         D[2, 0], D[2, 1] = (I1 - I0) * w1, (I1 - I0) * w0
-    if loads.turns:
-        for j in range(len(past)):
-            _subtract_lab_moment(nodes.R[j], nodes.J[j], loads.lab[j, 3:], nodes.W[j], nodes.W_w[j])
 
 
 @kernel
-def _subtract_lab_moment(R: Array, J: Array, moment: Array, W: Array, W_w: Array) -> None:
-    """Subtract R^t moment from W and its tangent from W_w: d(R^t m) = (R^t m) x d psi."""
-    for i in range(3):
-        a, c = (i + 1) % 3, (i + 2) % 3
-        at_a = R[0, a] * moment[0] + R[1, a] * moment[1] + R[2, a] * moment[2]
-        at_c = R[0, c] * moment[0] + R[1, c] * moment[1] + R[2, c] * moment[2]
-        W[i] -= R[0, i] * moment[0] + R[1, i] * moment[1] + R[2, i] * moment[2]
-        for k in range(3):
-            W_w[i, k] -= at_a * J[c, k] - at_c * J[a, k]
-
-
-@kernel
-def balance_translation(new: State, section: Section, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
-    """Write P = rho_c A (dV/dt + c V) - B with its tangents by V and omega."""
+def balance_translation(new: State, section: Section, past: Array, c0: float, nodes: Nodes) -> None:
+    """Write P = rho_c A dV/dt with its tangents by V and omega, but for loads."""
     for j in range(len(past)):
         mass = section.mass[j]
         P, P_V, P_w = nodes.P[j], nodes.P_V[j], nodes.P_w[j]
         for i in range(3):
-            velocity = new.Y[j, V + i]
-            P[i] = mass * (c0 * velocity + past[j, 6 + i] + loads.damping * velocity) - loads.lab[j, i]
+            P[i] = mass * (c0 * new.Y[j, V + i] + past[j, 6 + i])
             for k in range(3):
                 P_V[i, k] = 0.0
                 P_w[i, k] = 0.0
-            P_V[i, i] = mass * (c0 + loads.damping)
-    if loads.follows:
-        _subtract_material_force(loads.material, nodes)
-    if loads.wet:
-        _add_fluid(new, loads, past, c0, nodes)
+            P_V[i, i] = mass * c0
 
 
 @kernel
-def _subtract_material_force(force: Array, nodes: Nodes) -> None:
-    """Subtract R force, `force` (n, >= 3), from P, and its tangent from P_w."""
-    b = scratch(3)
-    for j in range(len(nodes.P)):
-        R, P = nodes.R[j], nodes.P[j]
-        for i in range(3):
-            b[i] = -force[j, i]
-        rotation_tangent(R, b, nodes.J[j], nodes.P_w[j])
-        for i in range(3):
-            P[i] += R[i, 0] * b[0] + R[i, 1] * b[1] + R[i, 2] * b[2]
+def load_nodes(new: State, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
+    """Let the loads act on P and W, with their tangents."""
+    motion = Motion(new.r, new.Y, past, nodes.R, c0)
+    add_forces(loads, 0, motion, nodes)
+    add_tangents(loads, 0, motion, Unknowns(nodes.P_V, nodes.P_w, nodes.W_w, nodes.J, c0))
+
+
+class Motion(NamedTuple):
+    """How the nodes move at an iterate: places (n, 3), unknowns `Y` (n, 12), `past` and c0 of their rates, R."""
+
+    r: Array
+    Y: Array
+    past: Array
+    R: Array
+    c0: float
+
+
+class Unknowns(NamedTuple):
+    """The tangents of P by V and omega, and of W by omega; J = d psi / d omega; c0 = d(dV/dt) / dV = dV / dr."""
+
+    P_V: Array
+    P_w: Array
+    W_w: Array
+    J: Array
+    c0: float
 
 
 @kernel
-def _add_fluid(new: State, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
-    """Add the fluid's force with its tangents."""
-    acceleration, u = scratch(3), scratch(3)
-    for j in range(len(past)):
-        for i in range(3):
-            acceleration[i] = c0 * new.Y[j, V + i] + past[j, 6 + i]
-            u[i] = new.Y[j, V + i] - loads.current[i]
-        T, T_w, P, P_V, P_w = nodes.T[j], nodes.T_w[j], nodes.P[j], nodes.P_V[j], nodes.P_w[j]
-        add_added_mass(loads.added_mass[j], c0, acceleration, T, T_w, P, P_V, P_w)
-        add_drag(loads.drag_normal[j], loads.drag_tangential[j], u, T, T_w, P, P_V, P_w)
+def _point(motion: Motion, j: int) -> Point:
+    Y, past, c0, R = motion.Y, motion.past, motion.c0, matrix(motion.R, j)
+    velocity = (Y[j, V], Y[j, V + 1], Y[j, V + 2])
+    acceleration = (c0 * Y[j, V] + past[j, 6], c0 * Y[j, V + 1] + past[j, 7], c0 * Y[j, V + 2] + past[j, 8])
+    omega = (Y[j, OMEGA], Y[j, OMEGA + 1], Y[j, OMEGA + 2])
+    return Point(vector(motion.r, j), velocity, acceleration, (R[0][2], R[1][2], R[2][2]), R, omega)
+
+
+@kernel
+def _take_force(nodes: Nodes, j: int, at: Point, force: Any, moment: Any) -> None:
+    add_vector(-1.0, force, nodes.P[j])
+    add_vector(-1.0, moment, nodes.W[j])
+
+
+@kernel
+def _take_tangents(unknowns: Unknowns, j: int, at: Point, tangents: Tangents) -> None:
+    """P_V = M c0 + C + K / c0 and P_w = E J, each with the sign of a load."""
+    add_matrix(-unknowns.c0, tangents.M, unknowns.P_V[j])
+    add_matrix(-1.0, tangents.C, unknowns.P_V[j])
+    add_matrix(-1.0 / unknowns.c0, tangents.K, unknowns.P_V[j])
+    add_product(-1.0, tangents.E, unknowns.J[j], unknowns.P_w[j])
+    add_product(-1.0, tangent_by_rotation(tangents.by_T, at.R), unknowns.J[j], unknowns.P_w[j])
+    add_product(-1.0, tangents.moment_E, unknowns.J[j], unknowns.W_w[j])
+    add_matrix(-1.0, tangents.moment_omega, unknowns.W_w[j])
+
+
+forms_of(point)[Motion] = _point
+forms_of(take_force)[Nodes] = _take_force
+forms_of(take_tangents)[Unknowns] = _take_tangents

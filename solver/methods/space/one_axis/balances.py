@@ -1,37 +1,33 @@
 """The balances of the segments and the conditions at the ends at one stage, about one axis: residuals and tangents.
 
-As in `staggered.segments`, with plane vectors as complex numbers: the couple of a force f on T is Im(conj(T) f), and
-with the velocity relative to the current u = (a + i b) T and the acceleration A = (A_T + i A_N) T the fluid's force is
-
-    -B = (k_t |a| a + i (k_n |b| b + m_a A_N)) T.
+As in `space.segments.balances`, with plane vectors as complex numbers: the couple of a force f on T is Im(conj(T) f).
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.forms import forms_of
 from solver.kernels.kernel import inlined, kernel
+from solver.kernels.vectors import tangent_by_rotation, vector
 from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages
 from solver.methods.space.one_axis.motion import bend_joints
 from solver.methods.space.segments.chain import STAGES
 from solver.physics.ends import LOAD, RATE, RATE_LAB, Kinds
-from solver.physics.loads.applied import Loads
+from solver.physics.loads.load import Point, add_forces, add_tangents, point, take_force, take_tangents
+from solver.physics.loads.load import Tangents as LoadTangent
+from solver.physics.loads.registry import LoadsAbout
 
 
 class Driven(NamedTuple):
-    """What is given at the stages: loads per length `force` (lab) and `following` (material, z / T) (3, N), `moment`
-    (3, N); `current` (1,). Of each end, translation twice and rotation: `kinds` (2, 3), `values` (3, 2, 3); of the
-    translation's conditions the `direction` (2, 2), lab or material; the dead loads `dead` (3, 2) and `couple`
+    """What is given at the stages. Of each end, translation twice and rotation: `kinds` (2, 3), `values` (3, 2, 3); of
+    the translation's conditions the `direction` (2, 2), lab or material; the dead loads `dead` (3, 2) and `couple`
     (3, 2)."""
 
-    force: Plane
-    following: Plane
-    moment: Array
-    current: Plane
     kinds: Kinds
     values: Array
     direction: Plane
@@ -39,18 +35,16 @@ class Driven(NamedTuple):
     couple: Array
 
     @classmethod
-    def empty(cls, intervals: int) -> Driven:
-        """Zeros for N = `intervals`."""
-        force, following = np.zeros((STAGES, intervals), complex), np.zeros((STAGES, intervals), complex)
-        return cls(force, following, np.zeros((STAGES, intervals)), np.zeros(1, complex), np.zeros((2, 3), np.int64),
-                   np.zeros((STAGES, 2, 3)), np.zeros((2, 2), complex), np.zeros((STAGES, 2), complex),
-                   np.zeros((STAGES, 2)))  # fmt: skip
+    def empty(cls) -> Driven:
+        """Zeros."""
+        return cls(np.zeros((2, 3), np.int64), np.zeros((STAGES, 2, 3)), np.zeros((2, 2), complex),
+                   np.zeros((STAGES, 2), complex), np.zeros((STAGES, 2)))  # fmt: skip
 
 
 class Tangents(NamedTuple):
     """Tangents of the balances at one stage.
 
-    Segments (N,): translation's `M` by acceleration and `C` by velocity (N, 2), along and across T, and `E` by rotation
+    Segments: translation's `M` by acceleration, `C` by velocity and `K` by place (N, 2, 2), and `E` (N,) by rotation
     (with the sign of a load); rotation's `spin` by the rate of rotation. Orientations (N + 2,): rotation's `stiff` by
     their own rotation, and `T`. Ends (2, 2): `turn`, what a rotation of the end's frame does to the conditions on its
     translation.
@@ -58,6 +52,7 @@ class Tangents(NamedTuple):
 
     M: Array
     C: Array
+    K: Array
     E: Plane
     spin: Array
     stiff: Array
@@ -68,8 +63,94 @@ class Tangents(NamedTuple):
     def empty(cls, intervals: int) -> Tangents:
         """Zeros for N = `intervals`."""
         N = intervals
-        return cls(np.zeros((N, 2)), np.zeros((N, 2)), np.zeros(N, complex), np.zeros(N), np.zeros(N + 2),
-                   np.zeros(N + 2, complex), np.zeros((2, 2)))  # fmt: skip
+        return cls(np.zeros((N, 2, 2)), np.zeros((N, 2, 2)), np.zeros((N, 2, 2)), np.zeros(N, complex), np.zeros(N),
+                   np.zeros(N + 2), np.zeros(N + 2, complex), np.zeros((2, 2)))  # fmt: skip
+
+
+class Motion(NamedTuple):
+    """How the segments move at a stage: centres' places, velocities and accelerations (N,); tangents and angular
+    velocities (N + 2,) of all orientations; whether the tangents turn."""
+
+    r: Plane
+    V: Plane
+    A: Plane
+    T: Plane
+    omega: Array
+    swing: float
+
+
+@inlined
+def motion_at(chain: Chain, stages: Stages, i: int) -> Motion:
+    """The motion at stage i."""
+    return Motion(stages.r[i], stages.V[i], stages.A[i], stages.T[i], stages.omega[i], chain.swing)
+
+
+class Balance(NamedTuple):
+    """The residuals of a stage, translation (N, 2) and rotation (N + 2,), of segments of length h."""
+
+    translation: Array
+    rotation: Array
+    h: float
+
+
+class LoadTangents(NamedTuple):
+    """The tangents to which those of loads are added, for segments of length h."""
+
+    tangents: Tangents
+    h: float
+
+
+@kernel
+def _point(motion: Motion, j: int) -> Point:
+    T = vector(motion.T, j + 1)
+    return Point(vector(motion.r, j), vector(motion.V, j), vector(motion.A, j), T, (T[0], T[1], motion.swing),
+                 motion.omega[j + 1])  # fmt: skip
+
+
+@kernel
+def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) -> None:
+    balance.translation[j, 0] -= balance.h * force[0]
+    balance.translation[j, 1] -= balance.h * force[1]
+    if moment is not None:
+        balance.rotation[j + 1] -= balance.h * moment
+
+
+@kernel
+def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> None:
+    """As in `space.segments.balances`."""
+    tangents, h = load.tangents, load.h
+    _add_matrix(-h, by.M, tangents.M[j])
+    _add_matrix(-h, by.C, tangents.C[j])
+    _add_matrix(-h, by.K, tangents.K[j])
+    _add_turning(h, by.E, tangents.E, j)
+    _add_turning(h, tangent_by_rotation(by.by_T, at.R), tangents.E, j)
+    _add_number(-h, by.moment_E, tangents.stiff, j + 1)
+    _add_number(-h, by.moment_omega, tangents.spin, j)
+
+
+@kernel
+def _add_matrix(factor: float, A: Any, out: Array) -> None:
+    if A is not None:
+        for k in range(2):
+            out[k, 0] += factor * A[k][0]
+            out[k, 1] += factor * A[k][1]
+
+
+@kernel
+def _add_turning(factor: float, x: Any, out: Plane, j: int) -> None:
+    if x is not None:
+        out[j] += complex(factor * x[0], factor * x[1])
+
+
+@kernel
+def _add_number(factor: float, x: Any, out: Array, j: int) -> None:
+    if x is not None:
+        out[j] += factor * x
+
+
+forms_of(point)[Motion] = _point
+forms_of(take_force)[Balance] = _take_force
+forms_of(take_tangents)[LoadTangents] = _take_tangents
 
 
 @inlined
@@ -95,26 +176,17 @@ def end_velocity(chain: Chain, stages: Stages, i: int, side: int) -> complex:
 
 
 @kernel
-def balance(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residuals: Residuals, i: int) -> None:
+def balance(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages, residuals: Residuals, i: int) -> None:
     """Write the residuals of all segments, and what the conditions at the ends miss, at stage i."""
-    h, c = chain.h, loads.damping
-    F, q = stages.F[i], stages.q[i]
+    h, F, q = chain.h, stages.F[i], stages.q[i]
     bend_joints(chain, stages.phi[i], q)
     for j in range(len(chain.mass)):
-        T, V, A = stages.T[i, j + 1], stages.V[i, j], stages.A[i, j]
-        P = chain.mass[j] * (A + c * V) - driven.force[i, j]
-        if loads.follows:
-            P -= T * driven.following[i, j]
-        if loads.wet:
-            u = V - driven.current[0]
-            a, b = along(T, u), across(T, u)
-            P += T * complex(loads.drag_tangential[j] * abs(a) * a,
-                             loads.drag_normal[j] * abs(b) * b + loads.added_mass[j] * across(T, A))  # fmt: skip
-        P = h * P - (F[j + 1] - F[j])
+        T, P = stages.T[i, j + 1], h * chain.mass[j] * stages.A[i, j] - (F[j + 1] - F[j])
         residuals.translation[i, j, 0], residuals.translation[i, j, 1] = P.real, P.imag
-        turning = chain.inertia[j] * stages.alpha[i, j + 1] + c * chain.dry_inertia[j] * stages.omega[i, j + 1]
         couple = 0.5 * chain.swing * across(T, F[j + 1] + F[j])
-        residuals.rotation[i, j + 1] = h * (turning - driven.moment[i, j] - couple) - (q[j + 1] - q[j])
+        turning = chain.inertia[j] * stages.alpha[i, j + 1] - couple
+        residuals.rotation[i, j + 1] = h * turning - (q[j + 1] - q[j])
+    add_forces(loads, i, motion_at(chain, stages, i), Balance(residuals.translation[i], residuals.rotation[i], h))
     for side in range(2):
         frame, node = (0, 0) if side == 0 else (len(F), len(F) - 1)
         speed, pull, kinds = end_velocity(chain, stages, i, side), F[node] - driven.dead[i, side], driven.kinds[side]
@@ -129,34 +201,23 @@ def balance(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residual
 
 
 @kernel
-def tangents_at(chain: Chain, loads: Loads, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
+def tangents_at(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
     """Write the tangents at stage i of the balances and of the ends' conditions."""
-    h, c = chain.h, loads.damping
-    N, F = len(chain.mass), stages.F[i]
+    h, N, F = chain.h, len(chain.mass), stages.F[i]
     tangents.T[:] = stages.T[i]
     tangents.stiff[:] = 0.0
     for j in range(N + 1):
         tangents.stiff[j] += chain.stiffness[j] / chain.span[j]
         tangents.stiff[j + 1] += chain.stiffness[j] / chain.span[j]
     for j in range(N):
-        T, swung = stages.T[i, j + 1], 0.0j
-        M, C = tangents.M[j], tangents.C[j]
-        M[0], M[1] = h * chain.mass[j], h * chain.mass[j]
-        C[0], C[1] = c * M[0], c * M[0]
-        tangents.spin[j] = h * c * chain.dry_inertia[j]
-        if loads.wet:
-            u, A = stages.V[i, j] - driven.current[0], stages.A[i, j]
-            a, b = along(T, u), across(T, u)
-            by_a, by_b = loads.drag_tangential[j] * abs(a), loads.drag_normal[j] * abs(b)
-            M[1] += h * loads.added_mass[j]
-            C[0] += 2.0 * h * by_a
-            C[1] += 2.0 * h * by_b
-            swung = complex(2.0 * by_a * b - by_b * b - loads.added_mass[j] * across(T, A),
-                            by_a * a - 2.0 * by_b * a - loads.added_mass[j] * along(T, A))  # fmt: skip
-        if loads.follows:
-            swung -= 1j * driven.following[i, j]
-        tangents.E[j] = -h * chain.swing * T * swung
-        tangents.stiff[j + 1] += 0.5 * h * chain.swing * along(T, F[j + 1] + F[j])
+        M, C, K = tangents.M[j], tangents.C[j], tangents.K[j]
+        for k in range(2):
+            for m in range(2):
+                M[k, m], C[k, m], K[k, m] = 0.0, 0.0, 0.0
+            M[k, k] = h * chain.mass[j]
+        tangents.spin[j], tangents.E[j] = 0.0, 0.0
+        tangents.stiff[j + 1] += 0.5 * h * chain.swing * along(stages.T[i, j + 1], F[j + 1] + F[j])
+    add_tangents(loads, i, motion_at(chain, stages, i), LoadTangents(tangents, h))
     for side in range(2):
         frame, node = (0, 0) if side == 0 else (N + 1, N)
         V, pull = end_velocity(chain, stages, i, side), F[node] - driven.dead[i, side]

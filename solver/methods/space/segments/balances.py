@@ -5,31 +5,33 @@ For segment j with centre r, tangent T = R a3, forces F_j and F_j+1 at its nodes
     h (rho_c A dV/dt - B)                 - (F_j+1 - F_j)                                         = 0   lab
     h (I omega_t + omega x I omega - Q)   - (q_right - q_left) - (h/2) a3 x R^t (F_j+1 + F_j)     = 0   material
 
-with I about the segment's centre. Forces on the nodes (contact) are shared by the segments that meet there.
+with I about the segment's centre. Forces on the nodes (contact) are shared by the segments that meet there. How a
+load's tangents become those of the balances is said in `_take_tangents`, and nowhere else.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.forms import forms_of
 from solver.kernels.kernel import inlined, kernel
 from solver.kernels.scratch import scratch
+from solver.kernels.vectors import add_matrix, add_vector, matrix, tangent_by_rotation, vector
 from solver.methods.space.segments.chain import Chain, Residuals, Stages
 from solver.methods.space.segments.joints import joint_tangents
 from solver.physics.ends import LOAD, LOAD_LAB, RATE, RATE_LAB, Kinds
-from solver.physics.loads.applied import Loads
-from solver.physics.loads.fluid import add_added_mass, add_drag, add_fluid_force
+from solver.physics.loads.load import Point, add_forces, add_tangents, point, take_force, take_tangents
+from solver.physics.loads.load import Tangents as LoadTangent
+from solver.physics.loads.registry import Loads
 
 
 class Driven(NamedTuple):
-    """What is given at the stages: loads per length `lab`, `material` (3, N, 6); ends' `kinds` (2, 6), `values`
-    (3, 2, 6) and dead lab loads `dead` (3, 2, 6); forces on the nodes `push` (3, N + 1, 3), lab."""
+    """What is given at the stages: ends' `kinds` (2, 6), `values` (3, 2, 6) and dead lab loads `dead` (3, 2, 6);
+    forces on the nodes `push` (3, N + 1, 3), lab."""
 
-    lab: Array
-    material: Array
     kinds: Kinds
     values: Array
     dead: Array
@@ -38,23 +40,23 @@ class Driven(NamedTuple):
     @classmethod
     def empty(cls, intervals: int) -> Driven:
         """Zeros for N = `intervals`."""
-        N = intervals
-        return cls(np.zeros((3, N, 6)), np.zeros((3, N, 6)), np.zeros((2, 6), np.int64), np.zeros((3, 2, 6)),
-                   np.zeros((3, 2, 6)), np.zeros((3, N + 1, 3)))  # fmt: skip
+        return cls(np.zeros((2, 6), np.int64), np.zeros((3, 2, 6)), np.zeros((3, 2, 6)),
+                   np.zeros((3, intervals + 1, 3)))  # fmt: skip
 
 
 class Tangents(NamedTuple):
     """Tangents of the balances at one stage, common to all eigenvalues lambda of the time scheme.
 
-    Segments (N, 3, 3): translation's `M` by acceleration, `C` by velocity, `E` by rotation (with the sign of a load);
-    rotation's `spin` by the rate of rotation. Orientations (N + 2, 3, 3): rotation's `stiff`, `before`, `behind` by the
-    rotation of the orientation itself, the one before and the one behind; `R` the rotations. `ahead`, `back` (N + 1, 2,
-    3, 3) of the joints. Ends (2, 3, 3): `turn`, what a rotation of the end's frame does to the condition on its
-    translation.
+    Segments (N, 3, 3): translation's `M` by acceleration, `C` by velocity, `K` by place, `E` by rotation (with the sign
+    of a load); rotation's `spin` by the rate of rotation. Orientations (N + 2, 3, 3): rotation's `stiff`, `before`,
+    `behind` by the rotation of the orientation itself, the one before and the one behind; `R` the rotations. `ahead`,
+    `back` (N + 1, 2, 3, 3) of the joints. Ends (2, 3, 3): `turn`, what a rotation of the end's frame does to the
+    condition on its translation.
     """
 
     M: Array
     C: Array
+    K: Array
     E: Array
     spin: Array
     stiff: Array
@@ -70,8 +72,72 @@ class Tangents(NamedTuple):
         """Zeros for N = `intervals`."""
         N = intervals
         segments, orientations, joints = (N, 3, 3), (N + 2, 3, 3), (N + 1, 2, 3, 3)
-        shapes = [segments] * 4 + [orientations] * 4 + [joints] * 2 + [(2, 3, 3)]
+        shapes = [segments] * 5 + [orientations] * 4 + [joints] * 2 + [(2, 3, 3)]
         return cls(*(np.zeros(shape) for shape in shapes))
+
+
+class Motion(NamedTuple):
+    """How the segments move at a stage: centres' places, velocities and accelerations (N, 3), lab; rotations (N + 2, 3,
+    3) and angular velocities (N + 2, 3) of all orientations."""
+
+    r: Array
+    V: Array
+    A: Array
+    R: Array
+    omega: Array
+
+
+@inlined
+def motion_at(stages: Stages, i: int) -> Motion:
+    """The motion at stage i."""
+    return Motion(stages.r[i], stages.V[i], stages.A[i], stages.R[i], stages.omega[i])
+
+
+class Balance(NamedTuple):
+    """The residuals of a stage, translation (N, 3) and rotation (N + 2, 3), of segments of length h."""
+
+    translation: Array
+    rotation: Array
+    h: float
+
+
+class LoadTangents(NamedTuple):
+    """The tangents to which those of loads are added, for segments of length h."""
+
+    tangents: Tangents
+    h: float
+
+
+@kernel
+def _point(motion: Motion, j: int) -> Point:
+    R = matrix(motion.R, j + 1)
+    return Point(vector(motion.r, j), vector(motion.V, j), vector(motion.A, j), (R[0][2], R[1][2], R[2][2]), R,
+                 vector(motion.omega, j + 1))  # fmt: skip
+
+
+@kernel
+def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) -> None:
+    add_vector(-balance.h, force, balance.translation[j])
+    add_vector(-balance.h, moment, balance.rotation[j + 1])
+
+
+@kernel
+def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> None:
+    """M, C, K and spin of the balances, and E and stiff by rotation: the unknowns are r, whose rates are multiples of
+    it by an eigenvalue, and psi."""
+    tangents, h = load.tangents, load.h
+    add_matrix(-h, by.M, tangents.M[j])
+    add_matrix(-h, by.C, tangents.C[j])
+    add_matrix(-h, by.K, tangents.K[j])
+    add_matrix(h, by.E, tangents.E[j])
+    add_matrix(h, tangent_by_rotation(by.by_T, at.R), tangents.E[j])
+    add_matrix(-h, by.moment_E, tangents.stiff[j + 1])
+    add_matrix(-h, by.moment_omega, tangents.spin[j])
+
+
+forms_of(point)[Motion] = _point
+forms_of(take_force)[Balance] = _take_force
+forms_of(take_tangents)[LoadTangents] = _take_tangents
 
 
 @inlined
@@ -87,18 +153,14 @@ def balance_segments(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     What not every scene has is added in loops of its own: where it stood within this one, the compiler made half as
     fast code of it, in scenes without, too.
     """
-    h, c = chain.h, loads.damping
-    N = len(chain.mass)
+    h, N = chain.h, len(chain.mass)
     F, push = stages.F[i], driven.push[i]
     left, right = stages.left[i], stages.right[i]
     for j in range(N):
-        R, V, A = stages.R[i, j + 1], stages.V[i, j], stages.A[i, j]
-        mass = chain.mass[j]
-        lab, material = driven.lab[i, j], driven.material[i, j]
-        near, far = share(j, N), share(j + 1, N)
+        R, A = stages.R[i, j + 1], stages.A[i, j]
+        inertia, near, far = h * chain.mass[j], share(j, N), share(j + 1, N)
         for k in range(3):
-            P = mass * (A[k] + c * V[k]) - lab[k]
-            residuals.translation[i, j, k] = (h * P - (F[j + 1, k] - F[j, k])
+            residuals.translation[i, j, k] = (inertia * A[k] - (F[j + 1, k] - F[j, k])
                                               - (near * push[j, k] + far * push[j + 1, k]))  # fmt: skip
         w, g = stages.omega[i, j + 1], stages.alpha[i, j + 1]
         I0, I1, I2 = chain.inertia[j, 0], chain.inertia[j, 1], chain.inertia[j, 2]
@@ -112,34 +174,8 @@ def balance_segments(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
         out[1] = h * (I1 * g[1] + (I0 - I2) * w[2] * w[0]) - 0.5 * h * p0
         out[2] = h * (I2 * g[2] + (I1 - I0) * w[0] * w[1])
         for k in range(3):
-            out[k] += h * (c * chain.dry_inertia[j, k] * w[k] - material[3 + k]) - left[j + 1, k] + right[j, k]
-    if loads.follows or loads.turns:
-        _turn_loads(h, driven, stages, residuals, i)
-    if loads.wet:
-        _add_fluid(h, loads, stages, residuals, i)
-
-
-@kernel
-def _turn_loads(h: float, driven: Driven, stages: Stages, residuals: Residuals, i: int) -> None:
-    """Subtract the forces given in the material frame, and the moments given in the lab's."""
-    for j in range(len(driven.lab[i])):
-        R, lab, material = stages.R[i, j + 1], driven.lab[i, j], driven.material[i, j]
-        force, moment = residuals.translation[i, j], residuals.rotation[i, j + 1]
-        for k in range(3):
-            force[k] -= h * (R[k, 0] * material[0] + R[k, 1] * material[1] + R[k, 2] * material[2])
-            moment[k] -= h * (R[0, k] * lab[3] + R[1, k] * lab[4] + R[2, k] * lab[5])
-
-
-@kernel
-def _add_fluid(h: float, loads: Loads, stages: Stages, residuals: Residuals, i: int) -> None:
-    """Add the fluid's force."""
-    P, u, T = scratch(3), scratch(3), scratch(3)
-    for j in range(len(stages.V[i])):
-        for k in range(3):
-            P[k], u[k], T[k] = 0.0, stages.V[i, j, k] - loads.current[k], stages.R[i, j + 1, k, 2]
-        add_fluid_force(loads.added_mass[j], loads.drag_normal[j], loads.drag_tangential[j], stages.A[i, j], u, T, P)
-        for k in range(3):
-            residuals.translation[i, j, k] += h * P[k]
+            out[k] += right[j, k] - left[j + 1, k]
+    add_forces(loads, i, motion_at(stages, i), Balance(residuals.translation[i], residuals.rotation[i], h))
 
 
 @kernel
@@ -189,8 +225,7 @@ def _cross_matrix(x: Array, factor: float, out: Array) -> None:
 @kernel
 def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
     """Write the tangents at stage i of the balances and of the ends' conditions."""
-    h, c = chain.h, loads.damping
-    N = len(chain.mass)
+    h, N = chain.h, len(chain.mass)
     joint_tangents(chain, stages.bend[i], stages.moment[i], tangents.ahead, tangents.back)
     tangents.R[:] = stages.R[i]
     tangents.stiff[:] = 0.0
@@ -199,19 +234,15 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     g, swing = scratch(3), scratch((3, 3))
     for j in range(N):
         R, w = stages.R[i, j + 1], stages.omega[i, j + 1]
-        M, C, E, spin, stiff = tangents.M[j], tangents.C[j], tangents.E[j], tangents.spin[j], tangents.stiff[j + 1]
+        M, spin, stiff = tangents.M[j], tangents.spin[j], tangents.stiff[j + 1]
         for k in range(3):
             for m in range(3):
                 M[k, m] = 0.0
-                C[k, m] = 0.0
-                E[k, m] = 0.0
                 spin[k, m] = 0.0
             M[k, k] = h * chain.mass[j]
-            C[k, k] = h * c * chain.mass[j]
         # with psi in a frame that does not turn, omega changes by psi_t and omega_t by psi_tt - omega x psi_t
         I0, I1, I2 = chain.inertia[j, 0], chain.inertia[j, 1], chain.inertia[j, 2]
         for k in range(3):
-            spin[k, k] = h * c * chain.dry_inertia[j, k]
             g[k] = chain.inertia[j, k] * w[k]
         _cross_matrix(g, -h, spin)
         spin[0, 1] += h * w[2] * (I0 - I1)
@@ -237,45 +268,11 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
                 stiff[k, m] += tangents.back[j, 1, k, m] - tangents.ahead[j + 1, 0, k, m]
                 tangents.before[j + 1, k, m] = tangents.back[j, 0, k, m]
                 tangents.behind[j + 1, k, m] = -tangents.ahead[j + 1, 1, k, m]
-    if loads.follows or loads.turns:
-        _turned_loads_tangents(h, driven, stages, i, tangents)
-    if loads.wet:
-        _fluid_tangents(h, loads, stages, i, tangents)
+    tangents.C[:] = 0.0
+    tangents.K[:] = 0.0
+    tangents.E[:] = 0.0
+    add_tangents(loads, i, motion_at(stages, i), LoadTangents(tangents, h))
     _end_tangents(chain, driven, stages, i, tangents, swing)
-
-
-@kernel
-def _turned_loads_tangents(h: float, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
-    """Add the tangents of `_turn_loads`."""
-    g = scratch(3)
-    for j in range(len(driven.lab[i])):
-        R, b, E = stages.R[i, j + 1], driven.material[i, j], tangents.E[j]
-        for k in range(3):
-            E[k, 0] += h * (R[k, 2] * b[1] - R[k, 1] * b[2])
-            E[k, 1] += h * (R[k, 0] * b[2] - R[k, 2] * b[0])
-            E[k, 2] += h * (R[k, 1] * b[0] - R[k, 0] * b[1])
-            g[k] = R[0, k] * driven.lab[i, j, 3] + R[1, k] * driven.lab[i, j, 4] + R[2, k] * driven.lab[i, j, 5]
-        _cross_matrix(g, -h, tangents.stiff[j + 1])
-
-
-@kernel
-def _fluid_tangents(h: float, loads: Loads, stages: Stages, i: int, tangents: Tangents) -> None:
-    """Add the tangents of `_add_fluid`."""
-    P, u, T = scratch(3), scratch(3), scratch(3)
-    T_w, M, C, E = scratch((3, 3)), scratch((3, 3)), scratch((3, 3)), scratch((3, 3))
-    for j in range(len(stages.V[i])):
-        R = stages.R[i, j + 1]
-        for k in range(3):
-            u[k], T[k] = stages.V[i, j, k] - loads.current[k], R[k, 2]
-            T_w[k, 0], T_w[k, 1], T_w[k, 2] = -R[k, 1], R[k, 0], 0.0
-        M[:, :], C[:, :], E[:, :] = 0.0, 0.0, 0.0
-        add_added_mass(loads.added_mass[j], 1.0, stages.A[i, j], T, T_w, P, M, E)
-        add_drag(loads.drag_normal[j], loads.drag_tangential[j], u, T, T_w, P, C, E)
-        for k in range(3):
-            for m in range(3):
-                tangents.M[j, k, m] += h * M[k, m]
-                tangents.C[j, k, m] += h * C[k, m]
-                tangents.E[j, k, m] -= h * E[k, m]
 
 
 @kernel

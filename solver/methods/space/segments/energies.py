@@ -9,24 +9,31 @@ from solver.kernels.handed import Reference
 from solver.kernels.kernel import kernel
 from solver.kernels.scratch import scratch
 from solver.measures.energies import Energies
-from solver.methods.space.segments.balances import Driven
-from solver.methods.space.segments.chain import STAGES, Chain, Stages
-from solver.physics.loads.applied import Loads
-from solver.physics.loads.fluid import fluid_power
+from solver.methods.space.segments.balances import Motion, motion_at
+from solver.methods.space.segments.chain import STAGES, Chain
+from solver.physics.loads.load import add_energies, add_powers
+from solver.physics.loads.registry import Loads
 
 
-def energies(chain: Chain, loads: Loads, bend: Array, omega: Array, centres: Array, tangents: Array,
-             weight: Array) -> Energies:  # fmt: skip
-    """The energies at a state: joints' `bend` (N + 1, 3); segments' `omega`, `tangents`, `weight` (N, 3); `centres`
-    (2, N, 3), position and velocity."""
-    return Energies(*_integrate(chain, loads, bend, omega, centres, tangents, weight))
+def energies(chain: Chain, loads: Loads, i: int, bend: Array, motion: Motion) -> Energies:
+    """The energies at a state: the loads of the i-th time of a step, joints' `bend` (N + 1, 3), and the segments'
+    motion."""
+    by_loads = np.zeros(2)
+    _sum_loads(loads, i, motion, by_loads)
+    bending, torsion, kinetic, turning = _integrate(chain, bend, motion)
+    return Energies(bending, torsion, kinetic, added_mass=turning + chain.h * float(by_loads[1]),
+                    potential=chain.h * float(by_loads[0]))  # fmt: skip
 
 
 @kernel
-def _integrate(chain: Chain, loads: Loads, bend: Array, omega: Array, centres: Array, tangents: Array,
-               weight: Array) -> tuple[float, float, float, float, float]:  # fmt: skip
-    """The energies in their order."""
-    bending, torsion, kinetic, added, potential = 0.0, 0.0, 0.0, 0.0, 0.0
+def _sum_loads(loads: Loads, i: int, motion: Motion, out: Array) -> None:
+    add_energies(loads, i, motion, out)
+
+
+@kernel
+def _integrate(chain: Chain, bend: Array, motion: Motion) -> tuple[float, float, float, float]:
+    """Bending, torsion, motion, and the turning of the mass that loads entrain."""
+    bending, torsion, kinetic, turning = 0.0, 0.0, 0.0, 0.0
     for i in range(len(bend)):
         for k in range(3):
             strain = bend[i, k] / chain.span[i] - chain.kappa0[i, k]
@@ -35,77 +42,29 @@ def _integrate(chain: Chain, loads: Loads, bend: Array, omega: Array, centres: A
                 bending += energy
             else:
                 torsion += energy
-    for j in range(len(omega)):
-        along = 0.0
+    for j in range(len(motion.r)):
         for k in range(3):
-            along += tangents[j, k] * (centres[1, j, k] - loads.current[k])
-        for k in range(3):
-            velocity, spin = centres[1, j, k], omega[j, k] * omega[j, k]
-            across = velocity - loads.current[k] - along * tangents[j, k]
+            velocity, spin = motion.V[j, k], motion.omega[j + 1, k] * motion.omega[j + 1, k]
             kinetic += chain.mass[j] * velocity * velocity + chain.dry_inertia[j, k] * spin
-            added += loads.added_mass[j] * across * across + (chain.inertia[j, k] - chain.dry_inertia[j, k]) * spin
-            potential -= weight[j, k] * centres[0, j, k]
-    return bending, torsion, 0.5 * chain.h * kinetic, 0.5 * chain.h * added, chain.h * potential
+            turning += (chain.inertia[j, k] - chain.dry_inertia[j, k]) * spin
+    return bending, torsion, 0.5 * chain.h * kinetic, 0.5 * chain.h * turning
 
 
 @kernel
-def stage_powers(given: Reference, weight: Array, ends: Array, out: Array) -> None:
-    """Write the power (W) of the ends, of loads other than `weight`, and dissipated, at the stages into `out` (3, 3).
+def stage_powers(given: Reference, ends: Array, out: Array) -> None:
+    """Write the power (W) of the ends, of loads, and dissipated, at the stages into `out` (3, 3).
 
     `given`: see `newton.step`; `ends` (3, 2, 3): velocities of the first and the last node at the stages, lab.
     """
-    chain, loads, driven, _, stages, _, _ = given.records
-    N = len(chain.mass)
+    chain, loads, _, _, stages, _, _ = given.records
+    N, by_loads = len(chain.mass), scratch(2)
     for i in range(STAGES):
-        by_loads, lost, work = 0.0, 0.0, 0.0
+        work, by_loads[0], by_loads[1] = 0.0, 0.0, 0.0
         for k in range(3):
             work += stages.F[i, N, k] * ends[i, 1, k] - stages.F[i, 0, k] * ends[i, 0, k]
             work += stages.right[i, N, k] * stages.omega[i, N + 1, k] - stages.left[i, 0, k] * stages.omega[i, 0, k]
-        for j in range(N):
-            V, w = stages.V[i, j], stages.omega[i, j + 1]
-            lab, material = driven.lab[i, j], driven.material[i, j]
-            for k in range(3):
-                by_loads += (lab[k] - weight[j, k]) * V[k] + material[3 + k] * w[k]
-                lost += loads.damping * (chain.mass[j] * V[k] ** 2 + chain.dry_inertia[j, k] * w[k] ** 2)
-        if loads.follows or loads.turns:
-            by_loads += _given_by_turned_loads(driven, stages, i)
-        if loads.wet:
-            from_current, to_fluid = _given_by_fluid(loads, stages, i)
-            by_loads += from_current
-            lost += to_fluid
-        out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads, chain.h * lost
-
-
-@kernel
-def _given_by_turned_loads(driven: Driven, stages: Stages, i: int) -> float:
-    """Power over h of the forces given in the material frame, and of the moments given in the lab's."""
-    given = 0.0
-    for j in range(len(driven.lab[i])):
-        R, V, w = stages.R[i, j + 1], stages.V[i, j], stages.omega[i, j + 1]
-        lab, material = driven.lab[i, j], driven.material[i, j]
-        for k in range(3):
-            for m in range(3):
-                given += R[k, m] * (material[m] * V[k] + lab[3 + k] * w[m])
-    return given
-
-
-@kernel
-def _given_by_fluid(loads: Loads, stages: Stages, i: int) -> tuple[float, float]:
-    """Power over h that the current gives, and that the fluid takes."""
-    T, T_t = scratch(3), scratch(3)
-    given, lost = 0.0, 0.0
-    for j in range(len(stages.V[i])):
-        R, w = stages.R[i, j + 1], stages.omega[i, j + 1]
-        for k in range(3):
-            T[k] = R[k, 2]
-            T_t[k] = R[k, 0] * w[1] - R[k, 1] * w[0]
-        from_current, to_fluid = fluid_power(
-            loads.added_mass[j], loads.drag_normal[j], loads.drag_tangential[j], stages.V[i, j], loads.current,
-            stages.A[i, j], T, T_t,
-        )  # fmt: skip
-        given += from_current
-        lost += to_fluid
-    return given, lost
+        add_powers(loads, i, motion_at(stages, i), by_loads)
+        out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads[0], chain.h * by_loads[1]
 
 
 @kernel

@@ -2,27 +2,47 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.rotation import rotate_back
 from solver.methods.space.segments.chain import Chain, State
 from solver.methods.space.segments.joints import bend_joints
+from solver.physics.loads.applied import AppliedLoads
 from solver.physics.section import Section, sample
 from solver.scene.initial import Initial
 from solver.scene.layout import nodes_at_rest
 from solver.scene.rod import Rod
+from solver.scene.scene import Scene
 
 
-def chain_of(rod: Rod, section: Section, added_mass: Array, s: Array) -> Chain:
-    """The chain of a rod with nodes `s` (N + 1,), its `section` and `added_mass` (N,) at the segments' centres."""
+def segments_of(rod: Rod, s: Array) -> Section:
+    """The section at the centres of the segments between nodes `s` (N + 1,), with the inertia of whole segments."""
+    section = sample(rod, 0.5 * (s[1:] + s[:-1]))
+    return section._replace(inertia=section.inertia + np.outer(section.mass, _across(s)))
+
+
+def _across(s: Array) -> Array:
+    """h^2 / 12 about the axes across a segment: of its inertia per mass."""
+    h = float(s[1] - s[0])
+    return np.array([1.0, 1.0, 0.0]) * h * h / 12.0
+
+
+def loads_on_segments(scene: Scene, s: Array, times: int, axis: Any = None) -> AppliedLoads:
+    """The loads of a scene on the segments between nodes `s` (N + 1,), at so many times within a step."""
+    middles = 0.5 * (s[1:] + s[:-1])
+    return AppliedLoads(scene, segments_of(scene.rod, s), middles, (middles, np.diff(s)), times, axis)
+
+
+def chain_of(rod: Rod, section: Section, entrained: Array, s: Array) -> Chain:
+    """The chain of a rod with nodes `s` (N + 1,), its segments' `section` and the mass `entrained` (N,) by loads."""
     h, nodes = float(s[1] - s[0]), sample(rod, s)
-    across = np.array([1.0, 1.0, 0.0]) * h * h / 12.0
-    dry = section.inertia + np.outer(section.mass, across)
     span = np.full(len(s), h)
     span[0] = span[-1] = 0.5 * h
-    wet = dry + np.outer(added_mass, across)
-    return Chain(h, section.mass, wet, dry, span, nodes.stiffness, nodes.kappa0.copy())
+    wet = section.inertia + np.outer(entrained, _across(s))
+    return Chain(h, section.mass, wet, section.inertia, span, nodes.stiffness, nodes.kappa0.copy())
 
 
 def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:

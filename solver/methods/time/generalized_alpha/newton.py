@@ -17,13 +17,13 @@ from solver.methods.schemes import Scheme, c0_of
 from solver.methods.space.box.ends import end_conditions
 from solver.methods.space.box.fields import KAPPA, F, Linear, Nodes, State
 from solver.methods.space.box.intervals import interval_residuals
-from solver.methods.space.box.nodes import balance_rotation, balance_translation, place_nodes
+from solver.methods.space.box.nodes import balance_rotation, balance_translation, load_nodes, place_nodes
 from solver.methods.space.box.schemes import SpaceScheme
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR, STALLED
 from solver.methods.time.generalized_alpha.history import finish, history
 from solver.physics.contact.forces import touching
 from solver.physics.ends import Kinds
-from solver.physics.loads.applied import Loads
+from solver.physics.loads.registry import Loads
 from solver.physics.section import Section
 
 LARGEST_ITERATIONS = 12
@@ -71,8 +71,9 @@ def set_scales(scales: Scales, c0: float, system: Linear) -> None:
 def balance_nodes(old: State, new: State, past: Array, c0: float, section: Section, loads: Loads, nodes: Nodes) -> None:
     """What the nodes bring to the balances at the iterate `new`, but for contact, with its tangents."""
     place_nodes(old, new, past, c0, nodes)
-    balance_rotation(new, section, loads, past, c0, nodes)
-    balance_translation(new, section, loads, past, c0, nodes)
+    balance_rotation(new, section, past, c0, nodes)
+    balance_translation(new, section, past, c0, nodes)
+    load_nodes(new, loads, past, c0, nodes)
 
 
 @kernel

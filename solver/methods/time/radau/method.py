@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array
-from solver.methods.space.segments.chain import Chain, State
-from solver.methods.space.segments.initial import chain_of, lay_out
+from solver.methods.space.segments.chain import STAGES, Chain, State
+from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Scheme
 from solver.physics.ends import DrivenEnd
-from solver.physics.loads.applied import AppliedLoads, Loads
-from solver.physics.section import sample
 from solver.scene.scene import Scene
 
 SCHEME = Scheme(
@@ -38,12 +37,10 @@ class RadauMethod(ABC):
     easy_iterations = 4
     shortest_step = 0.0
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, axis: Any = None) -> None:
         N, length = scene.numerics.intervals, float(scene.rod.length)
         self.s = np.linspace(0.0, length, N + 1)
-        middles = 0.5 * (self.s[1:] + self.s[:-1])
-        self.applied = AppliedLoads(scene, sample(scene.rod, middles), middles, (middles, np.full(N, length / N)))
-        self._loads: Loads = self.applied.at(0.0)
+        self.applied = loads_on_segments(scene, self.s, STAGES, axis)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._newton_part = NEWTON_PART * tolerance if tolerance < 1.0 else 0.0
@@ -71,8 +68,7 @@ class RadauMethod(ABC):
 
     def _lay_out(self, scene: Scene) -> tuple[Chain, State, Array]:
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
-        section = sample(scene.rod, 0.5 * (self.s[1:] + self.s[:-1]))
-        chain = chain_of(scene.rod, section, self._loads.added_mass, self.s)
+        chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
         self._unit = float(chain.stiffness[:, :2].mean()) / float(self.s[-1]) ** 2
         return chain, *lay_out(scene.initial, chain, self.s)
 

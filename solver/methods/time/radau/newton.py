@@ -23,7 +23,7 @@ from solver.methods.space.segments.motion import LARGEST_TURN, move, spin_steadi
 from solver.methods.status import CONVERGED, SINGULAR, STALLED
 from solver.physics.contact.forces import touching
 from solver.physics.ends import LOAD, RATE
-from solver.physics.loads.applied import Loads
+from solver.physics.loads.registry import Loads
 
 LARGEST_ITERATIONS = 12
 LARGEST_INCREMENT = 1e3

@@ -156,16 +156,16 @@ def estimate_error(given: Reference, dt: float, state: State, centres: Plane) ->
             rate += e[i] * stages.theta_t[i, a]
         factors.x[a, 0] = chain.h * chain.inertia[a - 1] * mu * (mu * place + rate)
         turned = max(turned, abs(stages.theta[2, a] + dt * state.omega[a]))
-        j, T = a - 1, tangents.T[a]
+        j = a - 1
         z, z_t = centres[1, j] / mu, centres[2, j] / mu
         for i in range(STAGES):
             z += e[i] * (stages.r[i, j] - centres[0, j])
             z_t += e[i] * (stages.V[i, j] - centres[1, j])
         gone = stages.r[2, j] - centres[0, j]
         moved = max(moved, abs(gone.real), abs(gone.imag))
-        z = mu * (mu * z + z_t) * T.conjugate()
-        z = -T * complex(tangents.M[j, 0] * z.real, tangents.M[j, 1] * z.imag)
-        factors.load[j, 0], factors.load[j, 1] = z.real, z.imag
+        M, z = tangents.M[j], -mu * (mu * z + z_t)
+        factors.load[j, 0] = M[0, 0] * z.real + M[0, 1] * z.imag
+        factors.load[j, 1] = M[1, 0] * z.real + M[1, 1] * z.imag
     load_rows(chain, driven, tangents, mu, scratch((2, 2)), factors)
     solve(factors)
     move_error = 0.0

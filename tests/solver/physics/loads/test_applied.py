@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from numpy.testing import assert_allclose
 
 from solver import Curve, DistributedLoad, End, Fluid, Initial, PointLoad, Rod, Scene, constant_vector
 from solver.arrays import Array
-from solver.physics.loads.applied import AppliedLoads, effective_weight, nodes_act, point_weights
+from solver.physics.loads.applied import AppliedLoads
+from solver.physics.loads.given import nodes_act, point_weights
 from solver.physics.section import sample
 
 LENGTH, INTERVALS = 2.0, 8
@@ -25,6 +27,20 @@ RAMP = Curve.table([0.0, 4.0], [0.0, 1.0])
 def applied(**loads: object) -> AppliedLoads:
     scene = scene_with(**loads)
     return AppliedLoads(scene, sample(scene.rod, S), S)
+
+
+class Now(NamedTuple):
+    """What acts at one time: forces and moments (n, 6) along lab and along material axes."""
+
+    lab: Array
+    material: Array
+
+
+def at(loads: AppliedLoads, t: float) -> Now:
+    loads.set_time(t)
+    dead, following, weight = loads.records.dead, loads.records.following, loads.records.weight
+    lab = np.hstack([weight.weight + dead.force[0], following.moment[0]])
+    return Now(lab, np.hstack([following.force[0], dead.moment[0]]))
 
 
 def scene_with(**loads: object) -> Scene:
@@ -73,10 +89,10 @@ def test_a_point_load_moves_smoothly_along_the_rod() -> None:
 
 def test_weight_is_less_buoyancy() -> None:
     scene = scene_with(gravity=(0.0, 0.0, -9.81), fluid=Fluid(density=1025.0))
-    weight = effective_weight(scene, sample(scene.rod, S))
+    weight = AppliedLoads(scene, sample(scene.rod, S), S).records.weight.weight
     expected = -(2000.0 - 1025.0) * pi * 0.02**2 / 4 * 9.81
     assert_allclose(weight, np.tile([0.0, 0.0, expected], (INTERVALS + 1, 1)), rtol=1e-14)
-    assert_allclose(applied(gravity=(0.0, 0.0, -9.81), fluid=Fluid(density=1025.0)).at(0.0).lab[:, :3], weight)
+    assert_allclose(at(applied(gravity=(0.0, 0.0, -9.81), fluid=Fluid(density=1025.0)), 0.0).lab[:, :3], weight)
 
 
 def test_a_distributed_load_follows_its_profile_and_its_schedule() -> None:
@@ -84,32 +100,31 @@ def test_a_distributed_load_follows_its_profile_and_its_schedule() -> None:
     load = DistributedLoad(force=(along, ZERO[1], ZERO[2]), moment=(ZERO[0], along, ZERO[2]), schedule=RAMP)
     loads = applied(distributed=(load,))
     for t in (0.0, 1.0, 4.0, 9.0, 2.0):
-        now = loads.at(t)
+        now = at(loads, t)
         assert_allclose(now.lab[:, 0], along(S) * min(t / 4.0, 1.0))
         assert_allclose(now.lab[:, 4], along(S) * min(t / 4.0, 1.0))
         assert_allclose(now.material, 0.0)
-    assert not loads.at(1.0).follows
+    assert loads.records.dead.present and loads.records.following.present  # the moments are along lab axes
 
 
 def test_a_load_in_the_material_frame_follows_the_rod() -> None:
     moment = constant_vector((0.0, 0.0, 2.0))
-    loads = applied(distributed=(DistributedLoad(moment=moment, frame="material"),)).at(0.0)
-    assert loads.follows
-    assert_allclose(loads.material[:, 5], 2.0)
-    assert_allclose(loads.lab, 0.0)
+    loads = applied(distributed=(DistributedLoad(moment=moment, frame="material"),))
+    assert_allclose(at(loads, 0.0).material[:, 5], 2.0)
+    assert_allclose(at(loads, 0.0).lab, 0.0)
 
 
 def test_loads_add_up() -> None:
     one = DistributedLoad(force=constant_vector((1.0, 0.0, 0.0)))
     point = PointLoad(1.0, force=(Curve.constant(5.0), ZERO[1], ZERO[2]))
-    now = applied(distributed=(one, one), points=(point, point)).at(0.0)
+    now = at(applied(distributed=(one, one), points=(point, point)), 0.0)
     assert_allclose(now.lab[:, 0], 2.0 + 10.0 * point_weights(1.0, *nodes_act(S)))
 
 
 def test_a_point_load_at_an_end_is_the_ends_and_no_density() -> None:
     force = (Curve.constant(1.0), RAMP, ZERO[2])
     loads = applied(points=(PointLoad(LENGTH, force=force), PointLoad(0.0, force=force, frame="material")))
-    assert_allclose(loads.at(2.0).lab, 0.0)
+    assert_allclose(at(loads, 2.0).lab, 0.0)
     # f at s = L is the force that the outside exerts on the rod; at s = 0 it is minus that
     assert_allclose(loads.at_end(2.0, LENGTH, "lab"), [1.0, 0.5, 0.0, 0.0, 0.0, 0.0])
     assert_allclose(loads.at_end(2.0, 0.0, "material"), [-1.0, -0.5, 0.0, 0.0, 0.0, 0.0])
@@ -129,19 +144,20 @@ def test_steps_are_aligned_with_the_corners_of_every_load() -> None:
 
 def test_a_scene_without_loads_has_none() -> None:
     loads = applied()
-    now = loads.at(3.0)
-    assert not now.follows
-    assert not now.wet
+    now = at(loads, 3.0)
+    assert not any(record.present for record in loads.records)
     assert loads.corners() == []
-    for density in (now.lab, now.material, now.added_mass, now.drag_normal, now.drag_tangential):
+    drag, added_mass = loads.records.drag, loads.records.added_mass
+    for density in (now.lab, now.material, added_mass.mass, drag.normal, drag.tangential):
         assert_allclose(density, 0.0, atol=0.0)
 
 
 def test_the_fluids_coefficients_are_morisons() -> None:
     fluid = Fluid(1025.0, added_mass=1.1, drag_normal=1.2, drag_tangential=0.01, current=(0.3, 0.0, 0.0))
-    now = applied(fluid=fluid).at(0.0)
-    assert now.wet
-    assert_allclose(now.added_mass, 1.1 * 1025.0 * pi * 0.02**2 / 4)
-    assert_allclose(now.drag_normal, 0.5 * 1025.0 * 0.02 * 1.2)
-    assert_allclose(now.drag_tangential, 0.5 * 1025.0 * pi * 0.02 * 0.01)
-    assert_allclose(now.current, [0.3, 0.0, 0.0])
+    now = applied(fluid=fluid).records
+    assert now.drag.present and now.added_mass.present
+    assert_allclose(now.added_mass.mass, 1.1 * 1025.0 * pi * 0.02**2 / 4)
+    assert_allclose(now.drag.normal, 0.5 * 1025.0 * 0.02 * 1.2)
+    assert_allclose(now.drag.tangential, 0.5 * 1025.0 * pi * 0.02 * 0.01)
+    assert_allclose(now.drag.current, [[0.3, 0.0, 0.0]])
+    assert_allclose(now.added_mass.current, [[0.3, 0.0, 0.0]])

@@ -9,8 +9,17 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
+from solver import End, Initial, Scene
 from solver.arrays import Array
-from solver.physics.loads.fluid import add_added_mass, add_drag, fluid_power
+from solver.kernels.kernel import kernel
+from solver.methods.space.segments.balances import Motion
+from solver.physics.loads import added_mass as mass_law
+from solver.physics.loads import drag as drag_law
+from solver.physics.loads.applied import AppliedLoads
+from solver.physics.loads.load import Point, add_powers
+from solver.physics.loads.registry import Loads
+from solver.physics.section import sample
+from tests.solver.scenes import ROD
 
 NORMAL, TANGENTIAL, MASS = 6.0, 0.4, 3.0
 R0 = Rotation.from_rotvec([0.4, -0.8, 0.3])
@@ -28,16 +37,38 @@ def tangent_by_rotation() -> Array:
     return np.column_stack([-R[:, 1], R[:, 0], np.zeros(3)])
 
 
+NONE = np.zeros((1, 3))
+DRAG = drag_law.Record(True, np.array([NORMAL]), np.array([TANGENTIAL]), NONE)
+ADDED_MASS = mass_law.Record(True, np.array([MASS]), NONE)
+
+
+def frame(T: Array) -> Array:
+    """A rotation (3, 3) with the tangent T."""
+    across = np.cross(T, R0.as_matrix()[:, 0])
+    across /= np.linalg.norm(across)
+    return np.column_stack([np.cross(across, T), across, T])
+
+
+def point(V: Array, A: Array, T: Array, omega: Array | None = None) -> Point:
+    """A point whose frame has the tangent T."""
+    R = frame(T)
+    turn = np.zeros(3) if omega is None else omega
+    return Point((0.0, 0.0, 0.0), *(tuple(map(float, x)) for x in (V, A, T)), tuple(map(tuple, R.tolist())),
+                 tuple(map(float, turn)))  # fmt: skip
+
+
 def drag(u: Array, T: Array) -> tuple[Array, Array, Array]:
-    P, P_V, P_w = np.zeros(3), np.zeros((3, 3)), np.zeros((3, 3))
-    add_drag(NORMAL, TANGENTIAL, u, T, tangent_by_rotation(), P, P_V, P_w)
-    return P, P_V, P_w
+    """The force against the motion, and its derivatives by the velocity and by a rotation from R0."""
+    load, at = DRAG, point(u, np.zeros(3), T)
+    by = drag_law.tangents(load, 0, 0, at)
+    return -np.array(drag_law.force(load, 0, 0, at)[0]), -np.array(by.C), -np.array(by.by_T) @ tangent_by_rotation()
 
 
 def added_mass(acceleration: Array, T: Array, c0: float = 1.0) -> tuple[Array, Array, Array]:
-    P, P_V, P_w = np.zeros(3), np.zeros((3, 3)), np.zeros((3, 3))
-    add_added_mass(MASS, c0, acceleration, T, tangent_by_rotation(), P, P_V, P_w)
-    return P, P_V, P_w
+    load, at = ADDED_MASS, point(np.zeros(3), acceleration, T)
+    by = mass_law.tangents(load, 0, 0, at)
+    return (-np.array(mass_law.force(load, 0, 0, at)[0]), -c0 * np.array(by.M),
+            -np.array(by.by_T) @ tangent_by_rotation())  # fmt: skip
 
 
 def by_differences(force: object, at: Array, step: float) -> Array:
@@ -93,19 +124,31 @@ def test_added_mass_resists_only_the_acceleration_across() -> None:
     assert_allclose(added_mass(2.0 * across + 5.0 * T, T)[0], MASS * 2.0 * across, atol=1e-13)
 
 
-def test_the_forces_add_to_what_is_there() -> None:
-    P, P_V, P_w = np.ones(3), np.ones((3, 3)), np.ones((3, 3))
-    T, u = tangent(np.zeros(3)), np.array([0.3, -0.5, 0.8])
-    add_drag(NORMAL, TANGENTIAL, u, T, tangent_by_rotation(), P, P_V, P_w)
-    for there, alone in zip((P, P_V, P_w), drag(u, T), strict=True):
-        assert_allclose(there, 1.0 + alone, atol=1e-14)
-
-
 @given(st.tuples(*[st.floats(-5.0, 5.0)] * 3))
 @settings(deadline=None)
 def test_drag_never_feeds_the_motion(u: tuple[float, float, float]) -> None:
     velocity, T = np.array(u), tangent(np.zeros(3))
     assert float(drag(velocity, T)[0] @ velocity) >= -1e-15
+
+
+def fluid_power(mass: float, normal: float, tangential: float, V: Array, current: Array, A: Array, T: Array,
+                T_t: Array) -> tuple[float, float]:  # fmt: skip
+    """What the current gives to one point, and what the fluid takes for good."""
+    R, alone = frame(T), Scene(ROD, Initial.straight(), End.clamp(), End.free(), 1.0, 1.0)
+    absent = AppliedLoads(alone, sample(ROD, np.array([0.0, 1.0])), np.array([0.0, 1.0])).records
+    turning = R.T @ T_t  # = omega x a3
+    omega = np.array([-turning[1], turning[0], 0.0])
+    loads = absent._replace(drag=drag_law.Record(True, np.array([normal]), np.array([tangential]), current[None]),
+                            added_mass=mass_law.Record(mass > 0.0, np.array([mass]), current[None]))  # fmt: skip
+    motion = Motion(np.zeros((1, 3)), V[None], A[None], np.stack([R] * 3), np.stack([omega] * 3))
+    powers = np.zeros(2)
+    sum_powers(loads, motion, powers)
+    return float(powers[0]), float(powers[1])
+
+
+@kernel
+def sum_powers(loads: Loads, motion: Motion, powers: Array) -> None:
+    add_powers(loads, 0, motion, powers)
 
 
 @given(st.tuples(*[st.floats(-5.0, 5.0)] * 3))

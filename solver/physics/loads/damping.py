@@ -1,0 +1,46 @@
+"""Viscous damping: B = -c rho_c A v, Q = -c I omega."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver.kernels.kernel import kernel
+from solver.kernels.vectors import diagonal, identity, times, times_each, vector
+from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.scene.scene import Scene
+
+ACCOUNT = Account.VISCOUS
+
+
+class Record(NamedTuple):
+    """`by_velocity` -c rho_c A (n,) in kg/(m s), `by_omega` -c I (n, 3) in kg m/s."""
+
+    present: bool
+    by_velocity: Any
+    by_omega: Any
+
+
+def of(scene: Scene, samples: Samples) -> Source:
+    """The damping of a scene."""
+    c, section = float(scene.damping), samples.section
+    return Source(Record(c > 0.0, -c * section.mass, -c * section.inertia))
+
+
+def about(record: Record, axis: Any) -> Record:
+    """In the plane of an axis."""
+    return record._replace(by_omega=np.ascontiguousarray(record.by_omega[:, axis.index]))
+
+
+@kernel
+def force(load: Record, i: int, j: int, at: Point) -> Any:
+    """B = -c rho_c A V, Q = -c I omega."""
+    return times(load.by_velocity[j], at.V), times_each(vector(load.by_omega, j), at.omega)
+
+
+@kernel
+def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
+    """By the velocities."""
+    C, moment_omega = identity(load.by_velocity[j], at.V), diagonal(vector(load.by_omega, j))
+    return Tangents(None, C, None, None, None, None, moment_omega)

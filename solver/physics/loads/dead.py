@@ -1,0 +1,41 @@
+"""Given loads that are the same however the rod turns: forces along lab axes, moments along material ones."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from solver.kernels.kernel import kernel
+from solver.kernels.vectors import vector
+from solver.physics.loads import given
+from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.scene.scene import Scene
+
+ACCOUNT = Account.GIVEN
+
+
+class Record(given.Record):
+    """`force` (lab) and `moment` (material)."""
+
+
+def of(scene: Scene, samples: Samples) -> Source:
+    """Those of a scene, but for what is given at its ends."""
+    return given.GivenLoads(scene, samples, Record, following=False)
+
+
+def about(record: Record, axis: Any) -> Record:
+    """In the plane of an axis."""
+    return Record(record.present, record.force @ axis.lab, np.ascontiguousarray(record.moment[..., axis.index]))
+
+
+@kernel
+def force(load: Record, i: int, j: int, at: Point) -> Any:
+    """As given."""
+    return vector(load.force[i], j), vector(load.moment[i], j)
+
+
+@kernel
+def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
+    """None."""
+    return Tangents(None, None, None, None, None, None, None)

@@ -1,0 +1,254 @@
+"""What a load is to a method: forces and moments per length at points of the rod, with their tangents.
+
+A load is a module of this folder, entered in `registry.LOADS`, with
+
+    Record      a NamedTuple of `present` and arrays, a line for each point: what its kernels read;
+    of          makes the `Source` of a scene: its record, and how that changes with time;
+    force       kernel: force (lab) and moment (material) per length at point j at the i-th time within a step;
+    tangents    kernel: their `Tangents` there;
+    ACCOUNT     what becomes of its power: see `Account`;
+
+and, if it has one, `energy`, `carrier`, `entrained` (see below), and `about`, which gives its record in the plane of an
+axis: without it a scene with this load turns in space. The kernels are written with `kernels.vectors`, so that one text
+holds in space and in a plane. Each method says in one place what a point is to it, and what it makes of tangents.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+from solver.arrays import Array
+from solver.kernels.forms import for_each_field, of_many_forms
+from solver.kernels.kernel import kernel
+from solver.kernels.vectors import dot
+from solver.physics.section import Section
+
+
+class Account(IntEnum):
+    """What becomes of the power of a load."""
+
+    STORED = 0
+    """It has an `energy`, which is potential energy."""
+    GIVEN = 1
+    """All of it is work of the loads."""
+    LOST = 2
+    """What it does against the motion relative to its `carrier` is dissipated, the rest is work of the loads."""
+    VISCOUS = 3
+    """All of it is dissipated, and proportional to the velocity: counted by what the rod has moved in a step."""
+
+
+STORED, GIVEN, LOST, VISCOUS = (int(account) for account in Account)
+
+
+class Point(NamedTuple):
+    """A point of the rod: place `r`, velocity `V`, acceleration `A` and tangent `T` (lab), rotation `R`, angular
+    velocity `omega` (material); see `kernels.vectors`."""
+
+    r: Any
+    V: Any
+    A: Any
+    T: Any
+    R: Any
+    omega: Any
+
+
+class Tangents(NamedTuple):
+    """Derivatives of a load's force by place (K), velocity (C), acceleration (M), by the tangent T, and by a rotation
+    d psi that T does not tell (E); of its moment by rotation and by the angular velocity. None for those that vanish.
+    """
+
+    K: Any
+    C: Any
+    M: Any
+    by_T: Any
+    E: Any
+    moment_E: Any
+    moment_omega: Any
+
+
+class Source:
+    """A load of a scene, sampled where a method wants it: its `record`, and how this changes with time."""
+
+    steady = True
+    """Whether the record is the same at all times."""
+    corners: tuple[float, ...] = ()
+    """Times to which steps must be aligned."""
+
+    def __init__(self, record: Any) -> None:
+        self.record = record
+
+    def set_time(self, t: float, i: int) -> None:
+        """Write what acts at time t, the i-th time of a step, into the record."""
+
+    def check(self) -> None:
+        """Raise what the load could not say to the kernel that asked it."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Where a method wants loads: at arclengths `s` (n,), each density acting on `lengths` about `centres` (n,), at so
+    many `times` within a step; the `section` there."""
+
+    s: Array
+    section: Section
+    centres: Array
+    lengths: Array
+    times: int
+
+
+@of_many_forms
+def force(load: Any, i: int, j: int, at: Point) -> Any:
+    """Force and moment per length at point j; None for a moment that the load never has."""
+
+
+@of_many_forms
+def tangents(load: Any, i: int, j: int, at: Point) -> Any:
+    """Their `Tangents`."""
+
+
+@of_many_forms
+def prepare(load: Any, i: int, motion: Any, linearise: bool) -> Any:
+    """What a load does once for all points, before it is asked for each."""
+
+
+@of_many_forms
+def energy(load: Any, i: int, j: int, at: Point) -> float:
+    """Potential energy per length at point j."""
+    return 0.0
+
+
+@of_many_forms
+def carrier(load: Any) -> Any:
+    """The velocity of what the load's source moves with, None if it rests."""
+
+
+@of_many_forms
+def entrained(load: Any, j: int, at: Point) -> Any:
+    """The mass per length that the rod takes along at point j, its velocity, and the rate of that; None if there is
+    none. Its kinetic energy is that of the added mass."""
+
+
+@of_many_forms
+def account(load: Any) -> int:
+    """The load's `Account`."""
+    return 1
+
+
+@of_many_forms
+def point(motion: Any, j: int) -> Any:
+    """Of a method's motion: its point j."""
+
+
+@of_many_forms
+def take_force(balance: Any, j: int, at: Any, force: Any, moment: Any) -> None:
+    """Of a method's balance: subtract force and moment per length at point j."""
+
+
+@of_many_forms
+def take_tangents(balance: Any, j: int, at: Any, tangents: Any) -> None:
+    """Of a method's balance: subtract their tangents, as derivatives by its own unknowns."""
+
+
+@kernel
+def _add_force(load: Any, i: int, motion: Any, balance: Any) -> None:
+    prepare(load, i, motion, False)
+    for j in range(len(motion.r)):
+        at = point(motion, j)
+        lab, moment = force(load, i, j, at)
+        take_force(balance, j, at, lab, moment)
+
+
+@kernel
+def _add_tangents(load: Any, i: int, motion: Any, balance: Any) -> None:
+    prepare(load, i, motion, True)
+    for j in range(len(motion.r)):
+        at = point(motion, j)
+        take_tangents(balance, j, at, tangents(load, i, j, at))
+
+
+def add_forces(loads: Any, i: int, motion: Any, balance: Any) -> None:
+    """Let every load that is present act on a method's balance, at the i-th time of a step."""
+
+
+def add_tangents(loads: Any, i: int, motion: Any, balance: Any) -> None:
+    """Let every load that is present add its tangents to those of a method's balance."""
+
+
+@kernel
+def _add_powers(load: Any, i: int, motion: Any, out: Array) -> None:
+    """Add the sums over all points of the power given by a load, and lost to it (W/m), to `out` (2,)."""
+    what, given, lost = account(load), 0.0, 0.0
+    if what != STORED:
+        prepare(load, i, motion, False)
+        for j in range(len(motion.r)):
+            at = point(motion, j)
+            lab, moment = force(load, i, j, at)
+            power = total_power(lab, moment, at.V, at.omega)
+            if what == GIVEN:
+                given += power
+            else:
+                through = carried_power(lab, carrier(load))
+                given += through
+                lost += through - power - entrained_power(entrained(load, j, at))
+    out[0] += given
+    out[1] += lost
+
+
+def add_powers(loads: Any, i: int, motion: Any, out: Array) -> None:
+    """Add the sums over all points of what loads give, and what they take for good (W/m), to `out` (2,)."""
+
+
+@kernel
+def _add_energies(load: Any, i: int, motion: Any, out: Array) -> None:
+    """Add the sums of a load's potential energy, and of that of the mass it lets the rod take along (J/m), to `out`."""
+    stored, kinetic = 0.0, 0.0
+    prepare(load, i, motion, False)
+    for j in range(len(motion.r)):
+        at = point(motion, j)
+        stored += energy(load, i, j, at)
+        kinetic += entrained_energy(entrained(load, j, at))
+    out[0] += stored
+    out[1] += kinetic
+
+
+def add_energies(loads: Any, i: int, motion: Any, out: Array) -> None:
+    """Add the sums over all points of potential energy and of the kinetic energy of added mass (J/m) to `out` (2,)."""
+
+
+@kernel
+def total_power(force: Any, moment: Any, V: Any, omega: Any) -> float:
+    """force . V + moment . omega."""
+    if moment is None:
+        return float(dot(force, V))
+    return float(dot(force, V) + dot(moment, omega))
+
+
+@kernel
+def carried_power(force: Any, velocity: Any) -> float:
+    """force . velocity of the load's source, which may be at rest."""
+    if velocity is None:
+        return 0.0
+    return float(dot(force, velocity))
+
+
+@kernel
+def entrained_power(taken: Any) -> float:
+    """The rate of the kinetic energy of entrained mass."""
+    if taken is None:
+        return 0.0
+    return float(taken[0] * dot(taken[1], taken[2]))
+
+
+@kernel
+def entrained_energy(taken: Any) -> float:
+    """The kinetic energy of entrained mass."""
+    if taken is None:
+        return 0.0
+    return float(0.5 * taken[0] * dot(taken[1], taken[1]))
+
+
+for _stub, _call in ((add_forces, _add_force), (add_tangents, _add_tangents), (add_powers, _add_powers),
+                     (add_energies, _add_energies)):  # fmt: skip
+    for_each_field(_stub, _call)

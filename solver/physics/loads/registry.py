@@ -1,0 +1,76 @@
+"""All loads there are: one line each."""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from typing import Any
+
+from solver.kernels.forms import forms_of
+from solver.kernels.kernel import kernel
+from solver.physics.loads import added_mass, damping, dead, drag, following, user, weight
+from solver.physics.loads import load as protocol
+from solver.physics.loads.load import Samples, Source
+from solver.scene.scene import Scene
+
+LOADS: tuple[Any, ...] = (
+    weight,
+    dead,
+    following,
+    damping,
+    added_mass,
+    drag,
+    *user.KINDS,
+)
+
+
+def _name(load: Any) -> str:
+    return str(load.__name__.rsplit(".", 1)[-1])
+
+
+ABOUT = tuple(load for load in LOADS if hasattr(load, "about"))
+"""Those that a scene which turns about one axis may have."""
+
+Loads = namedtuple("Loads", [_name(load) for load in LOADS])  # type: ignore[misc]
+LoadsAbout = namedtuple("LoadsAbout", [_name(load) for load in ABOUT])  # type: ignore[misc]
+
+
+def _account(number: int) -> Any:
+    @kernel
+    def account(load: Any) -> int:
+        return number
+
+    return account
+
+
+for _load in LOADS:
+    for _form in ("force", "tangents", "prepare", "energy", "carrier", "entrained"):
+        if hasattr(_load, _form):
+            forms_of(getattr(protocol, _form))[_load.Record] = getattr(_load, _form)
+    forms_of(protocol.account)[_load.Record] = _account(int(_load.ACCOUNT))
+
+
+def sources_of(scene: Scene, samples: Samples) -> tuple[Source, ...]:
+    """Each load of a scene, present or absent, sampled where a method wants it."""
+    return tuple(load.of(scene, samples) for load in LOADS)
+
+
+def records_of(sources: tuple[Source, ...]) -> Any:
+    """Their records, as kernels read them."""
+    return Loads(*(source.record for source in sources))
+
+
+def records_about(axis: Any, sources: tuple[Source, ...]) -> Any:
+    """Their records in the plane of an axis. Raises ValueError for a load that has none there."""
+    records = {}
+    for load, source in zip(LOADS, sources, strict=True):
+        if hasattr(load, "about"):
+            records[_name(load)] = load.about(source.record, axis)
+        elif source.record.present:
+            raise ValueError(f"{_name(load)} does not turn about one axis")
+    return LoadsAbout(**records)
+
+
+def entrained_mass(sources: tuple[Source, ...]) -> Any:
+    """The mass per length (n,) that the loads let the rod take along across its tangent, kg/m."""
+    masses = [source.record.mass for load, source in zip(LOADS, sources, strict=True) if hasattr(load, "entrained")]
+    return sum(masses)

@@ -1,0 +1,53 @@
+"""Weight less buoyancy: (rho_c A - rho_w A) g per length."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver.kernels.kernel import kernel
+from solver.kernels.vectors import dot, vector
+from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.scene.scene import Scene
+
+ACCOUNT = Account.STORED
+
+
+class Record(NamedTuple):
+    """`weight` (n, 3): N/m, lab."""
+
+    present: bool
+    weight: Any
+
+
+def of(scene: Scene, samples: Samples) -> Source:
+    """The weight of a scene's rod in its fluid."""
+    mass = samples.section.mass.copy()
+    if scene.fluid:
+        mass -= scene.fluid.density * 0.25 * pi * samples.section.diameter**2
+    return Source(Record(any(scene.gravity), np.outer(mass, np.array(scene.gravity, dtype=float))))
+
+
+def about(record: Record, axis: Any) -> Record:
+    """In the plane of an axis."""
+    return record._replace(weight=record.weight @ axis.lab)
+
+
+@kernel
+def force(load: Record, i: int, j: int, at: Point) -> Any:
+    """B = (rho_c A - rho_w A) g."""
+    return vector(load.weight, j), None
+
+
+@kernel
+def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
+    """None: it is the same everywhere."""
+    return Tangents(None, None, None, None, None, None, None)
+
+
+@kernel
+def energy(load: Record, i: int, j: int, at: Point) -> float:
+    """- weight . r."""
+    return -float(dot(vector(load.weight, j), at.r))

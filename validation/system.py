@@ -41,7 +41,8 @@ class NewtonSystem:
     def assemble(self) -> None:
         """Residuals, and what the tangents are made of."""
         method, work = self._method, self._method.work
-        balance_nodes(method.state, method.trial, work.past, self._c0, method.section, method.applied.records, work.nodes)
+        balance_nodes(method.state, method.trial, work.past, self._c0, method.section, method.applied.records,
+                      work.nodes)  # fmt: skip
         form_residuals(method.trial, work.past, self._c0, method.h, method.section, self._ends, work.nodes,
                        work.feedback, work.system)  # fmt: skip
 

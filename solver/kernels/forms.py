@@ -8,64 +8,58 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any
 
 from numba.extending import overload
 
 
 class Forms(dict[type, Callable[..., Any]]):
-    """The kernels of one function, by the class of its first argument (a NamedTuple)."""
+    """The kernels of one function, by the class of its first argument (a NamedTuple).
 
-    def __init__(self, stub: Callable[..., Any]) -> None:
-        self.stub = stub
-        parameters = ", ".join(inspect.signature(stub).parameters)
+    A class that is not here has the function's own body.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function = function
+        parameters = ", ".join(inspect.signature(function).parameters)
         first = parameters.split(",")[0]
-        source = (f"def typing({parameters}):\n"
-                  f"    form = forms.form({first})\n"
+        source = (f"def choose({parameters}):\n"
+                  f"    form = forms.get({first}.instance_class)\n"
                   f"    def call({parameters}):\n"
                   f"        return form({parameters})\n"
-                  f"    return call\n")  # fmt: skip
+                  f"    return call if form else forms.function\n")  # fmt: skip
         names: dict[str, Any] = {"forms": self}
         exec(source, names)  # noqa: S102  # an overload must have its function's parameters, by name
-        overload(stub, strict=False)(names["typing"])
-
-    def form(self, record: Any) -> Callable[..., Any]:
-        """The kernel for a record's type; the stub itself, compiled, where its class has none of its own."""
-        return self.get(record.instance_class, self.default)
-
-    default: Callable[..., Any]
+        overload(function, strict=False, inline="always")(names["choose"])
 
 
-def of_many_forms(stub: Callable[..., Any]) -> Callable[..., Any]:
-    """A function whose kernels are entered in its `forms`; the stub's own body is what holds without one."""
-    from solver.kernels.kernel import kernel
-
-    forms = Forms(stub)
-    forms.default = kernel(stub)
-    stub.forms = forms  # type: ignore[attr-defined]
-    return stub
+def of_many_forms(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function for which kernels are entered in `forms_of(function)`."""
+    function.forms = Forms(function)  # type: ignore[attr-defined]
+    return function
 
 
-def forms_of(stub: Callable[..., Any]) -> Forms:
+def forms_of(function: Callable[..., Any]) -> Forms:
     """The kernels of a function of many forms."""
-    return cast(Forms, stub.forms)  # type: ignore[attr-defined]
+    return function.forms  # type: ignore[attr-defined, no-any-return]
 
 
-def for_each_field(stub: Callable[..., Any], call: Callable[..., Any]) -> None:
-    """Let `stub`(records, ...) call `call`(record, ...) for each record that is present in a NamedTuple of records.
+def for_each(function: Callable[..., Any], call: Callable[..., Any], having: Callable[[type], bool]) -> None:
+    """Let `function`(records, ...) call `call`(record, ...) for each record that is present in a NamedTuple of records.
 
-    A record has `present`; what is absent costs this one test.
+    A record has `present`; what is absent costs this one test, and a class that is not `having` nothing.
     """
-    parameters = list(inspect.signature(stub).parameters)
+    parameters = list(inspect.signature(function).parameters)
     records, others = parameters[0], ", ".join(parameters[1:])
 
-    def typing(record_type: Any) -> Any:
-        body = "".join(f"    if {records}.{name}.present:\n        call({records}.{name}, {others})\n"
-                       for name in record_type.fields)  # fmt: skip
+    def each(record_type: Any) -> Any:
+        fields = zip(record_type.fields, record_type.types, strict=True)
+        body = [f"    if {records}.{name}.present:\n        call({records}.{name}, {others})\n"
+                for name, field in fields if having(field.instance_class)]  # fmt: skip
         names: dict[str, Any] = {"call": call}
-        exec(f"def each({', '.join(parameters)}):\n{body}", names)  # noqa: S102
+        exec(f"def each({', '.join(parameters)}):\n{''.join(body) or '    pass'}", names)  # noqa: S102
         return names["each"]
 
-    names: dict[str, Any] = {"typing": typing}
-    exec(f"def choose({', '.join(parameters)}):\n    return typing({records})\n", names)  # noqa: S102
-    overload(stub, strict=False)(names["choose"])
+    names: dict[str, Any] = {"each": each}
+    exec(f"def choose({', '.join(parameters)}):\n    return each({records})\n", names)  # noqa: S102
+    overload(function, strict=False)(names["choose"])

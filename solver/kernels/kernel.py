@@ -87,6 +87,12 @@ def kernel(function: Function) -> Function:
     return numba.njit(**_OPTIONS)(function)  # type: ignore[no-any-return]
 
 
+def inner(function: Function) -> Function:
+    """Compile a function that only kernels call: without what Python would need to call it, which takes long."""
+    options = _OPTIONS | {"no_cpython_wrapper": True}
+    return numba.njit(**options)(function)  # type: ignore[no-any-return]
+
+
 def inlined(function: Function) -> Function:
     """Compile a function that is to vanish into its callers: one that is called for every node or interval."""
     return numba.njit(inline="always", **_OPTIONS)(function)  # type: ignore[no-any-return]

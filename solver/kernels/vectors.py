@@ -15,7 +15,7 @@ import numba
 from numba.extending import overload
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 
 
 def vector(a: Any, j: int) -> Any:
@@ -31,7 +31,7 @@ def _vector(a: Any, j: Any) -> Any:
     return lambda a, j: a[j]
 
 
-@kernel
+@inner
 def matrix(a: Array, j: int) -> Any:
     """Matrix j of an array (n, 3, 3)."""
     return ((a[j, 0, 0], a[j, 0, 1], a[j, 0, 2]), (a[j, 1, 0], a[j, 1, 1], a[j, 1, 2]),
@@ -51,7 +51,7 @@ def _dot(a: Any, b: Any) -> Any:
     return lambda a, b: a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@kernel
+@inner
 def norm(a: Any) -> float:
     """The length of a vector."""
     return sqrt(dot(a, a))
@@ -70,15 +70,20 @@ def _plus(a: Any, b: Any) -> Any:
     return lambda a, b: (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@kernel
 def minus(a: Any, b: Any) -> Any:
     """a - b."""
+
+
+@overload(minus, strict=False)
+def _minus(a: Any, b: Any) -> Any:
+    if isinstance(a, numba.types.Float):
+        return lambda a, b: a - b
     if len(a) == 2:
-        return a[0] - b[0], a[1] - b[1]
-    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+        return lambda a, b: (a[0] - b[0], a[1] - b[1])
+    return lambda a, b: (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-@kernel
+@inner
 def times(factor: float, a: Any) -> Any:
     """A vector times a number."""
     if len(a) == 2:
@@ -95,6 +100,28 @@ def _middle(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.NoneType):
         return lambda a, b: None
     return lambda a, b: times(0.5, plus(a, b))
+
+
+def stiffness(a: Any, j: int) -> Any:
+    """Matrix j of an array (n, 3, 3); the number of (n,) about one axis."""
+
+
+@overload(stiffness, strict=False)
+def _stiffness(a: Any, j: Any) -> Any:
+    if a.ndim == 1:
+        return lambda a, j: a[j]
+    return lambda a, j: matrix(a, j)
+
+
+def transform(A: Any, x: Any) -> Any:
+    """A x, of a matrix or of a number."""
+
+
+@overload(transform, strict=False)
+def _transform(A: Any, x: Any) -> Any:
+    if isinstance(A, numba.types.Float):
+        return lambda A, x: A * x
+    return lambda A, x: (dot(A[0], x), dot(A[1], x), dot(A[2], x))
 
 
 def times_each(a: Any, b: Any) -> Any:
@@ -119,7 +146,7 @@ def _diagonal(a: Any) -> Any:
     return lambda a: ((a[0], 0.0, 0.0), (0.0, a[1], 0.0), (0.0, 0.0, a[2]))
 
 
-@kernel
+@inner
 def outer(a: Any, b: Any) -> Any:
     """The matrix a b^t."""
     if len(a) == 2:
@@ -127,7 +154,7 @@ def outer(a: Any, b: Any) -> Any:
     return times(a[0], b), times(a[1], b), times(a[2], b)
 
 
-@kernel
+@inner
 def identity(factor: float, a: Any) -> Any:
     """The identity of the space of `a`, times a number."""
     if len(a) == 2:
@@ -135,7 +162,7 @@ def identity(factor: float, a: Any) -> Any:
     return (factor, 0.0, 0.0), (0.0, factor, 0.0), (0.0, 0.0, factor)
 
 
-@kernel
+@inner
 def add(A: Any, B: Any) -> Any:
     """A + B, of matrices."""
     if len(A) == 2:
@@ -143,7 +170,7 @@ def add(A: Any, B: Any) -> Any:
     return plus(A[0], B[0]), plus(A[1], B[1]), plus(A[2], B[2])
 
 
-@kernel
+@inner
 def scale(factor: float, A: Any) -> Any:
     """A matrix times a number."""
     if len(A) == 2:
@@ -185,7 +212,7 @@ def _in_lab_by_rotation(R: Any, x: Any) -> Any:
     return lambda R, x: (_by_rotation(R[0], x), _by_rotation(R[1], x), _by_rotation(R[2], x))
 
 
-@kernel
+@inner
 def _by_rotation(row: Any, x: Any) -> Any:
     """A row of -R [x]."""
     return row[2] * x[1] - row[1] * x[2], row[0] * x[2] - row[2] * x[0], row[1] * x[0] - row[0] * x[1]
@@ -228,14 +255,14 @@ def _tangent_by_rotation(G: Any, R: Any) -> Any:
     return lambda G, R: (_swing(G[0], R), _swing(G[1], R), _swing(G[2], R))
 
 
-@kernel
+@inner
 def _swing(row: Any, R: Any) -> Any:
     """A row of G [-R a2, R a1, 0]."""
     return (-(row[0] * R[0][1] + row[1] * R[1][1] + row[2] * R[2][1]),
             row[0] * R[0][0] + row[1] * R[1][0] + row[2] * R[2][0], 0.0)  # fmt: skip
 
 
-@kernel
+@inner
 def add_vector(factor: float, x: Any, out: Array) -> None:
     """Add factor x to `out` (3,), but nothing of None."""
     if x is not None:
@@ -244,7 +271,7 @@ def add_vector(factor: float, x: Any, out: Array) -> None:
         out[2] += factor * x[2]
 
 
-@kernel
+@inner
 def add_matrix(factor: float, A: Any, out: Array) -> None:
     """Add factor A to `out` (3, 3), but nothing of None."""
     if A is not None:
@@ -253,7 +280,7 @@ def add_matrix(factor: float, A: Any, out: Array) -> None:
         add_vector(factor, A[2], out[2])
 
 
-@kernel
+@inner
 def add_product(factor: float, A: Any, B: Array, out: Array) -> None:
     """Add factor A B to `out` (3, 3), but nothing of None."""
     if A is not None:
@@ -262,7 +289,7 @@ def add_product(factor: float, A: Any, B: Array, out: Array) -> None:
         _add_row(factor, A[2], B, out[2])
 
 
-@kernel
+@inner
 def _add_row(factor: float, a: Any, B: Array, out: Array) -> None:
     for k in range(3):
         out[k] += factor * (a[0] * B[0, k] + a[1] * B[1, k] + a[2] * B[2, k])

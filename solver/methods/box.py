@@ -23,6 +23,7 @@ from solver.methods.time.generalized_alpha.history import rescale_aux
 from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work, step
 from solver.physics.contact.forces import Touch
 from solver.physics.contact.self_contact import SelfContact
+from solver.physics.elasticity import mean_bending, moments, principal
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.loads.registry import Loads
@@ -56,11 +57,11 @@ class BoxMethod:
         self.applied = AppliedLoads(scene, self.section, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self.state, correction = _initial_state(scene.initial, self.s, self.section)
-        self.section.kappa0[:] += correction
+        self.section.elastic.kappa0[:] += correction
         self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=1)
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)
-        self._scales = Scales(float(scene.rod.length), float(self.section.stiffness[:, :2].mean()),
+        self._scales = Scales(float(scene.rod.length), mean_bending(self.section.elastic),
                               numerics.linear_solver == "shooting")  # fmt: skip
         self._gain = STRETCH_FEEDBACK / scene.t_end
         self._measured = Measured(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -71,7 +72,8 @@ class BoxMethod:
         self.shortest_step = 0.0
         """Step (s) below which the scheme along s does not resolve the equations; 0 for the box scheme."""
         if numerics.rho_inf_space < 1.0:
-            self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / self.section.stiffness[:, 0])))
+            softest = principal(self.section.elastic)[:, 0]
+            self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / softest)))
         self._last_dt, self._taken_dt, self._consistent = 0.0, 0.0, False
         self._F_rate = np.zeros((len(self.s), 3))
         self._flows = Flows.empty(len(self.s))
@@ -156,7 +158,7 @@ class BoxMethod:
         kappa = Y[:, KAPPA : KAPPA + 3].copy()
         return Fields(
             v=self.velocity(), omega=Y[:, OMEGA : OMEGA + 3].copy(), f=rotate_back(quaternion, Y[:, F:].copy()),
-            kappa=kappa, q=self.section.stiffness * (kappa - self.section.kappa0), r=self.state.r.copy(),
+            kappa=kappa, q=moments(self.section.elastic, kappa), r=self.state.r.copy(),
             orientation=quaternion.copy(),
         )  # fmt: skip
 

@@ -102,10 +102,10 @@ class OneAxisMethod(RadauMethod):
         axis, (r, V) = self._axis, self._nodes()
         phi, omega = at_nodes(self.state.phi), at_nodes(self.state.omega)
         back = directions(-self.chain.swing * phi)
-        bend = np.diff(self.state.phi) / self.chain.span
+        bend, elastic = np.diff(self.state.phi) / self.chain.span, self.chain.elastic
         return Fields(
             v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(self.state.F * back),
-            kappa=axis.about(bend - self._offset), q=axis.about(self.chain.stiffness * (bend - self.chain.kappa0)),
+            kappa=axis.about(bend - self._offset), q=axis.about(elastic.K * (bend - elastic.kappa0)),
             r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
         )  # fmt: skip
 

@@ -7,24 +7,21 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.physics.elasticity import Elasticity, elasticity_of
 from solver.scene.rod import Rod
 
 
 class Section(NamedTuple):
-    """Section properties at n arclengths: stiffness (n, 3), mass (n,), inertia (n, 3), diameter (n,), kappa0 (n, 3)."""
+    """Section properties at n arclengths: `elastic`, mass (n,), inertia (n, 3), diameter (n,)."""
 
-    stiffness: Array
+    elastic: Elasticity
     mass: Array
     inertia: Array
     diameter: Array
-    kappa0: Array
 
 
 def sample(rod: Rod, s: Array) -> Section:
     """The rod's section properties at arclengths s (n,)."""
 
-    def columns(profiles: tuple) -> Array:  # type: ignore[type-arg]
-        return np.ascontiguousarray(np.stack([p(s) for p in profiles], axis=1))
-
-    return Section(columns(rod.stiffness), np.array(rod.mass(s)), columns(rod.inertia),
-                   np.array(rod.diameter(s)), columns(rod.kappa0))  # fmt: skip
+    inertia = np.ascontiguousarray(np.stack([profile(s) for profile in rod.inertia], axis=1))
+    return Section(elasticity_of(rod, s), np.array(rod.mass(s)), inertia, np.array(rod.diameter(s)))

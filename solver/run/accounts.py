@@ -11,6 +11,7 @@ from solver.kernels.rotation import rotate
 from solver.measures.frame import Frame
 from solver.measures.topology import writhe
 from solver.methods.method import Method
+from solver.physics.elasticity import elasticity_of, principal
 from solver.scene.scene import Scene
 
 MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
@@ -30,7 +31,7 @@ class Accounts:
         thrown = any((*scene.initial.velocity, *scene.initial.angular_velocity))
         self._jolts = [*([0.0] if thrown else []), *method.start.jolts(), *method.end.jolts()]
         s = np.linspace(0.0, scene.rod.length, 11)
-        self._unit = float(np.min([EJ(s) for EJ in scene.rod.stiffness[:2]], axis=0).mean()) / scene.rod.length
+        self._unit = float(principal(elasticity_of(scene.rod, s))[:, :2].min(axis=1).mean()) / scene.rod.length
         self._turnover = 0.0
         self._Lk_at_start = 0.0
 

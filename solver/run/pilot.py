@@ -18,7 +18,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics
 from solver.outcome import Outcome, RunFailed
-from solver.physics.section import sample
+from solver.physics.elasticity import elasticity_of, principal
 from solver.run.resolution import halve_steps, with_intervals
 from solver.run.run import Run
 from solver.run.side_by_side import Kind, SideBySide
@@ -164,7 +164,7 @@ class Difference:
     def __init__(self, scene: Scene) -> None:
         length = float(scene.rod.length)
         bend = SMALL_BEND / length
-        stiffness = float(sample(scene.rod, np.array([0.5 * length])).stiffness[0, 0])
+        stiffness = float(principal(elasticity_of(scene.rod, np.array([0.5 * length])))[0, 0])
         self._apart = np.zeros(3)
         self._scale = np.array([length, bend, 0.5 * stiffness * bend**2 * length])
 

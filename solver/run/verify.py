@@ -10,6 +10,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics
+from solver.physics.elasticity import principal
 from solver.physics.section import sample
 from solver.run.resolution import refine
 from solver.run.side_by_side import NAMES, Kind, SideBySide
@@ -51,7 +52,8 @@ def unseen(rod: Rod, s: Array, lost: float) -> dict[str, Array]:
     section = sample(rod, s)
     spin = np.full((len(s), 3), np.inf)
     spin[:, 2] = section.inertia[:, 2]
-    weights = {"v": section.mass[:, None], "omega": spin, "kappa": section.stiffness, "q": 1.0 / section.stiffness}
+    stiffness = principal(section.elastic)
+    weights = {"v": section.mass[:, None], "omega": spin, "kappa": stiffness, "q": 1.0 / stiffness}
     return {name: np.sqrt(2.0 * lost / (weight * float(rod.length))) for name, weight in weights.items()}
 
 

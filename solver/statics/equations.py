@@ -23,6 +23,7 @@ from solver.methods.space.segments.chain import Chain, Residuals, Stages
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.segments.joints import bend_joints
 from solver.methods.space.segments.motion import follow_segments
+from solver.physics.elasticity import mean_bending
 from solver.scene.scene import Scene
 from solver.statics.ends import StaticEnd
 
@@ -84,7 +85,7 @@ class Equations:
         R = self.stages.R[0]
         self.ends = (StaticEnd(scene.start, R[0]), StaticEnd(scene.end, R[-1]))
         self._home = (state.quaternion[[0, -1]].copy(), np.stack([self.start.base, self.tip()]))
-        self.stiffness = float(self.chain.stiffness[:, :2].mean())
+        self.stiffness = mean_bending(self.chain.elastic)
         moment, force = self.stiffness / length, self.stiffness / length**2
         self.units = np.repeat([1.0, length, force], 3)
         self._rows = 1.0 / np.repeat([moment, force, length], 3)

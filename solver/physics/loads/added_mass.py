@@ -12,12 +12,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, outer, tangent_rate, times, vector
-from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
 from solver.scene.scene import Scene
-
-ACCOUNT = Account.LOST
 
 
 class Record(NamedTuple):
@@ -40,13 +38,13 @@ def about(record: Record, axis: Any) -> Record:
     return record._replace(current=record.current @ axis.lab)
 
 
-@kernel
+@inner
 def force(load: Record, i: int, j: int, at: Point) -> Any:
     """B = -Ca rho_w A (A - (A . T) T)."""
     return times(-load.mass[j], minus(at.A, times(dot(at.A, at.T), at.T))), None
 
 
-@kernel
+@inner
 def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """By the acceleration and by the tangent."""
     m, along = load.mass[j], dot(at.A, at.T)
@@ -55,16 +53,22 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     return Tangents(None, None, M, by_T, None, None, None)
 
 
-@kernel
+@inner
 def carrier(load: Record) -> Any:
     """The current."""
     return vector(load.current, 0)
 
 
-@kernel
+@inner
 def entrained(load: Record, j: int, at: Point) -> Any:
     """Ca rho_w A, u_n, and its rate a_n - (u . T_t) T - (u . T) T_t."""
     u, turning = minus(at.V, vector(load.current, 0)), tangent_rate(at.R, at.omega)
     along, across = dot(u, at.T), minus(at.A, times(dot(at.A, at.T), at.T))
     rate = minus(minus(across, times(dot(u, turning), at.T)), times(along, turning))
     return load.mass[j], minus(u, times(along, at.T)), rate
+
+
+@inner
+def account(load: Record) -> int:
+    """Lost, but for what the current gives."""
+    return LOST

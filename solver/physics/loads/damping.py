@@ -6,12 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 from solver.kernels.vectors import diagonal, identity, times, times_each, vector
-from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.physics.loads.load import VISCOUS, Point, Samples, Source, Tangents
 from solver.scene.scene import Scene
-
-ACCOUNT = Account.VISCOUS
 
 
 class Record(NamedTuple):
@@ -33,14 +31,20 @@ def about(record: Record, axis: Any) -> Record:
     return record._replace(by_omega=np.ascontiguousarray(record.by_omega[:, axis.index]))
 
 
-@kernel
+@inner
 def force(load: Record, i: int, j: int, at: Point) -> Any:
     """B = -c rho_c A V, Q = -c I omega."""
     return times(load.by_velocity[j], at.V), times_each(vector(load.by_omega, j), at.omega)
 
 
-@kernel
+@inner
 def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """By the velocities."""
     C, moment_omega = identity(load.by_velocity[j], at.V), diagonal(vector(load.by_omega, j))
     return Tangents(None, C, None, None, None, None, moment_omega)
+
+
+@inner
+def account(load: Record) -> int:
+    """Viscous."""
+    return VISCOUS

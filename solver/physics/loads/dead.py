@@ -6,13 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 from solver.kernels.vectors import vector
 from solver.physics.loads import given
-from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.physics.loads.load import GIVEN, Point, Samples, Source
 from solver.scene.scene import Scene
-
-ACCOUNT = Account.GIVEN
 
 
 class Record(given.Record):
@@ -29,13 +27,13 @@ def about(record: Record, axis: Any) -> Record:
     return Record(record.present, record.force @ axis.lab, np.ascontiguousarray(record.moment[..., axis.index]))
 
 
-@kernel
+@inner
 def force(load: Record, i: int, j: int, at: Point) -> Any:
     """As given."""
     return vector(load.force[i], j), vector(load.moment[i], j)
 
 
-@kernel
-def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
-    """None."""
-    return Tangents(None, None, None, None, None, None, None)
+@inner
+def account(load: Record) -> int:
+    """Work of the loads."""
+    return GIVEN

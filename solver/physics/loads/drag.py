@@ -10,12 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, times, vector
-from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
 from solver.scene.scene import Scene
-
-ACCOUNT = Account.LOST
 
 
 class Record(NamedTuple):
@@ -42,7 +40,7 @@ def about(record: Record, axis: Any) -> Record:
     return record._replace(current=record.current @ axis.lab)
 
 
-@kernel
+@inner
 def force(load: Record, i: int, j: int, at: Point) -> Any:
     """B of the velocity and the tangent."""
     u = minus(at.V, vector(load.current, 0))
@@ -51,7 +49,7 @@ def force(load: Record, i: int, j: int, at: Point) -> Any:
     return plus(times(-load.normal[j] * norm(u_n), u_n), times(-load.tangential[j] * abs(along) * along, at.T)), None
 
 
-@kernel
+@inner
 def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """By the velocity and by the tangent.
 
@@ -68,7 +66,13 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     return Tangents(None, C, None, add(by_T, outer(times(n * along, unit), u_n)), None, None, None)
 
 
-@kernel
+@inner
 def carrier(load: Record) -> Any:
     """The current."""
     return vector(load.current, 0)
+
+
+@inner
+def account(load: Record) -> int:
+    """Lost, but for what the current gives."""
+    return LOST

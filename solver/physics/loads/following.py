@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 from solver.kernels.vectors import in_lab, in_lab_by_rotation, in_material, in_material_by_rotation, vector
 from solver.physics.loads import given
-from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.physics.loads.load import GIVEN, Point, Samples, Source, Tangents
 from solver.scene.scene import Scene
-
-ACCOUNT = Account.GIVEN
 
 
 class Record(given.Record):
@@ -27,14 +25,20 @@ def about(record: Record, axis: Any) -> Record:
     return Record(record.present, record.force @ axis.material, record.moment @ axis.n)
 
 
-@kernel
+@inner
 def force(load: Record, i: int, j: int, at: Point) -> Any:
     """R force and R^t moment."""
     return in_lab(at.R, vector(load.force[i], j)), in_material(at.R, vector(load.moment[i], j))
 
 
-@kernel
+@inner
 def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """By rotation."""
     E, moment = in_lab_by_rotation(at.R, vector(load.force[i], j)), in_material(at.R, vector(load.moment[i], j))
     return Tangents(None, None, None, None, E, in_material_by_rotation(moment), None)
+
+
+@inner
+def account(load: Record) -> int:
+    """Work of the loads."""
+    return GIVEN

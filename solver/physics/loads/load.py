@@ -5,12 +5,12 @@ A load is a module of this folder, entered in `registry.LOADS`, with
     Record      a NamedTuple of `present` and arrays, a line for each point: what its kernels read;
     of          makes the `Source` of a scene: its record, and how that changes with time;
     force       kernel: force (lab) and moment (material) per length at point j at the i-th time within a step;
-    tangents    kernel: their `Tangents` there;
-    ACCOUNT     what becomes of its power: see `Account`;
+    account     kernel: the `Account` of what becomes of its power, unless that is stored;
 
-and, if it has one, `energy`, `carrier`, `entrained` (see below), and `about`, which gives its record in the plane of an
-axis: without it a scene with this load turns in space. The kernels are written with `kernels.vectors`, so that one text
-holds in space and in a plane. Each method says in one place what a point is to it, and what it makes of tangents.
+and, if it has one, `tangents`, `energy`, `carrier`, `entrained` (see below), and `about`, which gives its record in the
+plane of an axis: without it a scene with this load turns in space. The kernels are written with `kernels.vectors`, so
+that one text holds in space and in a plane. Each method says in one place what a point is to it, and what it makes of
+tangents.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 from solver.arrays import Array
-from solver.kernels.forms import for_each_field, of_many_forms
-from solver.kernels.kernel import kernel
+from solver.kernels.forms import for_each, forms_of, of_many_forms
+from solver.kernels.kernel import inner
 from solver.kernels.vectors import dot
 from solver.physics.section import Section
 
@@ -133,7 +133,7 @@ def entrained(load: Any, j: int, at: Point) -> Any:
 @of_many_forms
 def account(load: Any) -> int:
     """The load's `Account`."""
-    return 1
+    return 0
 
 
 @of_many_forms
@@ -151,7 +151,7 @@ def take_tangents(balance: Any, j: int, at: Any, tangents: Any) -> None:
     """Of a method's balance: subtract their tangents, as derivatives by its own unknowns."""
 
 
-@kernel
+@inner
 def _add_force(load: Any, i: int, motion: Any, balance: Any) -> None:
     prepare(load, i, motion, False)
     for j in range(len(motion.r)):
@@ -160,7 +160,7 @@ def _add_force(load: Any, i: int, motion: Any, balance: Any) -> None:
         take_force(balance, j, at, lab, moment)
 
 
-@kernel
+@inner
 def _add_tangents(load: Any, i: int, motion: Any, balance: Any) -> None:
     prepare(load, i, motion, True)
     for j in range(len(motion.r)):
@@ -176,22 +176,23 @@ def add_tangents(loads: Any, i: int, motion: Any, balance: Any) -> None:
     """Let every load that is present add its tangents to those of a method's balance."""
 
 
-@kernel
+@inner
 def _add_powers(load: Any, i: int, motion: Any, out: Array) -> None:
     """Add the sums over all points of the power given by a load, and lost to it (W/m), to `out` (2,)."""
     what, given, lost = account(load), 0.0, 0.0
-    if what != STORED:
-        prepare(load, i, motion, False)
-        for j in range(len(motion.r)):
-            at = point(motion, j)
-            lab, moment = force(load, i, j, at)
-            power = total_power(lab, moment, at.V, at.omega)
-            if what == GIVEN:
-                given += power
-            else:
-                through = carried_power(lab, carrier(load))
-                given += through
-                lost += through - power - entrained_power(entrained(load, j, at))
+    if what == STORED:
+        return
+    prepare(load, i, motion, False)
+    for j in range(len(motion.r)):
+        at = point(motion, j)
+        lab, moment = force(load, i, j, at)
+        power = total_power(lab, moment, at.V, at.omega)
+        if what == GIVEN:
+            given += power
+        else:
+            through = carried_power(lab, carrier(load))
+            given += through
+            lost += through - power - entrained_power(entrained(load, j, at))
     out[0] += given
     out[1] += lost
 
@@ -200,7 +201,7 @@ def add_powers(loads: Any, i: int, motion: Any, out: Array) -> None:
     """Add the sums over all points of what loads give, and what they take for good (W/m), to `out` (2,)."""
 
 
-@kernel
+@inner
 def _add_energies(load: Any, i: int, motion: Any, out: Array) -> None:
     """Add the sums of a load's potential energy, and of that of the mass it lets the rod take along (J/m), to `out`."""
     stored, kinetic = 0.0, 0.0
@@ -217,7 +218,7 @@ def add_energies(loads: Any, i: int, motion: Any, out: Array) -> None:
     """Add the sums over all points of potential energy and of the kinetic energy of added mass (J/m) to `out` (2,)."""
 
 
-@kernel
+@inner
 def total_power(force: Any, moment: Any, V: Any, omega: Any) -> float:
     """force . V + moment . omega."""
     if moment is None:
@@ -225,7 +226,7 @@ def total_power(force: Any, moment: Any, V: Any, omega: Any) -> float:
     return float(dot(force, V) + dot(moment, omega))
 
 
-@kernel
+@inner
 def carried_power(force: Any, velocity: Any) -> float:
     """force . velocity of the load's source, which may be at rest."""
     if velocity is None:
@@ -233,7 +234,7 @@ def carried_power(force: Any, velocity: Any) -> float:
     return float(dot(force, velocity))
 
 
-@kernel
+@inner
 def entrained_power(taken: Any) -> float:
     """The rate of the kinetic energy of entrained mass."""
     if taken is None:
@@ -241,7 +242,7 @@ def entrained_power(taken: Any) -> float:
     return float(taken[0] * dot(taken[1], taken[2]))
 
 
-@kernel
+@inner
 def entrained_energy(taken: Any) -> float:
     """The kinetic energy of entrained mass."""
     if taken is None:
@@ -249,6 +250,26 @@ def entrained_energy(taken: Any) -> float:
     return float(0.5 * taken[0] * dot(taken[1], taken[1]))
 
 
-for _stub, _call in ((add_forces, _add_force), (add_tangents, _add_tangents), (add_powers, _add_powers),
-                     (add_energies, _add_energies)):  # fmt: skip
-    for_each_field(_stub, _call)
+def has_tangents(record: type) -> bool:
+    """Whether a load's force depends on how the rod lies and moves."""
+    return record in forms_of(tangents)
+
+
+def has_power(record: type) -> bool:
+    """Whether the power of a load is anything but a change of its potential energy."""
+    return record in forms_of(account)
+
+
+def has_energy(record: type) -> bool:
+    """Whether a load stores energy, or entrains mass."""
+    return record in forms_of(energy) or record in forms_of(entrained)
+
+
+def _always(_record: type) -> bool:
+    return True
+
+
+for_each(add_forces, _add_force, _always)
+for_each(add_tangents, _add_tangents, has_tangents)
+for_each(add_powers, _add_powers, has_power)
+for_each(add_energies, _add_energies, has_energy)

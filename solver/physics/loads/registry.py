@@ -6,7 +6,6 @@ from collections import namedtuple
 from typing import Any
 
 from solver.kernels.forms import forms_of
-from solver.kernels.kernel import kernel
 from solver.physics.loads import added_mass, damping, dead, drag, following, user, weight
 from solver.physics.loads import load as protocol
 from solver.physics.loads.load import Samples, Source
@@ -34,19 +33,10 @@ Loads = namedtuple("Loads", [_name(load) for load in LOADS])  # type: ignore[mis
 LoadsAbout = namedtuple("LoadsAbout", [_name(load) for load in ABOUT])  # type: ignore[misc]
 
 
-def _account(number: int) -> Any:
-    @kernel
-    def account(load: Any) -> int:
-        return number
-
-    return account
-
-
 for _load in LOADS:
-    for _form in ("force", "tangents", "prepare", "energy", "carrier", "entrained"):
+    for _form in ("force", "tangents", "prepare", "energy", "carrier", "entrained", "account"):
         if hasattr(_load, _form):
             forms_of(getattr(protocol, _form))[_load.Record] = getattr(_load, _form)
-    forms_of(protocol.account)[_load.Record] = _account(int(_load.ACCOUNT))
 
 
 def sources_of(scene: Scene, samples: Samples) -> tuple[Source, ...]:

@@ -15,7 +15,7 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 from solver.kernels.vectors import matrix, vector
 from solver.physics.loads.load import Account, Point, Samples, Source, Tangents, point
 from solver.scene.scene import Scene
@@ -23,10 +23,11 @@ from solver.scene.user import UserLoad
 
 
 class Record(NamedTuple):
-    """`address` (1,) of what fills the arrays; places and velocities `r`, `V` (n, 3), lab; `forces` (n, 3) in N/m, `K`,
-    `C` (n, 3, 3) their derivatives, and `stored` (n,) in J/m."""
+    """`account`; `address` (1,) of what fills the arrays; places and velocities `r`, `V` (n, 3), lab; `forces` (n, 3)
+    in N/m, `K`, `C` (n, 3, 3) their derivatives, and `stored` (n,) in J/m."""
 
     present: bool
+    account: int
     address: Any
     r: Any
     V: Any
@@ -36,32 +37,20 @@ class Record(NamedTuple):
     stored: Any
 
 
-class GivenRecord(Record):
-    """Loads whose power is work."""
-
-
-class LostRecord(Record):
-    """Loads whose power is dissipated."""
-
-
-class StoredRecord(Record):
-    """Loads that have a potential energy."""
-
-
 _CALL = CFUNCTYPE(c_int64, c_int64, c_int64)
 
 
 class UserLoads(Source):
     """The user's loads of one account, called back from kernels."""
 
-    def __init__(self, loads: tuple[UserLoad, ...], samples: Samples, kind: type[Record]) -> None:
+    def __init__(self, loads: tuple[UserLoad, ...], samples: Samples, account: Account) -> None:
         n = len(samples.s)
         r, V, forces, K, C = (np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3, 3)),
                               np.zeros((n, 3, 3)))  # fmt: skip
         self._loads, self._s, self._times = loads, samples.s, [0.0] * samples.times
         self._function = _CALL(self._call)
         address = np.array([cast(self._function, c_void_p).value], np.int64)
-        super().__init__(kind(bool(loads), address, r, V, forces, K, C, np.zeros(n)))
+        super().__init__(Record(bool(loads), int(account), address, r, V, forces, K, C, np.zeros(n)))
         self.steady = not loads
         self.corners = tuple(corner for load in loads for corner in load.corners)
         self._failure: list[Exception] = []
@@ -110,7 +99,7 @@ def _call_back(_context: Any, address: Any, _i: Any, _linearise: Any) -> Any:
     return types.int64(address, types.int64, types.int64), generate
 
 
-@kernel
+@inner
 def prepare(load: Record, i: int, motion: Any, linearise: bool) -> None:
     """Hand over where the points are, and have the arrays filled."""
     for j in range(len(load.r)):
@@ -120,33 +109,39 @@ def prepare(load: Record, i: int, motion: Any, linearise: bool) -> None:
     _call_back(load.address[0], i, 1 if linearise else 0)  # type: ignore[call-arg]
 
 
-@kernel
+@inner
 def force(load: Record, i: int, j: int, at: Point) -> Any:
     """As the user's function gave it."""
     return vector(load.forces, j), None
 
 
-@kernel
+@inner
 def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """As the user's function gave them."""
     return Tangents(matrix(load.K, j), matrix(load.C, j), None, None, None, None, None)
 
 
-@kernel
+@inner
 def energy(load: Record, i: int, j: int, at: Point) -> float:
     """As the user's function gave it."""
     return float(load.stored[j])
 
 
-def _kind(account: Account, record: type[Record]) -> SimpleNamespace:
+@inner
+def account(load: Record) -> int:
+    """As the user says."""
+    return load.account
+
+
+def _kind(what: Account) -> SimpleNamespace:
     """The load that all the user's loads of an account make together."""
+    name = what.name.lower()
 
     def of(scene: Scene, samples: Samples) -> Source:
-        loads = tuple(load for load in scene.user if load.account == account.name.lower())
-        return UserLoads(loads, samples, record)
+        return UserLoads(tuple(load for load in scene.user if load.account == name), samples, what)
 
-    return SimpleNamespace(__name__=f"user_{account.name.lower()}", Record=record, ACCOUNT=account, of=of, force=force,
-                           tangents=tangents, prepare=prepare, energy=energy)  # fmt: skip
+    return SimpleNamespace(__name__=f"user_{name}", Record=Record, of=of, force=force, tangents=tangents,
+                           prepare=prepare, energy=energy, account=account)  # fmt: skip
 
 
-KINDS = (_kind(Account.GIVEN, GivenRecord), _kind(Account.LOST, LostRecord), _kind(Account.STORED, StoredRecord))
+KINDS = tuple(_kind(what) for what in (Account.GIVEN, Account.LOST, Account.STORED))

@@ -7,12 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 from solver.kernels.vectors import dot, vector
-from solver.physics.loads.load import Account, Point, Samples, Source, Tangents
+from solver.physics.loads.load import Point, Samples, Source
 from solver.scene.scene import Scene
-
-ACCOUNT = Account.STORED
 
 
 class Record(NamedTuple):
@@ -35,19 +33,13 @@ def about(record: Record, axis: Any) -> Record:
     return record._replace(weight=record.weight @ axis.lab)
 
 
-@kernel
+@inner
 def force(load: Record, i: int, j: int, at: Point) -> Any:
     """B = (rho_c A - rho_w A) g."""
     return vector(load.weight, j), None
 
 
-@kernel
-def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
-    """None: it is the same everywhere."""
-    return Tangents(None, None, None, None, None, None, None)
-
-
-@kernel
+@inner
 def energy(load: Record, i: int, j: int, at: Point) -> float:
     """- weight . r."""
     return -float(dot(vector(load.weight, j), at.r))

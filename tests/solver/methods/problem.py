@@ -202,7 +202,7 @@ def problem(
     scheme = Scheme.of(numerics.rho_inf)
     work = Work.empty(intervals, False, SpaceScheme.of(rho_inf_space), contact is not None)
     work.system.wide.A[:] = 0.1 * random.normal(size=work.system.wide.A.shape)
-    set_scales(Scales(LENGTH, float(section.stiffness[:, 0].mean()), False), c0_of(scheme, dt), work.system)
+    set_scales(Scales(LENGTH, float(section.elastic.K[:, 0, 0].mean()), False), c0_of(scheme, dt), work.system)
     history(old, scheme, dt, work.past)
     work.feedback[:] = 1e-4 * random.normal(size=work.feedback.shape)
     touching = SelfContact(contact, scene.rod, s, stages=1)

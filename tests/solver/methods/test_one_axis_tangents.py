@@ -82,7 +82,7 @@ def pairs(z: Array) -> Array:
 def test_the_tangents_by_rotation_are_derivatives(kinds: str, fluid: Fluid | None) -> None:
     case = problem(kinds, fluid)
     chain, stages, tangents = case.method.chain, case.method.stages, case.method.work.tangents
-    k = chain.stiffness / chain.span
+    k = chain.elastic.K / chain.span
     loaded = [case.method.driven.kinds[side, 2] == LOAD for side in range(2)]
     for a in range(N + 2):
         def turn(step: float, a: int = a) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, Nodes, V
+from solver.physics.elasticity import tangent
 from solver.physics.ends import LOAD, RATE, RATE_LAB, Kinds
 from solver.physics.section import Section
 
@@ -18,6 +19,7 @@ def end_conditions(Y: Array, node: int, kinds: Kinds, targets: Array, dead: Arra
     `columns` (12,) are the system's scales.
     """
     A[:, :] = 0.0
+    K = tangent(section.elastic, node)
     for i in range(3):
         held = kinds[i] == RATE or kinds[i] == RATE_LAB
         first = V if held else F
@@ -39,9 +41,9 @@ def end_conditions(Y: Array, node: int, kinds: Kinds, targets: Array, dead: Arra
             b[row] = Y[node, OMEGA + i] - targets[row]
             A[row, OMEGA + i] = 1.0
         else:
-            stiffness = section.stiffness[node, i]
-            b[row] = stiffness * (Y[node, KAPPA + i] - section.kappa0[node, i]) - targets[row]
-            A[row, KAPPA + i] = stiffness
+            b[row] = nodes.q[node, i] - targets[row]
+            for k in range(3):
+                A[row, KAPPA + k] = K[i][k]
             for k in range(3):
                 b[row] -= nodes.R[node, k, i] * dead[3 + k]
                 _turn_axis(nodes.R[node], nodes.J[node], i, k, -dead[3 + k], A[row])

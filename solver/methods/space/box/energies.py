@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.forms import for_each_field
-from solver.kernels.kernel import kernel
+from solver.kernels.forms import for_each
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import matrices_of
-from solver.kernels.vectors import dot, plus
+from solver.kernels.vectors import add, dot, plus
 from solver.measures.energies import Energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, State, V
 from solver.methods.space.box.nodes import Motion
-from solver.physics.loads.load import energy, entrained, point, prepare
+from solver.physics.elasticity import strain_energy, tangent
+from solver.physics.loads.load import energy, entrained, has_energy, point, prepare
 from solver.physics.loads.registry import Loads
 from solver.physics.section import Section
 
@@ -35,22 +36,26 @@ def energies(state: State, section: Section, loads: Loads, h: float) -> Energies
 @kernel
 def _integrate(state: State, section: Section, h: float) -> tuple[float, float, float]:
     """Bending, torsion and motion: each interval's mean density, of mean strains and velocities."""
-    Y, kappa0 = state.Y, section.kappa0
+    Y, elastic = state.Y, section.elastic
     bending, torsion, kinetic = 0.0, 0.0, 0.0
     for j in range(len(Y) - 1):
         mass = section.mass[j] + section.mass[j + 1]
+        bent, twisted = strain_energy(add(tangent(elastic, j), tangent(elastic, j + 1)),
+                                      plus(_strain(Y, elastic.kappa0, j), _strain(Y, elastic.kappa0, j + 1)))
+        bending += bent
+        torsion += twisted
         for i in range(3):
-            stiffness = section.stiffness[j, i] + section.stiffness[j + 1, i]
-            strain = Y[j, KAPPA + i] - kappa0[j, i] + Y[j + 1, KAPPA + i] - kappa0[j + 1, i]
-            if i < 2:
-                bending += stiffness * strain * strain
-            else:
-                torsion += stiffness * strain * strain
             velocity, omega = Y[j, V + i] + Y[j + 1, V + i], Y[j, OMEGA + i] + Y[j + 1, OMEGA + i]
             kinetic += mass * velocity * velocity
             kinetic += (section.inertia[j, i] + section.inertia[j + 1, i]) * omega * omega
     part = 0.0625 * h  # 1/2, and three means of two
-    return part * bending, part * torsion, part * kinetic
+    return 2.0 * part * bending, 2.0 * part * torsion, part * kinetic
+
+
+@inner
+def _strain(Y: Array, kappa0: Array, j: int) -> Any:
+    """kappa - kappa0 at node j."""
+    return (Y[j, KAPPA] - kappa0[j, 0], Y[j, KAPPA + 1] - kappa0[j, 1], Y[j, KAPPA + 2] - kappa0[j, 2])
 
 
 @kernel
@@ -59,7 +64,7 @@ def _sum_loads(state: State, R: Array, loads: Loads, h: float, out: Array) -> No
     add_energies(loads, Motion(state.r, state.Y, state.aux, R, 0.0), h, out)
 
 
-@kernel
+@inner
 def _add_energies(load: Any, motion: Motion, h: float, out: Array) -> None:
     """Means of the nodes' potential energies; entrained mass moves with the mean of the nodes' velocities."""
     prepare(load, 0, motion, False)
@@ -73,7 +78,7 @@ def _add_energies(load: Any, motion: Motion, h: float, out: Array) -> None:
         stored, moving = behind, following
 
 
-@kernel
+@inner
 def mean_motion(left: Any, right: Any) -> float:
     """The kinetic energy per length of mass entrained between two nodes, of `load.entrained`."""
     if left is None:
@@ -86,4 +91,4 @@ def add_energies(loads: Loads, motion: Motion, h: float, out: Array) -> None:
     """Add the energies of every load that is present."""
 
 
-for_each_field(add_energies, _add_energies)
+for_each(add_energies, _add_energies, has_energy)

@@ -14,12 +14,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.forms import for_each_field
+from solver.kernels.forms import for_each
 from solver.kernels.handed import Reference
-from solver.kernels.kernel import kernel
-from solver.kernels.vectors import add_vector, dot, middle, times
+from solver.kernels.kernel import inner, kernel
+from solver.kernels.vectors import add_vector, dot, middle, plus, times
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, State
 from solver.methods.space.box.nodes import Motion
+from solver.physics.elasticity import moment
 from solver.physics.loads.load import (
     GIVEN,
     LOST,
@@ -31,6 +32,7 @@ from solver.physics.loads.load import (
     carrier,
     entrained,
     force,
+    has_power,
     point,
     prepare,
     total_power,
@@ -92,10 +94,12 @@ def _work_of_ends(old: Array, new: Array, section: Section, moved: Array, late: 
     """From Y (n, 12) at both ends of the step."""
     early, work = 1.0 - late, 0.0
     for node, sign in ((0, -1.0), (len(new) - 1, 1.0)):
+        kappa = plus(times(late, (new[node, KAPPA], new[node, KAPPA + 1], new[node, KAPPA + 2])),
+                     times(early, (old[node, KAPPA], old[node, KAPPA + 1], old[node, KAPPA + 2])))  # fmt: skip
+        q = moment(section.elastic, node, kappa)
         for i in range(3):
-            force = late * new[node, F + i] + early * old[node, F + i]
-            strain = late * new[node, KAPPA + i] + early * old[node, KAPPA + i] - section.kappa0[node, i]
-            work += sign * (force * moved[node, i] + section.stiffness[node, i] * strain * moved[node, 3 + i])
+            pull = late * new[node, F + i] + early * old[node, F + i]
+            work += sign * (pull * moved[node, i] + q[i] * moved[node, 3 + i])
     return work
 
 
@@ -109,25 +113,26 @@ def _work_of_loads(flows: Flows, late: float, h: float) -> float:
     return 0.25 * h * work
 
 
-@kernel
+@inner
 def _add_flows(load: Any, motion: Motion, dt: float, h: float, flows: Flows) -> None:
     """Enter a load, by its account."""
     what = account(load)
-    if what != STORED:
-        prepare(load, 0, motion, False)
+    if what == STORED:
+        return
+    prepare(load, 0, motion, False)
     if what == GIVEN:
         for j in range(len(motion.r)):
             at = point(motion, j)
-            lab, moment = force(load, 0, j, at)
+            lab, material = force(load, 0, j, at)
             add_vector(1.0, lab, flows.given[0, j, :3])
-            add_vector(1.0, moment, flows.given[0, j, 3:])
+            add_vector(1.0, material, flows.given[0, j, 3:])
     elif what == LOST:
         _add_power(load, motion, h, flows.power[0])
     elif what == VISCOUS:
         flows.rubbed[0] += _rubbed(load, motion, dt, h, flows.moved)
 
 
-@kernel
+@inner
 def _add_power(load: Any, motion: Motion, h: float, power: Array) -> None:
     """Add what the load's carrier gives, and what the load takes for good, W: mean forces times mean velocities."""
     f, V, taken = _at_node(load, motion, 0)
@@ -140,7 +145,7 @@ def _add_power(load: Any, motion: Motion, h: float, power: Array) -> None:
         f, V, taken = f_next, V_next, taken_next
 
 
-@kernel
+@inner
 def _at_node(load: Any, motion: Motion, j: int) -> Any:
     """The load's force, the velocity, and the mass that the load entrains at node j."""
     at = point(motion, j)
@@ -148,7 +153,7 @@ def _at_node(load: Any, motion: Motion, j: int) -> Any:
     return lab, at.V, entrained(load, j, at)
 
 
-@kernel
+@inner
 def _mean_power(left: Any, right: Any) -> float:
     """The rate of the kinetic energy per length of mass entrained between two nodes, of `load.entrained`."""
     if left is None:
@@ -156,7 +161,7 @@ def _mean_power(left: Any, right: Any) -> float:
     return float(0.5 * (left[0] + right[0]) * dot(middle(left[1], right[1]), middle(left[2], right[2])))
 
 
-@kernel
+@inner
 def _rubbed(load: Any, motion: Motion, dt: float, h: float, moved: Array) -> float:
     """What a load that is proportional to the velocity has taken in the step, by what the nodes have moved (J)."""
     total = 0.0
@@ -168,16 +173,16 @@ def _rubbed(load: Any, motion: Motion, dt: float, h: float, moved: Array) -> flo
     return h * total
 
 
-@kernel
+@inner
 def _rub(load: Any, motion: Motion, dt: float, moved: Array, j: int) -> Any:
     """Force and moment at the mean velocity of the step, and what node j has moved."""
     at, d, turned = point(motion, j), (moved[j, 0], moved[j, 1], moved[j, 2]), (moved[j, 3], moved[j, 4], moved[j, 5])
-    lab, moment = force(load, 0, j, Point(at.r, times(1.0 / dt, d), at.A, at.T, at.R, times(1.0 / dt, turned)))
-    return lab, moment, d, turned
+    lab, material = force(load, 0, j, Point(at.r, times(1.0 / dt, d), at.A, at.T, at.R, times(1.0 / dt, turned)))
+    return lab, material, d, turned
 
 
 def add_flows(loads: Loads, motion: Motion, dt: float, h: float, flows: Flows) -> None:
     """Enter every load that is present."""
 
 
-for_each_field(add_flows, _add_flows)
+for_each(add_flows, _add_flows, has_power)

@@ -90,7 +90,7 @@ def interval_panel(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, no
         _translation(panel, mean, sign, weight, top, at, space, j, nodes.R, nodes.J[node], nodes.R[node],
                      nodes.P_V[node], nodes.P_w[node], rows, columns)  # fmt: skip
         _rotation(panel, mean, sign, weight, top, at, space, j, nodes.R, nodes.J[node], nodes.R[node],
-                  nodes.W_w[node], section.stiffness[node], rows, columns)  # fmt: skip
+                  nodes.W_w[node], section.elastic.K[node], rows, columns)  # fmt: skip
 
 
 @inlined
@@ -132,9 +132,9 @@ def _translation(panel: Array, mean: Array, sign: float, weight: float, top: int
 
 @inlined
 def _rotation(panel: Array, mean: Array, sign: float, weight: float, top: int, at: int, space: SpaceScheme, j: int,
-              Rs: Array, J: Array, R: Array, W_w: Array, stiffness: Array, rows: Array,
+              Rs: Array, J: Array, R: Array, W_w: Array, K: Array, rows: Array,
               columns: Array) -> None:  # fmt: skip
-    """Tangents of (5) by one node with rotation R and moment q = stiffness (kappa - kappa0)."""
+    """Tangents of (5) by one node with rotation R and moment q, dq / d kappa = K (3, 3)."""
     by_kappa, by_omega = rows[9] * columns[KAPPA], weight * rows[9] * columns[OMEGA]
     by_F = weight * rows[9] * columns[F]
     f0 = R[0, 0] * mean[2, 0] + R[1, 0] * mean[2, 1] + R[2, 0] * mean[2, 2]
@@ -142,9 +142,11 @@ def _rotation(panel: Array, mean: Array, sign: float, weight: float, top: int, a
     f2 = R[0, 2] * mean[2, 0] + R[1, 2] * mean[2, 1] + R[2, 2] * mean[2, 2]
     for i in range(3):
         m, n = (i + 1) % 3, (i + 2) % 3
-        panel[top + 9 + i, at + KAPPA + i] = by_kappa * sign * stiffness[i]
-        panel[top + 9 + i, at + KAPPA + n] = by_kappa * weight * (mean[0, m] * stiffness[n] - mean[3, m])
-        panel[top + 9 + i, at + KAPPA + m] = -by_kappa * weight * (mean[0, n] * stiffness[m] - mean[3, n])
+        for k in range(3):
+            panel[top + 9 + i, at + KAPPA + k] = by_kappa * (sign * K[i, k]
+                                                             + weight * (mean[0, m] * K[n, k] - mean[0, n] * K[m, k]))
+        panel[top + 9 + i, at + KAPPA + n] -= by_kappa * weight * mean[3, m]
+        panel[top + 9 + i, at + KAPPA + m] += by_kappa * weight * mean[3, n]
         for k in range(3):
             panel[top + 9 + i, at + OMEGA + k] = -by_omega * W_w[i, k]
     for k in range(3):

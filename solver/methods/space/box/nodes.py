@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from solver.arrays import Array
 from solver.kernels.forms import forms_of
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.lanes import LANES, gather, scatter
 from solver.kernels.rotation import (
     any_jacobian,
@@ -24,6 +24,7 @@ from solver.kernels.rotation import (
 from solver.kernels.scratch import scratch
 from solver.kernels.vectors import add_matrix, add_product, add_vector, matrix, tangent_by_rotation, vector
 from solver.methods.space.box.fields import KAPPA, OMEGA, Nodes, State, V
+from solver.physics.elasticity import moment
 from solver.physics.loads.load import Point, Tangents, add_forces, add_tangents, point, take_force, take_tangents
 from solver.physics.loads.registry import Loads
 from solver.physics.section import Section
@@ -79,9 +80,10 @@ def balance_rotation(new: State, section: Section, past: Array, c0: float, nodes
         I0, I1, I2 = section.inertia[j, 0], section.inertia[j, 1], section.inertia[j, 2]
         w0, w1, w2 = new.Y[j, OMEGA], new.Y[j, OMEGA + 1], new.Y[j, OMEGA + 2]
         for i in range(3):
-            nodes.q[j, i] = section.stiffness[j, i] * (new.Y[j, KAPPA + i] - section.kappa0[j, i])
             W[i] = section.inertia[j, i] * (c0 * new.Y[j, OMEGA + i] + past[j, 9 + i])
             D[i, i] = section.inertia[j, i] * c0
+        q = moment(section.elastic, j, (new.Y[j, KAPPA], new.Y[j, KAPPA + 1], new.Y[j, KAPPA + 2]))
+        nodes.q[j, 0], nodes.q[j, 1], nodes.q[j, 2] = q
         W[0] += (I2 - I1) * w1 * w2
         W[1] += (I0 - I2) * w2 * w0
         W[2] += (I1 - I0) * w0 * w1
@@ -104,7 +106,7 @@ def balance_translation(new: State, section: Section, past: Array, c0: float, no
             P_V[i, i] = mass * c0
 
 
-@kernel
+@inner
 def load_nodes(new: State, loads: Loads, past: Array, c0: float, nodes: Nodes) -> None:
     """Let the loads act on P and W, with their tangents."""
     motion = Motion(new.r, new.Y, past, nodes.R, c0)
@@ -132,7 +134,7 @@ class Unknowns(NamedTuple):
     c0: float
 
 
-@kernel
+@inner
 def _point(motion: Motion, j: int) -> Point:
     Y, past, c0, R = motion.Y, motion.past, motion.c0, matrix(motion.R, j)
     velocity = (Y[j, V], Y[j, V + 1], Y[j, V + 2])
@@ -141,13 +143,13 @@ def _point(motion: Motion, j: int) -> Point:
     return Point(vector(motion.r, j), velocity, acceleration, (R[0][2], R[1][2], R[2][2]), R, omega)
 
 
-@kernel
-def _take_force(nodes: Nodes, j: int, at: Point, force: Any, moment: Any) -> None:
-    add_vector(-1.0, force, nodes.P[j])
-    add_vector(-1.0, moment, nodes.W[j])
+@inner
+def _take_force(nodes: Nodes, j: int, at: Point, lab: Any, material: Any) -> None:
+    add_vector(-1.0, lab, nodes.P[j])
+    add_vector(-1.0, material, nodes.W[j])
 
 
-@kernel
+@inner
 def _take_tangents(unknowns: Unknowns, j: int, at: Point, tangents: Tangents) -> None:
     """P_V = M c0 + C + K / c0 and P_w = E J, each with the sign of a load."""
     add_matrix(-unknowns.c0, tangents.M, unknowns.P_V[j])

@@ -11,12 +11,13 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.forms import forms_of
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.vectors import tangent_by_rotation, vector
 from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages
 from solver.methods.space.one_axis.motion import bend_joints
 from solver.methods.space.segments.chain import STAGES
+from solver.physics.elasticity import tangent
 from solver.physics.ends import LOAD, RATE, RATE_LAB, Kinds
 from solver.physics.loads.load import Point, add_forces, add_tangents, point, take_force, take_tangents
 from solver.physics.loads.load import Tangents as LoadTangent
@@ -100,14 +101,14 @@ class LoadTangents(NamedTuple):
     h: float
 
 
-@kernel
+@inner
 def _point(motion: Motion, j: int) -> Point:
     T = vector(motion.T, j + 1)
     return Point(vector(motion.r, j), vector(motion.V, j), vector(motion.A, j), T, (T[0], T[1], motion.swing),
                  motion.omega[j + 1])  # fmt: skip
 
 
-@kernel
+@inner
 def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) -> None:
     balance.translation[j, 0] -= balance.h * force[0]
     balance.translation[j, 1] -= balance.h * force[1]
@@ -115,7 +116,7 @@ def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) ->
         balance.rotation[j + 1] -= balance.h * moment
 
 
-@kernel
+@inner
 def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> None:
     """As in `space.segments.balances`."""
     tangents, h = load.tangents, load.h
@@ -128,7 +129,7 @@ def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> No
     _add_number(-h, by.moment_omega, tangents.spin, j)
 
 
-@kernel
+@inner
 def _add_matrix(factor: float, A: Any, out: Array) -> None:
     if A is not None:
         for k in range(2):
@@ -136,13 +137,13 @@ def _add_matrix(factor: float, A: Any, out: Array) -> None:
             out[k, 1] += factor * A[k][1]
 
 
-@kernel
+@inner
 def _add_turning(factor: float, x: Any, out: Plane, j: int) -> None:
     if x is not None:
         out[j] += complex(factor * x[0], factor * x[1])
 
 
-@kernel
+@inner
 def _add_number(factor: float, x: Any, out: Array, j: int) -> None:
     if x is not None:
         out[j] += factor * x
@@ -207,8 +208,9 @@ def tangents_at(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages,
     tangents.T[:] = stages.T[i]
     tangents.stiff[:] = 0.0
     for j in range(N + 1):
-        tangents.stiff[j] += chain.stiffness[j] / chain.span[j]
-        tangents.stiff[j + 1] += chain.stiffness[j] / chain.span[j]
+        spring = tangent(chain.elastic, j) / chain.span[j]
+        tangents.stiff[j] += spring
+        tangents.stiff[j + 1] += spring
     for j in range(N):
         M, C, K = tangents.M[j], tangents.C[j], tangents.K[j]
         for k in range(2):

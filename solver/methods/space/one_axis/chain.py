@@ -12,12 +12,13 @@ from solver.arrays import Array
 from solver.methods.space.one_axis.axis import Axis, Plane
 from solver.methods.space.segments import chain as space
 from solver.methods.space.segments.chain import STAGES
+from solver.physics.elasticity import Elasticity, about
 
 
 class Chain(NamedTuple):
     """What does not change in a run: of `staggered.chain.Chain` what belongs to the axis, and its `swing`.
 
-    Segments (N,): `mass`, `inertia`, `dry_inertia`; joints (N + 1,): `span`, `stiffness`, `kappa0`.
+    Segments (N,): `mass`, `inertia`, `dry_inertia`; joints (N + 1,): `span`, `elastic`.
     """
 
     h: float
@@ -26,8 +27,7 @@ class Chain(NamedTuple):
     inertia: Array
     dry_inertia: Array
     span: Array
-    stiffness: Array
-    kappa0: Array
+    elastic: Elasticity
 
 
 class State(NamedTuple):
@@ -103,6 +103,5 @@ def about_axis(axis: Axis, chain: space.Chain, state: space.State) -> tuple[Chai
     found.phi[:] = np.unwrap([2.0 * half for half in halves])
     found.omega[:] = state.omega[:, p]
     found.base[:] = state.base @ axis.lab
-    section = (chain.mass, *(np.ascontiguousarray(a[:, p]) for a in (chain.inertia, chain.dry_inertia)))
-    joints = (chain.span, *(np.ascontiguousarray(a[:, p]) for a in (chain.stiffness, chain.kappa0)))
-    return Chain(chain.h, axis.swing, *section, *joints), found
+    inertia, dry_inertia = (np.ascontiguousarray(a[:, p]) for a in (chain.inertia, chain.dry_inertia))
+    return Chain(chain.h, axis.swing, chain.mass, inertia, dry_inertia, chain.span, about(chain.elastic, p)), found

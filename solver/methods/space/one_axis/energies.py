@@ -18,8 +18,8 @@ from solver.physics.loads.registry import LoadsAbout
 
 def energies(chain: Chain, loads: LoadsAbout, i: int, phi: Array, motion: Motion) -> Energies:
     """The energies at a state: the loads of the i-th time of a step, angles (N + 2,), and the segments' motion."""
-    strain = np.diff(phi) / chain.span - chain.kappa0
-    elastic = float(0.5 * np.sum(chain.span * chain.stiffness * strain**2))
+    strain = np.diff(phi) / chain.span - chain.elastic.kappa0
+    elastic = float(0.5 * np.sum(chain.span * chain.elastic.K * strain**2))
     by_loads, V, omega = np.zeros(2), motion.V, motion.omega[1:-1]
     _sum_loads(loads, i, motion, by_loads)
     kinetic = np.sum(chain.mass * (V.real**2 + V.imag**2)) + np.sum(chain.dry_inertia * omega**2)

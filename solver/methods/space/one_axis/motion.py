@@ -15,6 +15,7 @@ from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Stages, State
 from solver.methods.space.segments.chain import STAGES
 from solver.methods.space.segments.motion import differentiate
+from solver.physics.elasticity import moment
 
 
 @kernel
@@ -81,4 +82,4 @@ def largest_turn(phi: Array) -> float:
 def bend_joints(chain: Chain, phi: Array, q: Array) -> None:
     """Write the moments q of all joints (N + 1,) for angles phi (N + 2,)."""
     for i in range(len(q)):
-        q[i] = chain.stiffness[i] * ((phi[i + 1] - phi[i]) / chain.span[i] - chain.kappa0[i])
+        q[i] = moment(chain.elastic, i, (phi[i + 1] - phi[i]) / chain.span[i])

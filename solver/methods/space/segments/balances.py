@@ -17,7 +17,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.forms import forms_of
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch
 from solver.kernels.vectors import add_matrix, add_vector, matrix, tangent_by_rotation, vector
 from solver.methods.space.segments.chain import Chain, Residuals, Stages
@@ -108,20 +108,20 @@ class LoadTangents(NamedTuple):
     h: float
 
 
-@kernel
+@inner
 def _point(motion: Motion, j: int) -> Point:
     R = matrix(motion.R, j + 1)
     return Point(vector(motion.r, j), vector(motion.V, j), vector(motion.A, j), (R[0][2], R[1][2], R[2][2]), R,
                  vector(motion.omega, j + 1))  # fmt: skip
 
 
-@kernel
+@inner
 def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) -> None:
     add_vector(-balance.h, force, balance.translation[j])
     add_vector(-balance.h, moment, balance.rotation[j + 1])
 
 
-@kernel
+@inner
 def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> None:
     """M, C, K and spin of the balances, and E and stiff by rotation: the unknowns are r, whose rates are multiples of
     it by an eigenvalue, and psi."""

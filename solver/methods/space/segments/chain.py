@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.physics.elasticity import Elasticity
 
 STAGES = 3
 
@@ -22,7 +23,7 @@ class Chain(NamedTuple):
 
     `h` (m). Segments (N,): `mass` rho_c A (kg/m), `inertia` and `dry_inertia` (N, 3) (kg m) per length about the
     segment's centre, with and without the fluid's added mass: I + (h^2/12) m across the segment, the consistent mass.
-    Joints: `span` (N + 1,) in m, `stiffness` (N + 1, 3), stress-free `kappa0` (N + 1, 3).
+    Joints: `span` (N + 1,) in m, and what is `elastic` there.
     """
 
     h: float
@@ -30,8 +31,7 @@ class Chain(NamedTuple):
     inertia: Array
     dry_inertia: Array
     span: Array
-    stiffness: Array
-    kappa0: Array
+    elastic: Elasticity
 
 
 class State(NamedTuple):

@@ -8,9 +8,11 @@ from solver.arrays import Array
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import kernel
 from solver.kernels.scratch import scratch
+from solver.kernels.vectors import minus, times, vector
 from solver.measures.energies import Energies
 from solver.methods.space.segments.balances import Motion, motion_at
 from solver.methods.space.segments.chain import STAGES, Chain
+from solver.physics.elasticity import strain_energy, tangent
 from solver.physics.loads.load import add_energies, add_powers
 from solver.physics.loads.registry import Loads
 
@@ -35,13 +37,10 @@ def _integrate(chain: Chain, bend: Array, motion: Motion) -> tuple[float, float,
     """Bending, torsion, motion, and the turning of the mass that loads entrain."""
     bending, torsion, kinetic, turning = 0.0, 0.0, 0.0, 0.0
     for i in range(len(bend)):
-        for k in range(3):
-            strain = bend[i, k] / chain.span[i] - chain.kappa0[i, k]
-            energy = 0.5 * chain.span[i] * chain.stiffness[i, k] * strain * strain
-            if k < 2:
-                bending += energy
-            else:
-                torsion += energy
+        kappa = times(1.0 / chain.span[i], vector(bend, i))
+        bent, twisted = strain_energy(tangent(chain.elastic, i), minus(kappa, vector(chain.elastic.kappa0, i)))
+        bending += chain.span[i] * bent
+        torsion += chain.span[i] * twisted
     for j in range(len(motion.r)):
         for k in range(3):
             velocity, spin = motion.V[j, k], motion.omega[j + 1, k] * motion.omega[j + 1, k]

@@ -10,6 +10,7 @@ from solver.arrays import Array
 from solver.kernels.rotation import rotate_back
 from solver.methods.space.segments.chain import Chain, State
 from solver.methods.space.segments.joints import bend_joints
+from solver.physics.elasticity import elasticity_of
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.section import Section, sample
 from solver.scene.initial import Initial
@@ -38,17 +39,17 @@ def loads_on_segments(scene: Scene, s: Array, times: int, axis: Any = None) -> A
 
 def chain_of(rod: Rod, section: Section, entrained: Array, s: Array) -> Chain:
     """The chain of a rod with nodes `s` (N + 1,), its segments' `section` and the mass `entrained` (N,) by loads."""
-    h, nodes = float(s[1] - s[0]), sample(rod, s)
+    h = float(s[1] - s[0])
     span = np.full(len(s), h)
     span[0] = span[-1] = 0.5 * h
     wet = section.inertia + np.outer(entrained, _across(s))
-    return Chain(h, section.mass, wet, section.inertia, span, nodes.stiffness, nodes.kappa0.copy())
+    return Chain(h, section.mass, wet, section.inertia, span, elasticity_of(rod, s))
 
 
 def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
     """The state at t = 0, and by how much the joints' curvature (N + 1, 3) differs from the centreline's own.
 
-    chain.kappa0 is shifted by as much, so that a rod whose natural shape is its initial one starts without stress.
+    kappa0 is shifted by as much, so that a rod whose natural shape is its initial one starts without stress.
     """
     state = State.empty(len(s) - 1)
     r, quaternion, _ = nodes_at_rest(initial, np.linspace(0.0, s[-1], 2 * len(s) - 1))
@@ -63,5 +64,5 @@ def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
     bend, moment, left, right = (np.zeros((len(s), 3)) for _ in range(4))
     bend_joints(chain, state.quaternion, bend, moment, left, right)
     offset = np.asarray(bend / chain.span[:, None] - kappa)
-    chain.kappa0[:] += offset
+    chain.elastic.kappa0[:] += offset
     return state, offset

@@ -1,7 +1,7 @@
 """The joints: from the relative rotation of two neighbours to moments and their tangents.
 
-The rotation vector Theta of R_i^t R_i+1 gives kappa = Theta / span and q = diag(EJ1, EJ2, GJ3) (kappa - kappa0). A
-small rotation psi of the right neighbour changes Theta by B psi, one of the left neighbour by -B^t psi, with
+The rotation vector Theta of R_i^t R_i+1 gives kappa = Theta / span and q = K (kappa - kappa0). A small rotation psi of
+the right neighbour changes Theta by B psi, one of the left neighbour by -B^t psi, with
 
     B = I + [Theta]/2 + b [Theta]^2,   b = (1 - (x/2) cot(x/2)) / x^2,   x = |Theta|,
 
@@ -17,7 +17,9 @@ from solver.kernels.kernel import inlined, kernel
 from solver.kernels.lanes import LANES, gather, scatter
 from solver.kernels.rotation import angle_by_sine, any_angle_by_sine, cross, is_small, product
 from solver.kernels.scratch import scratch
+from solver.kernels.vectors import scale
 from solver.methods.space.segments.chain import Chain
+from solver.physics.elasticity import tangent
 
 SMALL = 0.25
 """Square of the angle (rad) of a joint below which the series of b is exact to rounding."""
@@ -46,9 +48,9 @@ def bend_joints(chain: Chain, quaternion: Array, bend: Array, moment: Array, lef
     """Write Theta, q, B q and B^t q of all joints (N + 1, 3 each) for orientations `quaternion` (N + 2, 4).
 
     Eight abreast (see `lanes`), in rows from 0: the two quaternions, then sin(a/2), cos(a/2), sin(a/2)^2, a / sin(a/2),
-    then Theta, its square and b; 5: stiffness; 8: kappa0; 11: span; 12: q; 15, 18: B q and B^t q.
+    then Theta, its square and b; 5: K; 14: kappa0; 17: span; 18: q; 21, 24: B q and B^t q.
     """
-    rows, span = scratch((21, LANES)), chain.span.reshape(-1, 1)
+    rows, span = scratch((27, LANES)), chain.span.reshape(-1, 1)
     for first in range(0, len(bend), LANES):
         gather(quaternion[:-1], 4, first, rows, 0)
         gather(quaternion[1:], 4, first, rows, 4)
@@ -68,23 +70,25 @@ def bend_joints(chain: Chain, quaternion: Array, bend: Array, moment: Array, lef
         for m in range(LANES):
             if rows[3, m] >= SMALL:
                 rows[4, m], _ = _coefficient(rows[3, m])
-        gather(chain.stiffness, 3, first, rows, 5)
-        gather(chain.kappa0, 3, first, rows, 8)
-        gather(span, 1, first, rows, 11)
+        gather(chain.elastic.K.reshape(len(bend), 9), 9, first, rows, 5)
+        gather(chain.elastic.kappa0, 3, first, rows, 14)
+        gather(span, 1, first, rows, 17)
         for m in range(LANES):
-            x, y, z, b, per = rows[0, m], rows[1, m], rows[2, m], rows[4, m], rows[11, m]
-            q0, q1, q2 = (rows[5, m] * (x / per - rows[8, m]), rows[6, m] * (y / per - rows[9, m]),
-                          rows[7, m] * (z / per - rows[10, m]))  # fmt: skip
+            x, y, z, b, per = rows[0, m], rows[1, m], rows[2, m], rows[4, m], rows[17, m]
+            u, v, w = x / per - rows[14, m], y / per - rows[15, m], z / per - rows[16, m]
+            q0, q1, q2 = (rows[5, m] * u + rows[6, m] * v + rows[7, m] * w,
+                          rows[8, m] * u + rows[9, m] * v + rows[10, m] * w,
+                          rows[11, m] * u + rows[12, m] * v + rows[13, m] * w)  # fmt: skip
             c0, c1, c2 = cross(x, y, z, q0, q1, q2)
             d0, d1, d2 = cross(x, y, z, c0, c1, c2)
             e0, e1, e2 = q0 + b * d0, q1 + b * d1, q2 + b * d2
-            rows[12, m], rows[13, m], rows[14, m] = q0, q1, q2
-            rows[15, m], rows[16, m], rows[17, m] = e0 + 0.5 * c0, e1 + 0.5 * c1, e2 + 0.5 * c2
-            rows[18, m], rows[19, m], rows[20, m] = e0 - 0.5 * c0, e1 - 0.5 * c1, e2 - 0.5 * c2
+            rows[18, m], rows[19, m], rows[20, m] = q0, q1, q2
+            rows[21, m], rows[22, m], rows[23, m] = e0 + 0.5 * c0, e1 + 0.5 * c1, e2 + 0.5 * c2
+            rows[24, m], rows[25, m], rows[26, m] = e0 - 0.5 * c0, e1 - 0.5 * c1, e2 - 0.5 * c2
         scatter(rows, 0, 3, first, bend)
-        scatter(rows, 12, 3, first, moment)
-        scatter(rows, 15, 3, first, left)
-        scatter(rows, 18, 3, first, right)
+        scatter(rows, 18, 3, first, moment)
+        scatter(rows, 21, 3, first, left)
+        scatter(rows, 24, 3, first, right)
 
 
 @kernel
@@ -114,8 +118,8 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
     for i in range(len(bend)):
         x, y, z = bend[i, 0], bend[i, 1], bend[i, 2]
         b, slope = _coefficient(x * x + y * y + z * z)
-        theta, q, EJ, per = bend[i], moment[i], chain.stiffness[i], 1.0 / chain.span[i]
-        spring = (EJ[0] * per, EJ[1] * per, EJ[2] * per)
+        theta, q, per = bend[i], moment[i], 1.0 / chain.span[i]
+        spring = scale(per, tangent(chain.elastic, i))
         q0, q1, q2 = q[0], q[1], q[2]
         c0, c1, c2 = y * q2 - z * q1, z * q0 - x * q2, x * q1 - y * q0
         d = (y * c2 - z * c1, z * c0 - x * c2, x * c1 - y * c0)
@@ -136,8 +140,9 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
             for m in range(3):
                 h0, h1, h2 = 0.0, 0.0, 0.0
                 for n in range(3):
-                    weight = B[m, n] if side == 0 else B[n, m]
-                    value = G[m, n] - 0.5 * sign * turned[m][n] + weight * spring[n]
+                    value = G[m, n] - 0.5 * sign * turned[m][n]
+                    for k in range(3):
+                        value += (B[m, k] if side == 0 else B[k, m]) * spring[k][n]
                     if n == 0:
                         h0 = value
                     elif n == 1:

@@ -14,6 +14,7 @@ from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_se
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Scheme
+from solver.physics.elasticity import mean_bending
 from solver.physics.ends import DrivenEnd
 from solver.scene.scene import Scene
 
@@ -69,7 +70,7 @@ class RadauMethod(ABC):
     def _lay_out(self, scene: Scene) -> tuple[Chain, State, Array]:
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
         chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
-        self._unit = float(chain.stiffness[:, :2].mean()) / float(self.s[-1]) ** 2
+        self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
         return chain, *lay_out(scene.initial, chain, self.s)
 
     def _solve_anew(self, dt: float, consistent: bool) -> tuple[int, int]:

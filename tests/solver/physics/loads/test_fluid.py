@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -16,7 +18,7 @@ from solver.methods.space.segments.balances import Motion
 from solver.physics.loads import added_mass as mass_law
 from solver.physics.loads import drag as drag_law
 from solver.physics.loads.applied import AppliedLoads
-from solver.physics.loads.load import Point, add_powers
+from solver.physics.loads.load import Point, add_powers, force, tangents
 from solver.physics.loads.registry import Loads
 from solver.physics.section import sample
 from tests.solver.scenes import ROD
@@ -57,17 +59,23 @@ def point(V: Array, A: Array, T: Array, omega: Array | None = None) -> Point:
                  tuple(map(float, turn)))  # fmt: skip
 
 
+@kernel
+def act(load: Any, at: Point) -> Any:
+    """A load's force at a point, and its tangents."""
+    return force(load, 0, 0, at)[0], tangents(load, 0, 0, at)
+
+
 def drag(u: Array, T: Array) -> tuple[Array, Array, Array]:
     """The force against the motion, and its derivatives by the velocity and by a rotation from R0."""
     load, at = DRAG, point(u, np.zeros(3), T)
-    by = drag_law.tangents(load, 0, 0, at)
-    return -np.array(drag_law.force(load, 0, 0, at)[0]), -np.array(by.C), -np.array(by.by_T) @ tangent_by_rotation()
+    lab, by = act(load, at)
+    return -np.array(lab), -np.array(by.C), -np.array(by.by_T) @ tangent_by_rotation()
 
 
 def added_mass(acceleration: Array, T: Array, c0: float = 1.0) -> tuple[Array, Array, Array]:
     load, at = ADDED_MASS, point(np.zeros(3), acceleration, T)
-    by = mass_law.tangents(load, 0, 0, at)
-    return (-np.array(mass_law.force(load, 0, 0, at)[0]), -c0 * np.array(by.M),
+    lab, by = act(load, at)
+    return (-np.array(lab), -c0 * np.array(by.M),
             -np.array(by.by_T) @ tangent_by_rotation())  # fmt: skip
 
 

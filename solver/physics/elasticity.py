@@ -1,0 +1,71 @@
+"""Elasticity, eq. (1) of Goyal, Perkins & Lee 2003: q = K (kappa - kappa0), in the material frame.
+
+The only place that knows stiffness. K is symmetric, so half of strain . K strain is the energy that the moment
+conserves. About one axis K and kappa0 are numbers.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.kernel import inner
+from solver.kernels.vectors import minus, stiffness, transform
+from solver.kernels.vectors import vector as line
+from solver.scene.rod import Rod
+
+
+class Elasticity(NamedTuple):
+    """At n arclengths: `K` (n, 3, 3) in N m^2, stress-free `kappa0` (n, 3) in rad/m; about one axis (n,) each."""
+
+    K: Array
+    kappa0: Array
+
+
+def elasticity_of(rod: Rod, s: Array) -> Elasticity:
+    """That of a rod at arclengths s (n,)."""
+    K = np.zeros((len(s), 3, 3))
+    for i, profile in enumerate(rod.stiffness):
+        K[:, i, i] = profile(s)
+    return Elasticity(K, np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1)))
+
+
+def about(elastic: Elasticity, index: int) -> Elasticity:
+    """That of a turn about one principal axis."""
+    return Elasticity(elastic.K[:, index, index].copy(), elastic.kappa0[:, index].copy())
+
+
+def principal(elastic: Elasticity) -> Array:
+    """EJ1, EJ2 and GJ3 (n, 3)."""
+    return np.ascontiguousarray(np.diagonal(elastic.K, axis1=1, axis2=2))
+
+
+def mean_bending(elastic: Elasticity) -> float:
+    """The mean of EJ1 and EJ2 along the rod, the unit of stiffness."""
+    return float(principal(elastic)[:, :2].mean())
+
+
+def moments(elastic: Elasticity, kappa: Array) -> Array:
+    """The moments q (n, 3) of curvatures kappa (n, 3)."""
+    return np.asarray(np.einsum("nij,nj->ni", elastic.K, kappa - elastic.kappa0))
+
+
+@inner
+def moment(elastic: Elasticity, j: int, kappa: Any) -> Any:
+    """q = K (kappa - kappa0)."""
+    return transform(stiffness(elastic.K, j), minus(kappa, line(elastic.kappa0, j)))
+
+
+@inner
+def tangent(elastic: Elasticity, j: int) -> Any:
+    """dq / d kappa = K."""
+    return stiffness(elastic.K, j)
+
+
+@inner
+def strain_energy(K: Any, strain: Any) -> tuple[float, float]:
+    """Of bending and of torsion: 1/2 strain . K strain, the torsional share being that of the axial strain."""
+    q = transform(K, strain)
+    return 0.5 * (strain[0] * q[0] + strain[1] * q[1]), 0.5 * strain[2] * q[2]

@@ -9,7 +9,7 @@ iterations.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,9 +18,10 @@ from service.cases.build import build_scene
 from service.cases.library import apply_settings, load_case, parse_case
 from solver import Frame, Scene, simulate
 from solver.arrays import Array
+from solver.measures.frame import OUTPUTS
 from solver.run.pilot import Piloted
 from solver.run.resolution import refine
-from solver.run.verify import UNVERIFIED, VerifiedFrame
+from solver.run.verify import VerifiedFrame
 from validation.elastica import TABLE
 from validation.row import Row, at_most, relative
 
@@ -28,7 +29,8 @@ ROUNDING = 1e-8
 WITHIN = 3.0
 MISSED = 0.05
 """The part of the values that may lie farther off."""
-NAMES = tuple(field.name for field in fields(Frame) if field.name not in UNVERIFIED)
+NAMES = tuple(output.name for output in OUTPUTS if output.verified)
+ALONG_ROD = {output.name for output in OUTPUTS if output.along_rod}
 ENERGIES = tuple(name for name in NAMES if name.startswith(("energy_", "work_", "dissipation")))
 
 
@@ -76,7 +78,7 @@ def equilibrium(case: str, intervals: int) -> Frame:
 def series(frames: Sequence[Any], name: str, intervals: int) -> Array:
     """A variable of all frames, fields at `intervals` + 1 nodes."""
     values = np.array([getattr(frame, name) for frame in frames], dtype=float)
-    return values if values.ndim == 1 else values[:, :: (values.shape[1] - 1) // intervals]
+    return values[:, :: (values.shape[1] - 1) // intervals] if name in ALONG_ROD else values
 
 
 def misses(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import ceil
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
@@ -14,10 +14,14 @@ from service.cases.quantities import Positive, Spec
 from service.cases.rod import RodSpec
 from service.cases.surroundings import ContactSpec, FluidSpec, LoadsSpec
 from solver import Numerics
+from solver.measures.frame import OUTPUTS
 from solver.run.pilot import FIRST_INTERVALS
 
-FieldName = Literal["v", "omega", "f", "kappa", "q", "r", "orientation"]
-ALL_FIELDS: tuple[FieldName, ...] = ("v", "omega", "f", "kappa", "q", "r", "orientation")
+ALL_FIELDS = tuple(output.name for output in OUTPUTS if output.along_rod)
+if TYPE_CHECKING:
+    FieldName = str
+else:
+    FieldName = Literal[ALL_FIELDS]
 
 MOST_NODE_FRAMES = 10_000_000
 """Nodes times stored frames: about 1.8 GB before compression."""

@@ -21,13 +21,14 @@ from math import ceil
 
 from service.cases.case import CaseSpec
 from service.cases.errors import CaseError, FieldError
+from solver.measures.frame import OUTPUTS
 
 STEP, STEP_NODE = 330e-6, 2.9e-6
 STATIC_NODE = 26e-6  # four linearisations
 FRAME, FRAME_NODE = 100e-6, 4e-6
 WRITHE = 1.5e-9
 PILOTS, VERIFIED = 2, 5
-COMPONENTS = {"orientation": 4}  # the others are vectors of three
+COMPONENTS = {output.name: output.components for output in OUTPUTS}
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ def estimate(spec: CaseSpec) -> Cost:
     frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
     seconds = steps * step + frames * frame
     seconds *= (PILOTS if numerics.tolerance else 1) * (VERIFIED if numerics.verify else 1)
-    components = sum(COMPONENTS.get(name, 3) for name in spec.output.fields) * (2 if numerics.verify else 1)
+    components = sum(COMPONENTS[name] for name in spec.output.fields) * (2 if numerics.verify else 1)
     return Cost(nodes, frames, steps, seconds, 8 * frames * nodes * components)
 
 

@@ -1,4 +1,4 @@
-"""What a dataset holds: one table, from which the writer, the queries and the documentation derive."""
+"""What a dataset holds: the solver's outputs as variables, from which the writer, the queries and the guide derive."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from service.cases import CaseSpec
 from solver import Frame, VerifiedFrame
-from solver.run.verify import UNVERIFIED
+from solver.measures.frame import OUTPUTS
+from solver.measures.output import Output
 
 ERROR = "_error"
 
@@ -20,6 +21,11 @@ LABELS: dict[str, tuple[str, ...]] = {
     "quaternion": ("w", "x", "y", "z"),
 }
 """The dimensions that count components, and the names of these."""
+
+COMPONENTS: dict[str, tuple[str, ...]] = {
+    "": (), "material": ("body",), "lab": ("lab",), "quaternion": ("quaternion",),
+}  # fmt: skip
+"""The dimension of an output's components, by its axes."""
 
 LABEL_NAMES = {
     "body": "axis of the material frame",
@@ -82,44 +88,13 @@ class ErrorVariable(Variable):
         return value
 
 
-def _along_rod(
-    name: str, components: str, units: str, long_name: str, frame: Literal["material", "lab", ""]
-) -> Variable:
-    return Variable(name, ("time", "s", components), units, long_name, frame)
+def _variable(output: Output) -> Variable:
+    dimensions = ("time", *(("s",) if output.along_rod else ()), *COMPONENTS[output.axes])
+    frame = "" if output.axes == "quaternion" else output.axes
+    return Variable(output.name, dimensions, output.units, output.long_name, frame, output.type, output.statics)
 
 
-def _number(name: str, units: str, long_name: str, kind: Literal["f8", "i4"] = "f8") -> Variable:
-    return Variable(name, ("time",), units, long_name, type=kind)
-
-
-VARIABLES: tuple[Variable, ...] = (
-    _along_rod("v", "body", "m s-1", "velocity of the centreline", "material"),
-    _along_rod("omega", "body", "rad s-1", "angular velocity of the section", "material"),
-    _along_rod("f", "body", "N", "internal force", "material"),
-    _along_rod("kappa", "body", "rad m-1", "curvature and twist", "material"),
-    _along_rod("q", "body", "N m", "internal moment", "material"),
-    _along_rod("r", "lab", "m", "position of the centreline", "lab"),
-    _along_rod("orientation", "quaternion", "1", "rotation from material to lab components", ""),
-    _number("energy_bending", "J", "strain energy of bending"),
-    _number("energy_torsion", "J", "strain energy of torsion"),
-    _number("energy_kinetic", "J", "kinetic energy of the rod"),
-    _number("energy_added_mass", "J", "kinetic energy of the added mass of fluid"),
-    _number("energy_potential", "J", "potential energy of weight and buoyancy"),
-    _number("energy_contact", "J", "potential energy of self-contact"),
-    _number("work_ends", "J", "work of the ends since the start"),
-    _number("work_loads", "J", "work of the loads since the start"),
-    _number("dissipation", "J", "energy dissipated since the start"),
-    _number("energy_balance", "J", "energy gained less work done plus energy dissipated, zero if exact"),
-    _number("Tw", "turn", "twist"),
-    _number("Wr", "turn", "writhe of the centreline continued by straight rays"),
-    _number("Lk", "turn", "linking number, the relative rotation of the ends"),
-    _number("min_gap", "m", "smallest gap between surfaces, once the total curvature does not rule contact out"),
-    _number("contacts", "1", "number of point pairs that press on each other", "i4"),
-    _number("dt", "s", "length of the time step that ended here"),
-    _number("newton_iterations", "1", "Newton iterations of the time step that ended here", "i4"),
-    Variable("parameter", ("time",), "s", "time in the schedules, which may go back", statics=True),
-    Variable("negative_modes", ("time",), "1", "directions in which the energy falls, 0 if stable", "", "i4", True),
-)
+VARIABLES = tuple(_variable(output) for output in OUTPUTS)
 
 
 def _error_of(variable: Variable) -> Variable:
@@ -128,7 +103,7 @@ def _error_of(variable: Variable) -> Variable:
     return ErrorVariable(**vars(told))
 
 
-ERRORS = {v.name: _error_of(v) for v in VARIABLES if v.name not in UNVERIFIED}
+ERRORS = {o.name: _error_of(v) for o, v in zip(OUTPUTS, VARIABLES, strict=True) if o.verified}
 """By the name of the variable whose error it is."""
 
 

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
+from solver.kernels.rotation import rotate
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
 
@@ -46,6 +47,12 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
     across = columns[:, -1] - columns[:, 0]
     quarter -= half_area(across, outward_end, -outward_start)
     return -quarter / pi
+
+
+def writhe_of_rod(r: Array, orientation: Array) -> float:
+    """Writhe (turns) of a rod's centreline `r` (n, 3), continued along a3 of the `orientation` (n, 4) of its ends."""
+    tangent = rotate(orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2))
+    return writhe(r, tangent[0], tangent[1])
 
 
 def writhe_closed(r: ArrayLike) -> float:

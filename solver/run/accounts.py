@@ -7,9 +7,8 @@ from math import nan, pi
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.rotation import rotate
 from solver.measures.frame import Frame
-from solver.measures.topology import writhe
+from solver.measures.topology import writhe_of_rod
 from solver.methods.method import Method
 from solver.physics.elasticity import elasticity_of, principal
 from solver.scene.scene import Scene
@@ -53,14 +52,10 @@ class Accounts:
             self._turnover += float(np.abs(entries - self._entries).sum())
         self._entries = entries
         self._settle(t, total - self._energy_at_start - work_ends - work_loads + dissipation)
-        Wr = nan
-        if self._scene.topology:
-            tangent = rotate(fields.orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2))
-            Wr = float(writhe(fields.r, tangent[0], tangent[1]))
+        Wr = writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
         return Frame(
-            t=t, **fields._asdict(),
-            energy_bending=energy.bending, energy_torsion=energy.torsion, energy_kinetic=energy.kinetic,
-            energy_added_mass=energy.added_mass, energy_potential=energy.potential, energy_contact=contact,
+            t=t, **vars(fields),
+            **{f"energy_{name}": value for name, value in energy._asdict().items()}, energy_contact=contact,
             work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
             energy_balance=self._balance,
             Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr), min_gap=self._method.smallest_gap(),

@@ -8,9 +8,9 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import compile_apart
-from solver.kernels.rotation import rotate, rotate_back
-from solver.measures.frame import Fields, Frame, Statistics
-from solver.measures.topology import writhe
+from solver.kernels.rotation import rotate_back
+from solver.measures.frame import Fields, Frame, Statistics, complete
+from solver.measures.topology import writhe_of_rod
 from solver.methods.space.segments.balances import motion_at
 from solver.methods.space.segments.energies import energies, twist
 from solver.methods.staggered import orientations_at_nodes
@@ -89,24 +89,23 @@ class Equilibria(Run):
         fields = self._fields(point)
         stages = equations.stages
         energy = energies(equations.chain, equations.loads, 0, stages.bend[0], motion_at(stages, 0))
-        return Frame(
-            t=t, **fields._asdict(), energy_bending=energy.bending, energy_torsion=energy.torsion, energy_kinetic=0.0,
-            energy_added_mass=0.0, energy_potential=energy.potential, energy_contact=0.0,
+        energy = energy._replace(kinetic=0.0, added_mass=0.0)
+        frame = Frame(
+            t=t, **vars(fields),
+            **{f"energy_{name}": value for name, value in energy._asdict().items()}, energy_contact=0.0,
             work_ends=nan, work_loads=nan, dissipation=nan, energy_balance=nan,
             Tw=self._twist(point), Wr=self._writhe(fields), Lk=self._linking_number(equations.time(point.q)),
             min_gap=nan, contacts=0,
             dt=path.last_dq * self._scene.t_end, newton_iterations=path.last_iterations,
             parameter=equations.time(point.q), negative_modes=path.modes,
         )  # fmt: skip
+        return complete(frame, self.s, self._scene)
 
     def _twist(self, point: Point) -> float:
         return float(twist(point.quaternion) / (2 * pi))
 
     def _writhe(self, fields: Fields) -> float:
-        if not self._scene.topology:
-            return nan
-        tangent = rotate(fields.orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2))
-        return float(writhe(fields.r, tangent[0], tangent[1]))
+        return writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
 
     def _linking_number(self, t: float) -> float:
         """The ends' relative rotation in turns, from Tw + Wr at the start on; NaN where it is not prescribed."""

@@ -54,6 +54,6 @@ class SideBySide(Run):
             self._waiting.append([getattr(frame, name) for name in NAMES])
         if len(self._waiting) < len(self._runs):
             return None
-        frames = [Frame(*values) for values in self._waiting]
+        frames = [Frame(**dict(zip(NAMES, values, strict=True))) for values in self._waiting]
         self._waiting.clear()
         return self._together(*frames)

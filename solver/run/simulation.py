@@ -6,7 +6,7 @@ from dataclasses import replace
 from math import pi
 
 from solver.arrays import Array
-from solver.measures.frame import Frame, Statistics
+from solver.measures.frame import Frame, Statistics, complete
 from solver.methods.one_axis import OneAxisMethod
 from solver.methods.registry import discretized, tolerated_increment
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
@@ -58,7 +58,8 @@ class Simulation(Run):
         self.t = self._begin()
         self._turns = frame.Tw + frame.Wr - frame.Lk
         # forces are no part of what is given at t = 0, they follow from it
-        return replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
+        frame = replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
+        return complete(frame, self.s, self._scene)
 
     def _next_frame(self, output: float) -> Frame | None:
         if not self._control.reached(output, self.t):
@@ -76,7 +77,7 @@ class Simulation(Run):
         if self._scene.contact is not None and abs(self._turns - before) > 1.0:
             # a rod that passes through itself makes Tw + Wr - Lk jump by 2
             raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, "Tw + Wr - Lk jumped")
-        return frame
+        return complete(frame, self.s, self._scene)
 
     def _begin(self) -> float:
         """Two tiny steps that find consistent accelerations and forces; return the time they reach."""

@@ -9,16 +9,13 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
-from solver.measures.frame import Frame, Statistics
+from solver.measures.frame import OUTPUTS, Frame, Statistics
 from solver.physics.elasticity import principal
 from solver.physics.section import sample
 from solver.run.resolution import refine
-from solver.run.side_by_side import NAMES, Kind, SideBySide
+from solver.run.side_by_side import Kind, SideBySide
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
-
-UNVERIFIED = ("t", "contacts", "dt", "newton_iterations", "negative_modes")
-"""What is the finer run's own: counts, and lengths of steps."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,20 +62,23 @@ def extrapolate(coarse: Frame, fine: Frame, least: Mapping[str, Array]) -> Verif
     its component's rms, nor than the field's `least`. The nodes are the coarse run's, every second one of the fine
     run's.
     """
-    values: dict[str, Any] = {}
-    errors: dict[str, Any] = {}
-    for name in NAMES:
+    values: dict[str, Any] = {"t": fine.t}
+    errors: dict[str, Any] = {"t": fine.t}
+    for output in OUTPUTS:
+        name = output.name
         one, two = getattr(coarse, name), getattr(fine, name)
-        if name in UNVERIFIED:
+        if output.along_rod:
+            two = two[::2]
+        if not output.verified:
             values[name], errors[name] = two, two
             continue
-        if name == "orientation":  # a quaternion and its opposite are the same rotation
-            two = two[::2] * np.sign(np.sum(one * two[::2], axis=1))[:, None]
-        elif isinstance(two, np.ndarray):
-            two = two[::2]
+        if output.axes == "quaternion":  # a quaternion and its opposite are the same rotation
+            two = two * np.sign(np.sum(one * two, axis=-1, keepdims=True))
         error = np.abs(two - one) / 3.0
-        if error.ndim:
+        if output.along_rod:
             error = np.maximum(np.maximum(error, np.sqrt(np.mean(error**2, axis=0))), least.get(name, 0.0))
-        values[name], errors[name] = two + (two - one) / 3.0, error
-    values["orientation"] /= np.linalg.norm(values["orientation"], axis=1)[:, None]
+        value = two + (two - one) / 3.0
+        if output.axes == "quaternion":
+            value /= np.linalg.norm(value, axis=-1, keepdims=True)
+        values[name], errors[name] = value, error
     return VerifiedFrame(**values, error=Frame(**errors))

@@ -57,7 +57,6 @@ def test_nodes_are_placed_as_one_by_one(intervals: int) -> None:
     assert_array_equal(method.trial.quaternion, expected)
     assert_array_equal(nodes.R, matrices(expected))
     assert_array_equal(method.trial.r, past[:, :3])
-    R, J = nodes.R, nodes.J
 
 
 @pytest.mark.parametrize("intervals", SIZES)

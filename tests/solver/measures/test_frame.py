@@ -1,0 +1,49 @@
+"""What is declared of each output, and that a frame's values are of the declared kind."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from solver import Frame, Numerics, Scene, VerifiedFrame
+from solver.measures.frame import OUTPUTS, Fields
+from tests.solver.bent import bent_cantilever
+from tests.solver.scenes import last
+
+STAGGERED = Numerics(method="staggered", intervals=6, dt_max=0.05)
+
+
+def short(numerics: Numerics) -> Scene:
+    return replace(bent_cantilever(numerics), t_end=0.5)
+
+
+def test_every_value_of_a_frame_but_its_time_is_declared():
+    assert {output.name for output in OUTPUTS} == {field.name for field in fields(Frame)} - {"t"}
+    assert all(output.units and output.long_name for output in OUTPUTS)
+
+
+def test_what_a_method_gives_lies_along_the_rod():
+    declared = {output.name: output.along_rod for output in OUTPUTS}
+    assert all(declared[field.name] for field in fields(Fields))
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        short(Numerics(intervals=6, dt_max=0.05)),
+        short(STAGGERED),
+        replace(short(STAGGERED), analysis="static"),
+        short(replace(STAGGERED, verify=True)),
+    ],
+    ids=["box", "staggered", "static", "verified"],
+)
+def test_values_have_the_declared_shape_and_type(scene):
+    frame = last(scene)
+    for each in (frame, frame.error) if isinstance(frame, VerifiedFrame) else (frame,):
+        for output in OUTPUTS:
+            value = np.asarray(getattr(each, output.name))
+            components = (output.components,) if output.axes else ()
+            assert value.shape == ((7,) if output.along_rod else ()) + components, output.name
+            assert value.dtype.kind == {"f8": "f", "i4": "i"}[output.type], output.name

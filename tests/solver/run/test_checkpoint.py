@@ -7,13 +7,13 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
-from tests.solver.methods.test_statics import arch, ramp
 
 from solver import Condition, Curve, DistributedLoad, End, Fluid, Frame, Numerics, Scene, VerifiedFrame, simulate
 from solver.scene.ends import FIXED
 from tests.solver.bent import bent_cantilever
 from tests.solver.physics.contact.test_self_contact import CONTACT, looped
 from tests.solver.scenes import ARC, ARC_ROD, EJ, FIXED_STEPS, LENGTH
+from tests.solver.statics.test_statics import arch, ramp
 
 SPIN = Curve.table([0.0, 0.3, 1.0], [0.0, 6.0, 6.0], "smoothstep")
 STOPPED = (Condition("rate", Curve.constant(0.05)), Condition("stop", since=0.45, within=0.1))

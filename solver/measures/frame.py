@@ -12,8 +12,10 @@ from dataclasses import dataclass, replace
 from math import nan
 from typing import Annotated, get_type_hints
 
+import numpy as np
+
 from solver.arrays import Array
-from solver.measures.output import Output
+from solver.measures.output import FOLLOWS, Output
 from solver.scene.scene import Scene
 
 
@@ -76,6 +78,14 @@ class Frame(Fields):
     negative_modes: Annotated[
         int, Output("1", "directions in which the energy falls, 0 if stable", statics=True, verified=False)
     ] = -1
+    max_curvature: Annotated[
+        float, Output("rad m-1", "largest curvature of the centreline along the rod", of=_max_curvature)
+    ] = FOLLOWS
+
+
+def _max_curvature(frame: Frame, s: Array, scene: Scene) -> float:
+    """The largest sqrt(kappa1^2 + kappa2^2), of which the inverse is the smallest bend radius."""
+    return float(np.hypot(frame.kappa[:, 0], frame.kappa[:, 1]).max())
 
 
 def _declared() -> tuple[Output, ...]:

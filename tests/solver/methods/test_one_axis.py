@@ -137,7 +137,8 @@ def test_the_solution_is_that_in_space(scene: Scene, monkeypatch: pytest.MonkeyP
     assert (cost.steps, cost.failed_steps) == (its_cost.steps, its_cost.failed_steps)
     energy = largest([np.array([f.energy_bending, f.energy_torsion, f.energy_kinetic]) for f in theirs])
     works = dict.fromkeys(("work_ends", "work_loads", "dissipation"), energy)
-    scales = {"Tw": 1.0, "Wr": 1.0, "Lk": 1.0, "v": 0.1, "omega": 0.1, "q": EJ / LENGTH, "f": FORCE, **works}
+    scales = {"Tw": 1.0, "Wr": 1.0, "Lk": 1.0, "v": 0.1, "omega": 0.1, "q": EJ / LENGTH, "f": FORCE,
+              "max_curvature": 1.0 / LENGTH, **works}  # fmt: skip
     for field in fields(Frame):
         one, two = ([np.asarray(getattr(frame, field.name), float) for frame in frames] for frames in (mine, theirs))
         if field.name in ("newton_iterations", "negative_modes"):

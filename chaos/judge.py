@@ -12,6 +12,7 @@ from sqlalchemy import func, select
 from chaos.cases import digest
 from chaos.record import Record
 from chaos.watch import Watch
+from outcomes import Outcome
 from service.jobs import ENDED, Database, Job, Registry, Status
 from service.jobs.registry import Selection
 from service.jobs.tables import events, jobs, owners
@@ -91,11 +92,11 @@ def _explained(job: Job, record: Record) -> bool:
     """Whether the job may have ended so, after what was done."""
     if job.cancel_requested:
         return job.status is Status.DISMISSED
-    if job.outcome == "worker_lost":
+    if job.outcome == Outcome.WORKER_LOST:
         return job.fruitless >= 3
     if job.id in record.starved:
-        return job.outcome == "out_of_memory"
-    return job.outcome == "completed"
+        return job.outcome == Outcome.OUT_OF_MEMORY
+    return job.outcome == Outcome.COMPLETED
 
 
 def _all_jobs(registry: Registry) -> list[Job]:

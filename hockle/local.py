@@ -126,9 +126,10 @@ def _spec(told: argparse.Namespace) -> CaseSpec:
 def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
     """Run and write the dataset; of a run that failed, the frames so far and the failure."""
     from hockle.progress import show
+    from outcomes import Outcome
     from service.cases import build_scene
     from service.results import DatasetWriter
-    from solver import Outcome, RunFailed, simulate
+    from solver import RunFailed, simulate
 
     simulation = simulate(build_scene(spec))
     failure: RunFailed | None = None

@@ -8,8 +8,9 @@ from time import process_time
 
 import numpy as np
 
+from outcomes import Outcome
 from service.cases import build_scene, parse_case
-from solver import REMEDY, Frame, Outcome, Run, RunFailed, Scene, Simulation, simulate, warm
+from solver import Frame, Run, RunFailed, Scene, Simulation, simulate, warm
 from stress.books import Books
 from stress.crossing import Crossings
 from stress.ending import FAILURES, Ending, Result, Task
@@ -62,7 +63,7 @@ def _excused(ending: Ending, fault: Ending) -> bool:
 
 def _named(failure: RunFailed) -> tuple[Ending, str, str]:
     """A failure that says what it is and what to do is a good ending."""
-    told = isfinite(failure.t) and failure.outcome is not Outcome.COMPLETED and REMEDY[failure.outcome] != ""
+    told = isfinite(failure.t) and failure.outcome is not Outcome.COMPLETED and failure.outcome.remedy != ""
     return Ending.NAMED if told else Ending.EXCEPTION, failure.outcome.value, failure.detail
 
 

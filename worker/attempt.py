@@ -12,13 +12,14 @@ from typing import TypeVar
 
 from sqlalchemy.exc import DBAPIError
 
+from outcomes import Outcome
 from service.cases import CaseSpec, build_scene, parse_case
 from service.jobs import Dataset, Drift, Reached, Status
 from service.jobs.held import HeldJob
 from service.results import Datasets, DatasetWriter, StoreUnreachable
 from service.results.durable import size_of
 from service.settings import Settings
-from solver import Frame, Outcome, Run, RunFailed, Scene, code_digest, simulate
+from solver import Frame, Run, RunFailed, Scene, code_digest, simulate
 from worker import stopping
 from worker.checkpoints import Checkpoint, Checkpoints
 from worker.drift import drift_of
@@ -71,14 +72,15 @@ class Attempt:
         self._tell_lost(found)
         segments = found.segments if found else ()
         with DatasetWriter(self._path, spec, self._directory, segments) as writer:
-            status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED.value, ""
+            status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED, ""
             try:
                 self._compute(simulation, scene, writer)
             except RunFailed as failure:
-                status, outcome, message = Status.FAILED, failure.outcome.value, str(failure)
+                status, outcome, message = Status.FAILED, failure.outcome, str(failure)
             self._with_room(writer.flush)
             self._check_size()
-            published = self._with_room(lambda: writer.publish(outcome, message, simulation.s, simulation.statistics))
+            ended = outcome.value, message, simulation.s, simulation.statistics
+            published = self._with_room(lambda: writer.publish(*ended))
         dataset = Dataset(self._path.name, published.sha256, published.bytes)
         return Ending(status, outcome, message, dataset, self._drift(spec))
 

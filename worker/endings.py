@@ -8,11 +8,11 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from outcomes import Outcome
 from service.cases import CaseError
 from service.jobs import Dataset, Drift, Job, Status
 from service.jobs.held import CANCELLED
 from service.results import StoreUnreachable
-from solver import Outcome
 from worker.lease import Cancelled, OutOfTime
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
@@ -26,16 +26,16 @@ class OutOfDisk(Exception):
 
 @dataclass(frozen=True)
 class Ending:
-    """The status, the outcome's name, a sentence for the owner, and the dataset if there is one, with its drift."""
+    """The status, the outcome, a sentence for the owner, and the dataset if there is one, with its drift."""
 
     status: Status
-    outcome: str
+    outcome: Outcome
     message: str
     dataset: Dataset | None = None
     drift: Drift | None = None
 
 
-DISMISSED = Ending(Status.DISMISSED, Outcome.CANCELLED.value, CANCELLED)
+DISMISSED = Ending(Status.DISMISSED, Outcome.CANCELLED, CANCELLED)
 
 
 def ending_of(error: Exception, job: Job, store: Path) -> Ending:
@@ -44,26 +44,23 @@ def ending_of(error: Exception, job: Job, store: Path) -> Ending:
         case Cancelled():
             return DISMISSED
         case OutOfTime():
-            return _failed("wall_time_exceeded", f"the job has run for more than its {job.limits.wall:g} s: "
-                           "give it more, or fewer intervals or a larger dt_max")
+            return _failed(Outcome.WALL_TIME_EXCEEDED, f"the job has run for more than its {job.limits.wall:g} s")
         case OutOfDisk():
-            return _failed("disk_limit_exceeded", f"the job has written more than its {job.limits.disk:,} bytes: "
-                           "give it more, or store less with output.fields or a longer output.interval")
+            return _failed(Outcome.DISK_LIMIT_EXCEEDED, f"the job has written more than its {job.limits.disk:,} bytes")
         case CaseError():
-            return _failed("invalid_case", str(error))
+            return _failed(Outcome.INVALID_CASE, str(error))
         case _ if _began_with(error, MemoryError):
-            return _failed("out_of_memory", f"the job needs more than its {job.limits.memory:,} bytes of memory, or "
-                           "than there are: use fewer intervals or a longer output.interval")
+            memory = f"the job needs more than its {job.limits.memory:,} bytes of memory, or than there are"
+            return _failed(Outcome.OUT_OF_MEMORY, memory)
         case StoreUnreachable():
             log.error("job %s could not be uploaded: %s", job.id, error)
-            return _failed("dataset_not_written", "the object store could not be reached for ten minutes, and nothing "
-                           "of the run is kept: see the worker's log, and submit the case again")
+            return _failed(Outcome.DATASET_NOT_WRITTEN, "the object store could not be reached for ten minutes, and "
+                           "nothing of the run is kept")
         case OSError():
             log.exception("job %s could not be written", job.id, exc_info=error)
             return _not_written(error, store)
     log.error("job %s failed", job.id, exc_info=error)
-    return _failed("internal_error", f"hockle itself failed ({type(error).__name__}); the worker's log says where. "
-                   f"Please report it with the case and the job id {job.id}")
+    return _failed(Outcome.INTERNAL_ERROR, f"hockle itself failed ({type(error).__name__}) in job {job.id}")
 
 
 def _began_with(error: BaseException | None, kind: type[Exception]) -> bool:
@@ -79,11 +76,9 @@ def is_full(error: OSError, store: Path) -> bool:
 def _not_written(error: OSError, store: Path) -> Ending:
     """A full disk by its name."""
     if is_full(error, store):
-        return _failed("disk_full", "the disk that holds the datasets is full, and nothing of the run is kept: "
-                       "make room and submit the case again")
-    return _failed("dataset_not_written",
-                   f"the dataset could not be written ({error.strerror or error}): see the worker's log")
+        return _failed(Outcome.DISK_FULL, "the disk that holds the datasets is full, and nothing of the run is kept")
+    return _failed(Outcome.DATASET_NOT_WRITTEN, f"the dataset could not be written ({error.strerror or error})")
 
 
-def _failed(outcome: str, message: str) -> Ending:
-    return Ending(Status.FAILED, outcome, message)
+def _failed(outcome: Outcome, what: str) -> Ending:
+    return Ending(Status.FAILED, outcome, f"{what}: {outcome.remedy}")

@@ -73,7 +73,7 @@ def _finish(held: HeldJob, ending: Ending, lease: Lease) -> Ending | None:
     """Write how the job ended, however long the database is away: the lease bounds it. Returns what was written."""
     while True:
         try:
-            status = held.finish(ending.status, ending.outcome, ending.message, ending.dataset, lease.reached,
+            status = held.finish(ending.status, ending.outcome.value, ending.message, ending.dataset, lease.reached,
                                  ending.drift)
         except DBAPIError as error:
             log.warning("job %s: its end could not be written, trying again: %s", held.job.id, error)

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("solver", "service", "validation", "benchmarks")
+PACKAGES = ("outcomes", "solver", "service", "validation", "benchmarks")
 CONTACT = (("return bool(touch.present and touch.pairs.counts[0] > 0)", "return False"),
            ("self.present = contact is not None", "self.present = False"))  # fmt: skip
 FLUID = (("    added_mass,\n", ""), ("    drag,\n", ""))

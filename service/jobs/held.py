@@ -9,6 +9,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, case, exists, func, select, update
 
+from outcomes import Outcome
 from service.jobs.database import Database
 from service.jobs.job import Dataset, Drift, Job, Reached
 from service.jobs.lifecycle import ENDED, Status
@@ -102,8 +103,8 @@ class HeldJob:
             (
                 transaction.change(*self._mine, ~jobs.c.cancel_requested, event="ended", status=status,
                                    outcome=outcome, message=message, **told, **asdict(reached))
-                or transaction.change(*self._mine, event="ended", status=Status.DISMISSED, outcome="cancelled",
-                                      message=CANCELLED, **asdict(reached))
+                or transaction.change(*self._mine, event="ended", status=Status.DISMISSED,
+                                      outcome=Outcome.CANCELLED.value, message=CANCELLED, **asdict(reached))
             )  # fmt: skip
             ended = select(jobs.c.status).where(jobs.c.id == self.job.id, jobs.c.epoch == self.job.epoch,
                                                 jobs.c.status.in_(ENDED))

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from sqlalchemy import func, select, update
 
+from outcomes import Outcome
 from service.jobs.database import Database
 from service.jobs.doorbell import Doorbell
 from service.jobs.leader import Leader
@@ -67,15 +68,15 @@ def take_back(database: Database, lost: Beat, attempts: int) -> None:
     A renewal in the last moment is stronger; afterwards the epoch shuts the worker out.
     """
     same = (jobs.c.id == lost.job_id, jobs.c.epoch == lost.epoch, jobs.c.lease_until == lost.lease_until)
-    hopeless = (f"its worker stopped answering {attempts} times without a new checkpoint: the case may need more "
-                "memory than there is; try fewer intervals or frames, and see the worker's log")
+    hopeless = (f"its worker stopped answering {attempts} times without a new checkpoint: "
+                f"{Outcome.WORKER_LOST.remedy}")
     with database.writing() as transaction:
         (
             transaction.change(*same, jobs.c.cancel_requested, event="ended", status=Status.DISMISSED,
-                               epoch=jobs.c.epoch + 1, outcome="cancelled",
+                               epoch=jobs.c.epoch + 1, outcome=Outcome.CANCELLED.value,
                                message="cancelled; its worker had stopped answering")
             or transaction.change(*same, jobs.c.fruitless >= attempts, event="ended", status=Status.FAILED,
-                                  epoch=jobs.c.epoch + 1, outcome="worker_lost", message=hopeless)
+                                  epoch=jobs.c.epoch + 1, outcome=Outcome.WORKER_LOST.value, message=hopeless)
             or transaction.change(*same, event="taken_back", status=Status.ACCEPTED, epoch=jobs.c.epoch + 1, worker="")
         )  # fmt: skip
 
@@ -90,7 +91,7 @@ def dismiss_cancelled(database: Database) -> None:
         return
     with database.writing() as transaction:
         transaction.change(jobs.c.id.in_(found), *cancelled, event="ended", status=Status.DISMISSED,
-                           outcome="cancelled", message="cancelled while it waited")
+                           outcome=Outcome.CANCELLED.value, message="cancelled while it waited")
 
 
 def recount(database: Database) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 from sqlalchemy import ColumnElement, bindparam, insert, select, true
 from sqlalchemy.dialects import postgresql, sqlite
 
+from outcomes import Outcome
 from service.jobs.audit import Actor, note
 from service.jobs.database import Database, Transaction
 from service.jobs.job import Job, NewJob
@@ -113,7 +114,7 @@ class Registry:
                                   cancel_requested=True) and actor is not None:
                 note(transaction, actor, "job_cancelled", job_id)
             transaction.change(*this, jobs.c.status == Status.ACCEPTED, event="ended", status=Status.DISMISSED,
-                               outcome="cancelled", message="cancelled before it started")
+                               outcome=Outcome.CANCELLED.value, message="cancelled before it started")
         return self.get(job_id)
 
     def versions(self, job_ids: Collection[str]) -> dict[str, int]:

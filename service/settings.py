@@ -15,6 +15,7 @@ from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationE
 from pydantic.dataclasses import dataclass
 
 from service.jobs.job import LEAST_MEMORY, Limits
+from service.meaning import means
 
 FILE = "HOCKLE_SETTINGS"
 """The variable that names the settings file (TOML, with the names of the fields below)."""
@@ -54,36 +55,45 @@ def _sqlalchemy_url(url: str) -> str:
 
 @dataclass(frozen=True, config=ConfigDict(extra="forbid"))
 class Settings:
-    """Where the service keeps things, and its times in seconds.
+    """Where the service keeps things, how it shares them out, and its times in seconds."""
 
-    `data` is of one host. `database` is a postgresql:// URL, or empty: SQLite in `data`. `broker` is a
-    redis:// URL, or empty: messages then lie as files in `data`. `store` holds datasets and
-    checkpoints, empty for `data`; several hosts share it. `objects` is an s3:// URL that holds the datasets in place of
-    `store`, or empty.
-    `lease`: how long a silent worker keeps its job. `attempts`: how often a job is tried that gets no
-    farther. `checkpoint`: how much running a lost worker may cost.
-    `longest_run`: the most computing that a case may ask for, by its estimate. Of one owner: `quota`, the most
-    unfinished jobs; `rate`, the requests a second. `require_keys`: ask for API keys on loopback too, as behind a
-    proxy. `hosts`: names by which clients know the service, with commas between.
-    `limit_wall`, `limit_memory`, `limit_disk`: the most that one job may use, in seconds and bytes.
-    """
-
-    data: Path = Path("var")
-    database: Annotated[str, AfterValidator(_sqlalchemy_url), Field(repr=False)] = ""
-    broker: Annotated[str, AfterValidator(_kombu_url), Field(repr=False)] = ""
-    store: Path | None = None
-    objects: Annotated[str, AfterValidator(_bucket_url)] = ""
-    lease: Annotated[float, Positive] = 30.0
-    attempts: Annotated[int, Positive] = 3
-    checkpoint: Annotated[float, Positive] = 10.0
-    longest_run: Annotated[float, Positive] = 86400.0
-    quota: Annotated[int, Positive] = 10_000
-    rate: Annotated[float, Positive] = 100.0
-    require_keys: bool = False
-    hosts: str = ""
-    limit_wall: Annotated[float, Positive] = Limits.wall
-    limit_memory: Annotated[int, Field(ge=LEAST_MEMORY)] = Limits.memory
-    limit_disk: Annotated[int, Positive] = Limits.disk
+    data: Annotated[Path, means("what one host keeps: registry, locks, logs, messages")] = Path("var")
+    database: Annotated[
+        str, AfterValidator(_sqlalchemy_url), Field(repr=False),
+        means("`postgresql://user@host/name`; needed for more than one host. Empty: SQLite in `HOCKLE_DATA`"),
+    ] = ""  # fmt: skip
+    broker: Annotated[
+        str, AfterValidator(_kombu_url), Field(repr=False),
+        means("a broker of your own: `redis://`, `rediss://` or `unix://`. Empty: `hockle serve` starts one, or "
+              "messages lie as files"),
+    ] = ""  # fmt: skip
+    store: Annotated[
+        Path | None, means("datasets and checkpoints; several hosts share it. None: in `HOCKLE_DATA`")
+    ] = None
+    objects: Annotated[
+        str, AfterValidator(_bucket_url),
+        means("`s3://bucket/prefix`: datasets are published there, as objects, in place of `HOCKLE_STORE`; needs "
+              "`hockle[s3]`"),
+    ] = ""  # fmt: skip
+    lease: Annotated[
+        float, Positive, means("time after which the job of a silent worker goes to another", "s")
+    ] = 30.0
+    attempts: Annotated[
+        int, Positive, means("how often a job is tried whose worker is lost before it gets any farther")
+    ] = 3
+    checkpoint: Annotated[float, Positive, means("the most running that a lost worker may cost", "s")] = 10.0
+    longest_run: Annotated[
+        float, Positive, means("the most computing that a case may ask for, by its estimate", "s")
+    ] = 86400.0
+    quota: Annotated[int, Positive, means("the most unfinished jobs of one owner")] = 10_000
+    rate: Annotated[float, Positive, means("the most requests of one owner who has a key", "1/s")] = 100.0
+    require_keys: Annotated[bool, means("ask for API keys on loopback too, as behind a proxy")] = False
+    hosts: Annotated[str, means("names by which clients know the service, with commas between")] = ""
+    limit_wall: Annotated[float, Positive, means("the longest that one job may run", "s")] = Limits.wall
+    limit_memory: Annotated[
+        int, Field(ge=LEAST_MEMORY), means("the most memory that one job may use", "bytes")
+    ] = Limits.memory
+    limit_disk: Annotated[int, Positive, means("the most disk that one job may use", "bytes")] = Limits.disk
 
     @property
     def limits(self) -> Limits:
@@ -127,9 +137,9 @@ class Settings:
 
     def environment(self) -> dict[str, str]:
         """The environment variables from which `from_environment` makes the same settings, without a file."""
-        told = {field.name: getattr(self, field.name) for field in fields(self)}
-        told |= {name: path.absolute() for name, path in told.items() if isinstance(path, Path)}
-        return {FILE: ""} | {variable(name): "" if value is None else str(value) for name, value in told.items()}
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        values |= {name: path.absolute() for name, path in values.items() if isinstance(path, Path)}
+        return {FILE: ""} | {variable(name): "" if value is None else str(value) for name, value in values.items()}
 
 
 def variable(field: str) -> str:
@@ -142,19 +152,19 @@ def from_environment(environment: Mapping[str, str] = os.environ) -> Settings:
 
     Raises ValueError that names the setting, its value and the rule; OSError where there is no such file.
     """
-    told: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     if path := environment.get(FILE):
-        told = tomllib.loads(Path(path).read_text())
+        values = tomllib.loads(Path(path).read_text())
     names = {field.name: variable(field.name) for field in fields(Settings)}
-    told |= {name: environment[its] for name, its in names.items() if environment.get(its)}
+    values |= {name: environment[its] for name, its in names.items() if environment.get(its)}
     try:
-        return TypeAdapter(Settings).validate_python(told)
+        return TypeAdapter(Settings).validate_python(values)
     except ValidationError as error:
-        raise ValueError("; ".join(_told(fault, names) for fault in error.errors())) from None
+        raise ValueError("; ".join(_sentence(fault, names) for fault in error.errors())) from None
 
 
-def _told(fault: Any, names: Mapping[str, str]) -> str:
-    """One fault. The value of an address is not told, nor of what is no setting: it may hold a password."""
+def _sentence(fault: Any, names: Mapping[str, str]) -> str:
+    """One fault. The value of an address is not shown, nor of what is no setting: it may hold a password."""
     name = str(fault["loc"][0])
     value = "" if name in ("database", "broker") or name not in names else f", got {fault['input']!r}"
     return f"{names.get(name, name)}: {fault['msg']}{value}"

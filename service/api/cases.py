@@ -35,9 +35,9 @@ class Verdict(BaseModel):
 
 @router.post("/validate", openapi_extra=CASE_BODY, responses=problems(400, 413, 415, 422))
 def validate(_: Submitter, wanted: InWanted, parts: InParts) -> Verdict:
-    """Look at a case as a submission would, and say what it would cost."""
+    """The case as it is understood, and its `cost`: nodes, frames, steps, seconds, bytes. Nothing is run."""
     cost = check_cost(wanted.spec, parts.settings.longest_run)
-    wanted.told.limits.within(parts.settings.limits)
+    wanted.request.limits.within(parts.settings.limits)
     return Verdict(case=wanted.spec.document(), cost=CostDocument(**vars(cost)))
 
 

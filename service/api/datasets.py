@@ -60,7 +60,8 @@ class DatasetFile(FileResponse):
 @router.head("/dataset", include_in_schema=False)
 @router.get("/dataset", response_class=FileResponse, responses={**FILE, **NOT_MODIFIED, **problems(404, 409, 416, 503)})
 def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Response:
-    """The NetCDF file, whole or by byte ranges; xarray opens it by this address with #mode=bytes."""
+    """The NetCDF file, whole or by byte ranges; its ETag is its sha256. xarray opens it by this address with
+    #mode=bytes."""
     job = jobs.get(job_id)
     published = _published(job)
     headers = {"ETag": f'"{published.sha256}"', "Cache-Control": "private, immutable"}
@@ -76,7 +77,7 @@ def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Respon
 
 @router.get("/data", responses=problems(404, 409, 422, 503))
 def data(job_id: str, part: Annotated[Part, Query()], parts: InParts, jobs: Jobs) -> dict[str, Any]:
-    """Some variables over a range of time and arclength, as JSON."""
+    """Some variables over a range of time and arclength, as JSON: at most a million values."""
     job = jobs.get(job_id)
     published = _published(job)
     with _there(job):

@@ -52,14 +52,14 @@ class Listing(BaseModel):
 
 @router.get("", responses=problems(422))
 def list_jobs(listing: Annotated[Listing, Query()], jobs: Jobs, caller: Reader) -> JobsDocument:
-    """Jobs, newest first, a page at a time."""
+    """Jobs, newest first, a page at a time; `next` is the address of the next page."""
     if listing.owner not in (None, caller.owner) and Scope.OPERATE not in caller.scopes:
         raise Problem(403, "scope_missing", f"jobs of another owner than {caller.owner} need the scope operate")
     page = jobs.page(listing.limit, listing.selection())
     following = None
     if page.next is not None:
-        told = listing.model_dump(mode="json", exclude_none=True) | {"after": page.next}
-        following = f"/v1/jobs?{urlencode(told)}"
+        query = listing.model_dump(mode="json", exclude_none=True) | {"after": page.next}
+        following = f"/v1/jobs?{urlencode(query)}"
     return JobsDocument(jobs=[document(job) for job in page.jobs], next=following)
 
 
@@ -80,5 +80,6 @@ def case(job_id: str, jobs: Jobs) -> dict[str, Any]:
 
 @router.delete("/{job_id}", responses=problems(404))
 def cancel(job_id: str, jobs: OwnJobs, caller: Submitter) -> JobDocument:
-    """Cancel a job: at once if it waits, soon if it runs; an ended one stays as it is."""
+    """Cancel a job: at once if it waits, within a second if it runs, and `dismissed` is how it then ends, however near
+    its end it was; an ended one stays as it is."""
     return document(jobs.cancel(job_id, caller.actor))

@@ -129,8 +129,8 @@ def process(process_id: str, _: Reader) -> dict[str, Any]:
              responses=problems(400, 404, 409, 413, 415, 422))
 async def execute(process_id: str, caller: Submitter, parts: InParts, response: Response,
                   body: Annotated[dict[str, Any], Depends(json_object)]) -> StatusInfo:
-    """Accept a case to be run, as POST /v1/jobs does: a job of one's own that has run it is given instead of a new one,
-    unless `reuse` is false."""
+    """Accept a case to be run, as POST /v1/jobs does: a job of one's own that has run it is the answer instead of a new
+    one, unless `reuse` is false."""
     _check_process(process_id)
     case = body.get("inputs", {}).get("case") if isinstance(body.get("inputs"), dict) else None
     if not isinstance(case, dict):

@@ -12,6 +12,7 @@ from service.api.bodies import json_object
 from service.cases import CaseError, CaseSpec, FieldError, apply_settings, load_case, parse_case, shipped_cases
 from service.jobs import Limits
 from service.jobs.job import LEAST_MEMORY
+from service.meaning import means
 
 SHIPPED = tuple(shipped_cases())
 
@@ -29,15 +30,14 @@ CaseOrName = Annotated[
 
 
 class LimitsRequest(BaseModel):
-    """What a job may use before it is ended by name, where that is to be less than the operator allows.
-
-    `wall`: seconds of running; `memory` and `disk`: bytes.
-    """
+    """What a job may use before it is ended by name, where that is to be less than the operator allows."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
-    wall: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
-    memory: Annotated[int, Field(ge=LEAST_MEMORY)] | None = None
-    disk: Annotated[int, Field(gt=0)] | None = None
+    wall: Annotated[
+        Annotated[float, Field(gt=0, allow_inf_nan=False)] | None, means("the longest that it may run", "s")
+    ] = None
+    memory: Annotated[Annotated[int, Field(ge=LEAST_MEMORY)] | None, means("the most memory", "bytes")] = None
+    disk: Annotated[Annotated[int, Field(gt=0)] | None, means("the most disk", "bytes")] = None
 
     def within(self, most: Limits) -> Limits:
         """The limits that the job gets. Raises CaseError for those beyond `most`."""
@@ -50,19 +50,28 @@ class LimitsRequest(BaseModel):
 
 
 class JobRequest(BaseModel):
-    """A case with what belongs to its job, not to its physics.
-
-    `case`: a whole case, or the name of a shipped one; `set`: values to change in it, by dotted key.
-    """
+    """A case with what belongs to its job, not to its physics."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
-    case: CaseOrName
-    set: dict[str, Any] = {}
-    label: Annotated[str, Field(max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$")] = ""
-    priority: Annotated[int, Field(ge=-100, le=100)] = 0
-    webhook: Annotated[str, Field(max_length=2000, pattern="^https?://")] | None = None
-    reuse: bool = True
-    limits: LimitsRequest = LimitsRequest()
+    case: Annotated[CaseOrName, means("a whole case, or the name of a shipped one")]
+    set: Annotated[dict[str, Any], means("values to change in it, by dotted key")] = {}
+    label: Annotated[
+        str, Field(max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$"), means("a word of yours to find the job by")
+    ] = ""
+    priority: Annotated[int, Field(ge=-100, le=100), means("of your own waiting jobs the highest goes first")] = 0
+    webhook: Annotated[
+        Annotated[str, Field(max_length=2000, pattern="^https?://")] | None,
+        means("an address that is sent the job's end"),
+    ] = None
+    reuse: Annotated[
+        bool,
+        means("a job of yours that has run the same case is the answer (status 200) instead of a new one"),
+    ] = True
+    limits: Annotated[
+        LimitsRequest,
+        means("any of `wall` (s of running), `memory` and `disk` (bytes), beyond which the job is ended by name; no "
+              "more than the operator allows"),
+    ] = LimitsRequest()  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -70,7 +79,7 @@ class Wanted:
     """A request understood: the case that will run, and the rest of the request."""
 
     spec: CaseSpec
-    told: JobRequest
+    request: JobRequest
 
 
 def wanted(body: Annotated[dict[str, Any], Depends(json_object)]) -> Wanted:
@@ -81,15 +90,15 @@ def wanted(body: Annotated[dict[str, Any], Depends(json_object)]) -> Wanted:
     if "case" not in body:
         return Wanted(parse_case(body), JobRequest(case=body))
     try:
-        told = JobRequest.model_validate(body)
+        request = JobRequest.model_validate(body)
     except ValidationError as error:
         raise CaseError.of(error) from None
-    if isinstance(told.case, str):
-        if told.case not in SHIPPED:  # a name only: never a path
-            raise CaseError([FieldError("/case", told.case, f"must be one of {', '.join(SHIPPED)}")])
-        return Wanted(parse_case(apply_settings(load_case(told.case), told.set)), told)
+    if isinstance(request.case, str):
+        if request.case not in SHIPPED:  # a name only: never a path
+            raise CaseError([FieldError("/case", request.case, f"must be one of {', '.join(SHIPPED)}")])
+        return Wanted(parse_case(apply_settings(load_case(request.case), request.set)), request)
     try:
-        return Wanted(parse_case(apply_settings(told.case, told.set)), told)
+        return Wanted(parse_case(apply_settings(request.case, request.set)), request)
     except CaseError as error:
         inside = [FieldError(f"/case{fault.pointer}", fault.value, fault.rule) for fault in error.errors]
         raise CaseError(inside) from None

@@ -42,7 +42,7 @@ async def submit(
     """Accept a case to be run; the job is on disk when the answer comes.
 
     With an Idempotency-Key a submission may be sent again after a lost answer: the same key and body give the same
-    job for a day. A job of one's own that has run the same case is given instead of a new one, unless `reuse` is
+    job for a day. A job of one's own that has run the same case is the answer instead of a new one, unless `reuse` is
     false.
     """
     submission = told_submission(wanted(body), body, parts, caller, idempotency_key or "")
@@ -56,14 +56,14 @@ async def submit(
 
 def told_submission(wanted: Wanted, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
     """What the registry is asked for. Raises CaseError for its cost or its limits, Problem for its webhook."""
-    spec, told = wanted.spec, wanted.told
+    spec, request = wanted.spec, wanted.request
     check_cost(spec, parts.settings.longest_run)
-    if told.webhook is not None and not caller.key:
+    if request.webhook is not None and not caller.key:
         raise Problem(422, "webhook_needs_key", "a webhook is signed with the API key that asks for it: send one")
-    limits = told.limits.within(parts.settings.limits)
-    new = NewJob(spec.document(), spec.title or spec.name, caller.owner, told.label, told.priority, limits)
+    limits = request.limits.within(parts.settings.limits)
+    new = NewJob(spec.document(), spec.title or spec.name, caller.owner, request.label, request.priority, limits)
     digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest() if key else ""
-    return Submission(new, caller.actor, key, digest, told.reuse, told.webhook or "")
+    return Submission(new, caller.actor, key, digest, request.reuse, request.webhook or "")
 
 
 async def until_ended(job: Job, seconds: int | None, parts: Parts) -> Job:

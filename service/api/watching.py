@@ -61,7 +61,7 @@ def metrics(parts: InParts, _: Operator) -> Response:
 
 @router.get("/v1/audit", responses=problems(422))
 def audit(_: Operator, stretch: Annotated[Stretch, Query()], parts: InParts) -> TrailDocument:
-    """Who submitted and cancelled which job, who made and revoked which key."""
+    """Who submitted and cancelled which job, who created and revoked which key."""
     deeds = trail(parts.registry.database, stretch.limit, stretch.before)
     more = len(deeds) == stretch.limit
     told = [DeedDocument(**vars(deed) | {"time": datetime.fromtimestamp(deed.time, UTC)}) for deed in deeds]

@@ -13,6 +13,7 @@ from service.cases.initial import InitialSpec
 from service.cases.quantities import Positive, Spec
 from service.cases.rod import RodSpec
 from service.cases.surroundings import ContactSpec, FluidSpec, LoadsSpec
+from service.meaning import means
 from solver import Numerics
 from solver.measures.frame import OUTPUTS
 from solver.run.pilot import FIRST_INTERVALS
@@ -41,26 +42,57 @@ Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 class NumericsSpec(Spec):
     """How the equations are solved: see `solver.Numerics`. Either by `intervals` and `dt_max`, or to a `tolerance`."""
 
-    method: Literal["box", "staggered"] = "box"
-    linear_solver: Literal["block_elimination", "shooting"] = "block_elimination"
-    intervals: Annotated[int, Field(ge=2, le=20_000)] | None = None
-    dt_max: Positive | None = None
-    rho_inf: Fraction = 0.5
-    rho_inf_space: Fraction = 1.0
-    increment_tolerance: Positive | None = None
-    tolerance: Annotated[float, Field(ge=1e-6, le=0.1, allow_inf_nan=False)] | None = None
-    verify: bool = False
+    method: Annotated[
+        Literal["box", "staggered"],
+        means("`box`: the paper's, generalized-alpha; `staggered`: rigid segments and Radau IIA of order 5, more "
+              "accurate at long steps (`rho_inf` and `linear_solver` say nothing to it). With a tolerance "
+              "`staggered`, and no other"),
+    ] = "box"  # fmt: skip
+    linear_solver: Annotated[
+        Literal["block_elimination", "shooting"],
+        means("`shooting`: the paper's, which loses its digits on thin rods at short steps"),
+    ] = "block_elimination"
+    intervals: Annotated[
+        Annotated[int, Field(ge=2, le=20_000)] | None,
+        means(f"along the rod, instead of a tolerance; {INTERVALS} where another resolution is given"),
+    ] = None
+    dt_max: Annotated[
+        Positive | None,
+        means(f"the largest step, instead of a tolerance; {DT_MAX:g} where another resolution is given. Steps are "
+              "shortened where the motion or Newton's iteration asks for it", "s"),
+    ] = None  # fmt: skip
+    rho_inf: Annotated[Fraction, means("numerical damping of fast motion: 1 is none, 0 the most")] = 0.5
+    rho_inf_space: Annotated[
+        Fraction,
+        means("the same along s; 1 is the box scheme. Below 1 only for comparison: slower, needs long steps, and not "
+              "with `shooting`"),
+    ] = 1.0  # fmt: skip
+    increment_tolerance: Annotated[
+        Positive | None,
+        means("largest error of a step relative to its motion; where none is given box 0.1, staggered 0.01"),
+    ] = None
+    tolerance: Annotated[
+        Annotated[float, Field(ge=1e-6, le=0.1, allow_inf_nan=False)] | None,
+        means("relative error of r, curvature and energies; chooses method, intervals and steps by pilot runs. "
+              f"{TOLERANCE:g} where nothing else is given but `verify` and `method` `staggered`. Not beside "
+              "`intervals`, `dt_max` or `increment_tolerance`"),
+    ] = None  # fmt: skip
+    verify: Annotated[
+        bool,
+        means("also runs with intervals and steps half as long: stores the extrapolated solution, and the estimated "
+              "error of each variable"),
+    ] = False  # fmt: skip
 
     @model_validator(mode="before")
     @classmethod
-    def _fill_in(cls, given: Any) -> Any:
+    def _fill_in(cls, raw: Any) -> Any:
         """Where nothing is said about the resolution or the box method, a tolerance; else all of the resolution."""
-        if not isinstance(given, dict):
-            return given
-        told = {name: value for name, value in given.items() if value is not None or name not in NULLABLE}
-        if "tolerance" in told or (told.keys() <= {"method", "verify"} and told.get("method") != "box"):
-            return {"method": "staggered", "tolerance": TOLERANCE, **told}
-        return {"intervals": INTERVALS, "dt_max": DT_MAX, **told}
+        if not isinstance(raw, dict):
+            return raw
+        values = {name: value for name, value in raw.items() if value is not None or name not in NULLABLE}
+        if "tolerance" in values or (values.keys() <= {"method", "verify"} and values.get("method") != "box"):
+            return {"method": "staggered", "tolerance": TOLERANCE, **values}
+        return {"intervals": INTERVALS, "dt_max": DT_MAX, **values}
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -80,20 +112,24 @@ class NumericsSpec(Spec):
 
     def build(self, frames: int) -> Numerics:
         """The solver's settings for a run of so many frames."""
-        told = self.model_dump(exclude_none=True)
         most = min(Numerics.most_intervals, MOST_NODE_FRAMES // frames)
-        return Numerics(**told, most_intervals=most)
+        return Numerics(**self.model_dump(exclude_none=True), most_intervals=most)
 
 
 class OutputSpec(Spec):
-    """A frame each `interval` (s), with the `fields` along the rod that are stored (all by default).
+    """What is stored, and how often."""
 
-    `topology`: whether Wr and Lk are computed.
-    """
-
-    interval: Positive
-    fields: Annotated[tuple[FieldName, ...], Field(min_length=1)] = ALL_FIELDS
-    topology: bool = True
+    interval: Annotated[
+        Positive, means("time between frames; steps end exactly on frames, and the last frame is at `t_end`", "s")
+    ]
+    fields: Annotated[
+        tuple[FieldName, ...], Field(min_length=1), means("which variables along the rod are stored")
+    ] = ALL_FIELDS
+    topology: Annotated[
+        bool,
+        means("whether writhe and linking number are computed, which takes a time that grows with the square of "
+              "`intervals` where strands are near each other"),
+    ] = True  # fmt: skip
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -106,20 +142,28 @@ class OutputSpec(Spec):
 class CaseSpec(Spec):
     """One case. All quantities in SI units; s is the arclength from the start, t the time."""
 
-    schema_version: Annotated[int, Field(ge=1, le=1)]  # a Literal would take true for 1
-    analysis: Literal["dynamic", "static"] = "dynamic"
-    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=80)] = "unnamed"
-    title: Annotated[str, Field(max_length=200)] = ""
-    description: Annotated[str, Field(max_length=5000)] = ""
-    rod: RodSpec
-    initial: InitialSpec
-    ends: EndsSpec
-    fluid: FluidSpec | None = None
-    loads: LoadsSpec = LoadsSpec()
-    contact: ContactSpec | None = None
-    numerics: NumericsSpec = Field(default={}, validate_default=True)
-    t_end: Positive
-    output: OutputSpec
+    schema_version: Annotated[
+        int, Field(ge=1, le=1), means("of these fields and their meaning")  # a Literal would take true for 1
+    ]
+    analysis: Annotated[Literal["dynamic", "static"], means("`static`: equilibria instead of motion")] = "dynamic"
+    name: Annotated[
+        str,
+        Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=80),
+        means("small letters, digits and hyphens, at most 80; names the output file"),
+    ] = "unnamed"
+    title: Annotated[str, Field(max_length=200), means("for people: at most 200 characters")] = ""
+    description: Annotated[str, Field(max_length=5000), means("for people: at most 5000 characters")] = ""
+    rod: Annotated[RodSpec, means("length and section")]
+    initial: Annotated[InitialSpec, means("shape and motion at t = 0")]
+    ends: Annotated[EndsSpec, means("`start` at s = 0 and `end` at s = L")]
+    fluid: Annotated[FluidSpec | None, means("water around the rod")] = None
+    loads: Annotated[LoadsSpec, means("weight, given loads, damping")] = LoadsSpec()
+    contact: Annotated[ContactSpec | None, means("self-contact; without it the rod passes through itself")] = None
+    numerics: Annotated[
+        NumericsSpec, means("how the equations are solved; to a tolerance, where nothing is said")
+    ] = Field(default={}, validate_default=True)
+    t_end: Annotated[Positive, means("how long to simulate", "s")]
+    output: Annotated[OutputSpec, means("what is stored, and how often")]
 
     @property
     def frames(self) -> int:
@@ -132,11 +176,11 @@ class CaseSpec(Spec):
 
     @field_validator("numerics", mode="before")
     @classmethod
-    def _resolve_statics(cls, given: Any, case: ValidationInfo) -> Any:
+    def _resolve_statics(cls, raw: Any, case: ValidationInfo) -> Any:
         """A static analysis has no tolerance where nothing is said about the resolution."""
-        if case.data.get("analysis") != "static" or not isinstance(given, dict) or given.get("tolerance") is not None:
-            return given
-        return {"intervals": INTERVALS, **given}
+        if case.data.get("analysis") != "static" or not isinstance(raw, dict) or raw.get("tolerance") is not None:
+            return raw
+        return {"intervals": INTERVALS, **raw}
 
     @model_validator(mode="after")
     def _check_positions(self) -> Self:

@@ -14,6 +14,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from service.cases.errors import refusal
 from service.cases.quantities import FrameName, Positive, Schedule, Spec, curve
+from service.meaning import means
 from solver import Condition, End
 from solver.scene.ends import Component
 
@@ -27,51 +28,65 @@ _KINDS: tuple[tuple[Literal["rate", "position", "load"], str, str], ...] = (
 )
 
 
+Displacement = Annotated[
+    Schedule | None,
+    means("position: displacement along the axis since t = 0 or the switch; it is followed by its change", "m"),
+]
+Turn = Annotated[
+    Schedule | None,
+    means("position: rotation about the axis since t = 0 or the switch; it is followed by its change", "rad"),
+]
+Force = Annotated[Schedule | None, means("load: internal force", "N")]
+Moment = Annotated[Schedule | None, means("load: internal moment", "N m")]
+Velocity = Annotated[Schedule | None, means("rate: velocity along the axis", "m/s")]
+AngularVelocity = Annotated[Schedule | None, means("rate: angular velocity about the axis", "rad/s")]
+
+
 class _Conditions(Spec):
     """Conditions on some of the six components; the rates are told apart below, where they may be stops."""
 
-    x1: Schedule | None = None
-    x2: Schedule | None = None
-    x3: Schedule | None = None
-    f1: Schedule | None = None
-    f2: Schedule | None = None
-    f3: Schedule | None = None
-    theta1: Schedule | None = None
-    theta2: Schedule | None = None
-    theta3: Schedule | None = None
-    q1: Schedule | None = None
-    q2: Schedule | None = None
-    q3: Schedule | None = None
+    x1: Displacement = None
+    x2: Displacement = None
+    x3: Displacement = None
+    f1: Force = None
+    f2: Force = None
+    f3: Force = None
+    theta1: Turn = None
+    theta2: Turn = None
+    theta3: Turn = None
+    q1: Moment = None
+    q2: Moment = None
+    q3: Moment = None
 
     @model_validator(mode="after")
     def _one_kind_a_component(self) -> Self:
         for rotation in (False, True):
             for i in range(3):
-                given = [name for _, name in self._given(rotation, i)]
-                if len(given) > 1:
-                    rule = f"must not be given together with {given[0]}: one component, one kind"
-                    raise refusal(given[1], None, rule)
+                present = [name for _, name in self._present(rotation, i)]
+                if len(present) > 1:
+                    rule = f"must not be given together with {present[0]}: one component, one kind"
+                    raise refusal(present[1], None, rule)
         return self
 
-    def _given(self, rotation: bool, i: int) -> list[tuple[Literal["rate", "position", "load"], str]]:
+    def _present(self, rotation: bool, i: int) -> list[tuple[Literal["rate", "position", "load"], str]]:
         """Kind and name of each condition on one component (there should be one at most)."""
         names = [(kind, f"{turn if rotation else shift}{i + 1}") for kind, shift, turn in _KINDS]
         return [(kind, name) for kind, name in names if getattr(self, name) is not None]
 
     def condition(self, rotation: bool, i: int, since: float = 0.0) -> Condition | None:
         """The condition on component `i` (0, 1, 2) from `since` (s) on, None where none is given."""
-        for kind, name in self._given(rotation, i):
-            given = getattr(self, name)
-            if isinstance(given, Stop):
-                return Condition("stop", since=since, within=given.stop_within)
-            return Condition(kind, curve(given), since)
+        for kind, name in self._present(rotation, i):
+            value = getattr(self, name)
+            if isinstance(value, Stop):
+                return Condition("stop", since=since, within=value.stop_within)
+            return Condition(kind, curve(value), since)
         return None
 
 
 class Stop(Spec):
-    """Bring the component's rate smoothly to zero within `stop_within` (s) and hold it there."""
+    """Bring the component's rate smoothly to zero and hold it there."""
 
-    stop_within: Positive
+    stop_within: Annotated[Positive, means("how long it takes", "s")]
 
 
 def _rate_or_stop(value: Any) -> str:
@@ -84,16 +99,20 @@ Rate = Annotated[
 ]
 
 
-class Switch(_Conditions):
-    """New conditions on some components from the time `at` (s) on; a rate may be a stop."""
+SwitchedVelocity = Annotated[Rate | None, means("rate: velocity along the axis, or a stop", "m/s")]
+SwitchedAngularVelocity = Annotated[Rate | None, means("rate: angular velocity about the axis, or a stop", "rad/s")]
 
-    at: Positive
-    v1: Rate | None = None
-    v2: Rate | None = None
-    v3: Rate | None = None
-    omega1: Rate | None = None
-    omega2: Rate | None = None
-    omega3: Rate | None = None
+
+class Switch(_Conditions):
+    """New conditions on some components from a time on; a rate may be a stop."""
+
+    at: Annotated[Positive, means("the time from which on the new conditions hold", "s")]
+    v1: SwitchedVelocity = None
+    v2: SwitchedVelocity = None
+    v3: SwitchedVelocity = None
+    omega1: SwitchedAngularVelocity = None
+    omega2: SwitchedAngularVelocity = None
+    omega3: SwitchedAngularVelocity = None
 
     @model_validator(mode="after")
     def _not_empty(self) -> Self:
@@ -103,21 +122,23 @@ class Switch(_Conditions):
 
 
 class EndObject(_Conditions):
-    """An end: a preset, what differs from it, and switches at later times.
+    """An end: a preset, what differs from it, and switches at later times."""
 
-    `frame`: axes of the translation's components, a1 a2 a3 ("material") or e1 e2 e3 ("lab"); those of
-    the rotation are always material. Without a preset all six components must be given.
-    """
-
-    preset: PresetName | None = None
-    frame: FrameName = "material"
-    v1: Schedule | None = None
-    v2: Schedule | None = None
-    v3: Schedule | None = None
-    omega1: Schedule | None = None
-    omega2: Schedule | None = None
-    omega3: Schedule | None = None
-    switches: Annotated[tuple[Switch, ...], Field(max_length=100)] = ()
+    preset: Annotated[
+        PresetName | None, means("what holds for components that are not named; without it all six must be")
+    ] = None
+    frame: Annotated[
+        FrameName, means("axes of the translation: a1, a2, a3 or e1, e2, e3; rotation is always material")
+    ] = "material"
+    v1: Velocity = None
+    v2: Velocity = None
+    v3: Velocity = None
+    omega1: AngularVelocity = None
+    omega2: AngularVelocity = None
+    omega3: AngularVelocity = None
+    switches: Annotated[
+        tuple[Switch, ...], Field(max_length=100), means("new conditions from later times on, in order")
+    ] = ()
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -162,10 +183,10 @@ EndSpec = Annotated[
 class EndsSpec(Spec):
     """The two ends: `start` at s = 0 and `end` at s = L."""
 
-    start: EndSpec
-    end: EndSpec
+    start: Annotated[EndSpec, means("at s = 0")]
+    end: Annotated[EndSpec, means("at s = L")]
 
 
-def build_end(given: PresetName | EndObject) -> End:
+def build_end(end: PresetName | EndObject) -> End:
     """The solver's end of a preset's name or of an end written out."""
-    return PRESETS[given]() if isinstance(given, str) else given.build()
+    return PRESETS[end]() if isinstance(end, str) else end.build()

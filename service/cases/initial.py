@@ -10,23 +10,24 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from service.cases.errors import refusal
 from service.cases.quantities import LONGEST_TABLE, Profile, Spec, Triple, curve
+from service.meaning import means
 from solver import Initial
 
 ORIGIN: Triple = (0.0, 0.0, 0.0)
 
 
 class _Motion(Spec):
-    """What both shapes have.
+    """What both shapes have: how the section lies, and a rigid motion in the lab frame."""
 
-    `a1`: lab direction of the first principal axis at s = 0, made normal to the tangent there; the frame
-    follows along s by parallel transport, turned about the tangent by `twist` (rad). `velocity` (m/s)
-    and `angular_velocity` (rad/s, about the centre of mass): a rigid motion in the lab frame.
-    """
-
-    a1: Triple = (1.0, 0.0, 0.0)
-    twist: Profile = 0.0
-    velocity: Triple = ORIGIN
-    angular_velocity: Triple = ORIGIN
+    a1: Annotated[
+        Triple,
+        means("lab direction of the first principal axis at s = 0, made normal to the rod there; not along it"),
+    ] = (1.0, 0.0, 0.0)
+    twist: Annotated[
+        Profile, means("profile: turn of the section about the rod, beside parallel transport along it", "rad")
+    ] = 0.0
+    velocity: Annotated[Triple, means("lab, of the whole rod", "m/s")] = ORIGIN
+    angular_velocity: Annotated[Triple, means("lab, about the centre of mass", "rad/s")] = ORIGIN
 
     def _common(self) -> dict[str, Any]:
         return {
@@ -38,11 +39,11 @@ class _Motion(Spec):
 
 
 class Straight(_Motion):
-    """A straight rod from `origin` (m) along `direction`, both in the lab frame."""
+    """A straight rod from `origin` along `direction`, both in the lab frame."""
 
-    shape: Literal["straight"]
-    origin: Triple = ORIGIN
-    direction: Triple = (0.0, 0.0, 1.0)
+    shape: Annotated[Literal["straight"], means("which of the two shapes it is")]
+    origin: Annotated[Triple, means("where s = 0 is", "m")] = ORIGIN
+    direction: Annotated[Triple, means("along the rod, of any length > 0")] = (0.0, 0.0, 1.0)
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -60,10 +61,14 @@ class Straight(_Motion):
 
 
 class Centreline(_Motion):
-    """A smooth curve through `points` (m, lab frame), as long as the rod to 0.1 %."""
+    """A smooth curve through `points` (lab frame), as long as the rod to 0.1 %."""
 
-    shape: Literal["centreline"]
-    points: Annotated[tuple[Triple, ...], Field(min_length=4, max_length=LONGEST_TABLE)]
+    shape: Annotated[Literal["centreline"], means("which of the two shapes it is")]
+    points: Annotated[
+        tuple[Triple, ...],
+        Field(min_length=4, max_length=LONGEST_TABLE),
+        means("a smooth curve goes through them, as long as the rod to 0.1 %", "m"),
+    ]
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -83,12 +83,12 @@ def _read(text: str, name: str) -> dict[str, Any]:
 
 
 def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    members: dict[str, Any] = {}
     for name, value in pairs:
-        if name in found:
+        if name in members:
             raise CaseError([FieldError("", name, "must not hold a name twice in one object")])
-        found[name] = value
-    return found
+        members[name] = value
+    return members
 
 
 def _displace(numerics: Any, settings: Mapping[str, Any]) -> None:

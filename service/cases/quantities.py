@@ -5,9 +5,21 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    GetJsonSchemaHandler,
+    Tag,
+    model_validator,
+)
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema
 
 from service.cases.errors import refusal
+from service.meaning import means
 from solver import Curve, Vector
 
 LONGEST_TABLE = 10_000
@@ -32,7 +44,7 @@ class Spec(BaseModel):
 class ProfileTable(Spec):
     """A function of arclength s (m) through the points (s, value), constant beyond them."""
 
-    s: Column
+    s: Annotated[Column, means("arclengths, increasing strictly", "m")]
     value: Column
     interpolation: Interpolation
 
@@ -49,7 +61,7 @@ class ProfileTable(Spec):
 class ScheduleTable(Spec):
     """A function of time t (s) through the points (t, value), constant before and after them."""
 
-    t: Column
+    t: Annotated[Column, means("times, increasing strictly", "s")]
     value: Column
     interpolation: Interpolation
 
@@ -93,13 +105,18 @@ def _positive(profile: float | ProfileTable) -> float | ProfileTable:
     return profile
 
 
-def _positive_schema(schema: dict[str, Any]) -> None:
-    for kind in schema.get("oneOf", []):
-        if kind.get("type") == "number":
-            kind["exclusiveMinimum"] = 0
+class _PositiveSchema:
+    """Says in the JSON schema of a profile that its number must be > 0."""
+
+    def __get_pydantic_json_schema__(self, core: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        schema = handler(core)
+        for kind in schema.get("oneOf", []):
+            if kind.get("type") == "number":
+                kind["exclusiveMinimum"] = 0
+        return schema
 
 
-PositiveProfile = Annotated[Profile, AfterValidator(_positive), Field(json_schema_extra=_positive_schema)]
+PositiveProfile = Annotated[Profile, AfterValidator(_positive), _PositiveSchema()]
 """A profile that is > 0; between the points of a table the solver's rod looks."""
 
 Schedule = Annotated[
@@ -113,12 +130,14 @@ ScheduleTriple = tuple[Schedule, Schedule, Schedule]
 
 
 @lru_cache(256)
-def curve(given: float | ProfileTable | ScheduleTable) -> Curve:
+def curve(function: float | ProfileTable | ScheduleTable) -> Curve:
     """A profile or schedule as the solver's curve; those used last are kept, as cases share most of theirs."""
-    return Curve.constant(given + 0.0) if isinstance(given, (int, float)) else given.curve()  # -0.0 is kept as 0.0
+    if isinstance(function, (int, float)):
+        return Curve.constant(function + 0.0)  # -0.0 is kept as 0.0
+    return function.curve()
 
 
-def curves(given: ProfileTriple | ScheduleTriple) -> Vector:
+def curves(functions: ProfileTriple | ScheduleTriple) -> Vector:
     """Three profiles or schedules as the solver's curves."""
-    first, second, third = given
+    first, second, third = functions
     return curve(first), curve(second), curve(third)

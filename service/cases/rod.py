@@ -9,6 +9,7 @@ from pydantic import Discriminator, Tag, model_validator
 
 from service.cases.errors import refusal
 from service.cases.quantities import Positive, PositiveProfile, ProfileTriple, Spec, curve, curves
+from service.meaning import means
 from solver import Rod
 from solver.scene.rod import Profiles
 
@@ -35,23 +36,29 @@ StressFree = Annotated[
 class RodSpec(Spec):
     """An inextensible rod of solid circular section, or with section properties given directly.
 
-    `length`, `diameter` in m; `youngs_modulus`, `shear_modulus` in Pa; `density` in kg/m^3. Given
-    directly: `bending_stiffness` EJ (one, or EJ1 and EJ2) and `torsional_stiffness` GJ in N m^2,
-    `mass_per_length` in kg/m, `inertia_per_length` about a1, a2, a3 in kg m. A property given directly
-    takes the place of the modulus or density that it would follow from. `kappa0`: stress-free
-    curvature-twist in rad/m, or "initial": the initial shape is free of stress.
+    A property given directly takes the place of the modulus or density that it would follow from.
     """
 
-    length: Positive
-    diameter: PositiveProfile
-    youngs_modulus: Positive | None = None
-    shear_modulus: Positive | None = None
-    density: Positive | None = None
-    bending_stiffness: Bending | None = None
-    torsional_stiffness: PositiveProfile | None = None
-    mass_per_length: PositiveProfile | None = None
-    inertia_per_length: tuple[PositiveProfile, PositiveProfile, PositiveProfile] | None = None
-    kappa0: StressFree = (0.0, 0.0, 0.0)
+    length: Annotated[Positive, means("L", "m")]
+    diameter: Annotated[PositiveProfile, means("profile; what fluid and contact see", "m")]
+    youngs_modulus: Annotated[Positive | None, means("E; this or `bending_stiffness`, not both", "Pa")] = None
+    shear_modulus: Annotated[Positive | None, means("G; this or `torsional_stiffness`, not both", "Pa")] = None
+    density: Annotated[
+        Positive | None,
+        means("this, or both `mass_per_length` and `inertia_per_length`, or one of them beside it", "kg/m³"),
+    ] = None
+    bending_stiffness: Annotated[Bending | None, means("EJ: one profile, or the two EJ1 and EJ2", "N m²")] = None
+    torsional_stiffness: Annotated[PositiveProfile | None, means("GJ: profile", "N m²")] = None
+    mass_per_length: Annotated[PositiveProfile | None, means("profile", "kg/m")] = None
+    inertia_per_length: Annotated[
+        tuple[PositiveProfile, PositiveProfile, PositiveProfile] | None,
+        means("three profiles, about a1, a2, a3", "kg m"),
+    ] = None
+    kappa0: Annotated[
+        StressFree,
+        means('curvature and twist that are free of stress: three profiles, or `"initial"` for those of the initial '
+              "shape", "rad/m"),
+    ] = (0.0, 0.0, 0.0)  # fmt: skip
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -59,8 +66,8 @@ class RodSpec(Spec):
             ("youngs_modulus", "bending_stiffness"),
             ("shear_modulus", "torsional_stiffness"),
         ):
-            given = [name for name in (general, direct) if getattr(self, name) is not None]
-            if len(given) != 1:
+            present = [name for name in (general, direct) if getattr(self, name) is not None]
+            if len(present) != 1:
                 raise refusal(general, getattr(self, general), f"or {direct} must be given, and not both")
         direct_mass = self.mass_per_length is not None and self.inertia_per_length is not None
         if direct_mass == (self.density is not None):
@@ -80,14 +87,14 @@ class RodSpec(Spec):
             self.shear_modulus or 1.0,
             self.density or 1.0,
         )
-        given: dict[str, Any] = {"stiffness": self._stiffness(solid)}
+        direct: dict[str, Any] = {"stiffness": self._stiffness(solid)}
         if self.mass_per_length is not None:
-            given["mass"] = curve(self.mass_per_length)
+            direct["mass"] = curve(self.mass_per_length)
         if self.inertia_per_length is not None:
-            given["inertia"] = curves(self.inertia_per_length)
+            direct["inertia"] = curves(self.inertia_per_length)
         if self.kappa0 != "initial":
-            given["kappa0"] = curves(self.kappa0)
-        return replace(solid, **given)
+            direct["kappa0"] = curves(self.kappa0)
+        return replace(solid, **direct)
 
     def _stiffness(self, solid: Rod) -> Profiles:
         """EJ1, EJ2, GJ3: those given directly, else those of the solid section."""

@@ -19,6 +19,7 @@ from service.cases.quantities import (
     curve,
     curves,
 )
+from service.meaning import means
 from solver import Contact, DistributedLoad, Fluid, PointLoad
 
 MOST_LOADS = 100
@@ -26,12 +27,12 @@ NOTHING: Triple = (0.0, 0.0, 0.0)
 
 
 class DistributedSpec(Spec):
-    """`force` (N/m) and `moment` (N m/m) along s, in the lab or the material frame, times `schedule`(t)."""
+    """Force and moment per length along s, in the lab or the material frame, times `schedule`(t)."""
 
-    force: ProfileTriple = NOTHING
-    moment: ProfileTriple = NOTHING
-    frame: FrameName = "lab"
-    schedule: Schedule = 1.0
+    force: Annotated[ProfileTriple, means("three profiles", "N/m")] = NOTHING
+    moment: Annotated[ProfileTriple, means("three profiles", "N m/m")] = NOTHING
+    frame: Annotated[FrameName, means("axes of the components of force and moment")] = "lab"
+    schedule: Annotated[Schedule, means("factor of both in time", "1")] = 1.0
 
     def build(self) -> DistributedLoad:
         """The solver's load."""
@@ -39,12 +40,15 @@ class DistributedSpec(Spec):
 
 
 class PointSpec(Spec):
-    """`force` (N) and `moment` (N m) as functions of time at arclength `s` (m)."""
+    """Force and moment as functions of time at one arclength; at s = 0 or L they add to the end."""
 
-    s: NotNegative
-    force: ScheduleTriple = NOTHING
-    moment: ScheduleTriple = NOTHING
-    frame: FrameName = "lab"
+    s: Annotated[NotNegative, means("arclength, at most that of the rod's end", "m")]
+    force: Annotated[ScheduleTriple, means("three schedules", "N")] = NOTHING
+    moment: Annotated[ScheduleTriple, means("three schedules", "N m")] = NOTHING
+    frame: Annotated[
+        FrameName,
+        means("axes of the components of force and moment; `lab` for a force at an end that is free along lab axes"),
+    ] = "lab"
 
     def build(self) -> PointLoad:
         """The solver's load."""
@@ -52,22 +56,35 @@ class PointSpec(Spec):
 
 
 class LoadsSpec(Spec):
-    """`gravity` (m/s^2, lab frame), distributed and point loads, viscous `damping` (1/s)."""
+    """Weight, distributed and point loads, viscous damping."""
 
-    gravity: Triple = NOTHING
-    distributed: Annotated[tuple[DistributedSpec, ...], Field(max_length=MOST_LOADS)] = ()
-    point: Annotated[tuple[PointSpec, ...], Field(max_length=MOST_LOADS)] = ()
-    damping: NotNegative = 0.0
+    gravity: Annotated[Triple, means("vector, lab", "m/s²")] = NOTHING
+    distributed: Annotated[
+        tuple[DistributedSpec, ...],
+        Field(max_length=MOST_LOADS),
+        means("loads along the rod, each with the fields of the table below"),
+    ] = ()
+    point: Annotated[
+        tuple[PointSpec, ...],
+        Field(max_length=MOST_LOADS),
+        means("loads at one place, each with the fields of the second table below"),
+    ] = ()
+    damping: Annotated[NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length", "1/s")] = 0.0
 
 
 class FluidSpec(Spec):
-    """Morison's fluid: `density` (kg/m^3), coefficients, and a uniform `current` (m/s, lab frame)."""
+    """Morison's fluid, still or with a uniform current.
 
-    density: Positive
-    added_mass: NotNegative = 0.0
-    drag_normal: NotNegative = 0.0
-    drag_tangential: NotNegative = 0.0
-    current: Triple = NOTHING
+    u is the velocity of the rod relative to it, u_n its part across the rod, u_3 along.
+    """
+
+    density: Annotated[Positive, means("ρ_w; with gravity it also bears the rod up", "kg/m³")]
+    added_mass: Annotated[
+        NotNegative, means("Ca: inertia force Ca ρ_w A a_n, of the acceleration across the rod", "1")
+    ] = 0.0
+    drag_normal: Annotated[NotNegative, means("Cdn: force ½ ρ_w D Cdn |u_n| u_n", "1")] = 0.0
+    drag_tangential: Annotated[NotNegative, means("Cdt: force ½ ρ_w π D Cdt |u_3| u_3", "1")] = 0.0
+    current: Annotated[Triple, means("vector, lab", "m/s")] = NOTHING
 
     def build(self) -> Fluid:
         """The solver's fluid."""
@@ -75,22 +92,30 @@ class FluidSpec(Spec):
 
 
 class ContactSpec(Spec):
-    """Self-contact of Goyal, Perkins & Lee (2003), eq. (6), between points `spacing` (m) apart.
+    """Self-contact of Goyal, Perkins & Lee (2003), eq. (6), between points `spacing` (m) apart."""
 
-    `k1` (m^(1+k2)/s^2), `k2`, `k3`, `k4`: the law's constants. `aperture_deg`: full angle of the aperture
-    in degrees, as the paper gives it. Points nearer than `cutoff` (m) and more than `skip` (m) of arc
-    apart act on each other. `sum`: "density" (independent of the spacing) or "grid_points" (as printed).
-    """
-
-    k1: NotNegative
-    k2: NotNegative
-    k3: NotNegative = 0.0
-    k4: NotNegative = 1.0
-    aperture_deg: Annotated[float, Field(gt=0, le=180, allow_inf_nan=False)]
-    cutoff: Positive
-    skip: Positive
-    spacing: Positive
-    sum: Literal["density", "grid_points"] = "density"
+    k1: Annotated[NotNegative, means("stiffness", "m^(1+k2)/s²")]
+    k2: Annotated[NotNegative, means("how steeply the force grows", "1")]
+    k3: Annotated[NotNegative, means("damping (k3/d) ḋ |ḋ|^k4; it opposes the motion", "m^(1−k4) s^(k4−1)")] = 0.0
+    k4: Annotated[NotNegative, means("its power", "1")] = 1.0
+    aperture_deg: Annotated[
+        float,
+        Field(gt=0, le=180, allow_inf_nan=False),
+        means("full angle of the aperture: two points act on each other only if each is in the other's", "degrees"),
+    ]
+    cutoff: Annotated[
+        Positive, means("largest distance that is felt; the force fades over its outer 30 %", "m")
+    ]
+    skip: Annotated[Positive, means("points nearer than this *along* the rod do not act on each other", "m")]
+    spacing: Annotated[
+        Positive,
+        means("distance of the contact points along the rod, independent of `numerics.intervals`", "m"),
+    ]
+    sum: Annotated[
+        Literal["density", "grid_points"],
+        means("`density`: the force does not depend on the spacing; `grid_points`: the sum as printed in the paper, "
+              "which does"),
+    ] = "density"  # fmt: skip
 
     def build(self) -> Contact:
         """The solver's contact law."""

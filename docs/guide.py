@@ -1,0 +1,101 @@
+"""The tables of guide.md, each from where the code defines what it tells."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+from pydantic import TypeAdapter
+
+from docs.fields import fields_table
+from docs.markers import markdown
+from outcomes import Outcome
+from service.api.app import create_app
+from service.cases import case_schema, cost
+from service.results.schema import VARIABLES
+from service.settings import Settings, variable
+
+NAME = re.compile(r"\b[A-Za-z]\w*(?:[._]\w+)+\b")
+"""What the code calls something, in a sentence that also stands where there is no markup."""
+
+
+def variables() -> str:
+    """The variables of a dataset, with the units and long names that stand in it."""
+    rows = [(f"`{v.name}`", ", ".join(v.dimensions), v.units, v.long_name) for v in VARIABLES]
+    return markdown(("variable", "dimensions", "unit", "meaning"), rows)
+
+
+def outcomes() -> str:
+    """How a run can end, and what to do about it."""
+    rows = [(f"`{one.value}`", _marked(one.meaning), _marked(one.remedy), ", ".join(one.givers)) for one in Outcome]
+    return markdown(("outcome", "meaning", "remedy", "by the"), rows)
+
+
+def calls() -> str:
+    """The operations of the HTTP interface, as its OpenAPI document has them."""
+    paths = _interface()["paths"]
+    rows = [_call(method, path, operation) for path, its in paths.items() for method, operation in its.items()]
+    return markdown(("call", "in the query", "status", "answer"), rows)
+
+
+def _interface() -> dict[str, Any]:
+    return create_app(Settings()).openapi()
+
+
+def _call(method: str, path: str, operation: dict[str, Any]) -> tuple[str, ...]:
+    query = [f"`{one['name']}`" for one in operation.get("parameters", ()) if one["in"] == "query"]
+    good = [status for status in operation["responses"] if status < "4"]
+    first = operation["description"].split("\n\n")[0].replace("\n", " ")
+    return f"`{method.upper()} {path}`", ", ".join(query), ", ".join(good), first
+
+
+def costs() -> str:
+    """What the estimate of a case's cost counts."""
+    def micro(rate: float) -> str:
+        return f"{rate * 1e6:g}"
+
+    rows = [
+        ("a step", f"{micro(cost.STEP)} + {micro(cost.STEP_NODE)} nodes"),
+        ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes"),
+        ("a frame", f"{micro(cost.FRAME)} + {micro(cost.FRAME_NODE)} nodes"),
+        ("a frame with `output.topology`, besides", f"{micro(cost.WRITHE)} nodes²"),
+        ("all of it with a `tolerance`", f"{cost.PILOTS} times"),
+        ("all of it with `verify`", f"{cost.VERIFIED} times"),
+    ]
+    return markdown(("what", "CPU time, µs"), rows)
+
+
+def settings() -> str:
+    """The settings of the service."""
+    return fields_table(TypeAdapter(Settings).json_schema(), called=variable).replace("| field |", "| variable |", 1)
+
+
+def _marked(sentence: str) -> str:
+    return NAME.sub(r"`\g<0>`", sentence)
+
+
+def _part(*names: str) -> Callable[[], str]:
+    """The fields of a part of a case, by the names of its models."""
+    return lambda: fields_table(*(case_schema()["$defs"][name] for name in names))
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "case": lambda: fields_table(case_schema()),
+    "rod": _part("RodSpec"),
+    "initial": _part("Straight", "Centreline"),
+    "end": _part("EndObject"),
+    "fluid": _part("FluidSpec"),
+    "loads": _part("LoadsSpec"),
+    "distributed load": _part("DistributedSpec"),
+    "point load": _part("PointSpec"),
+    "contact": _part("ContactSpec"),
+    "numerics": _part("NumericsSpec"),
+    "output": _part("OutputSpec"),
+    "variables": variables,
+    "outcomes": outcomes,
+    "calls": calls,
+    "request": lambda: fields_table(_interface()["components"]["schemas"]["JobRequest"]),
+    "costs": costs,
+    "settings": settings,
+}

@@ -1,0 +1,12 @@
+"""What a field of a case, a request or the settings means: said where it is defined, and nowhere else."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+
+def means(text: str, unit: str = "") -> Any:
+    """The meaning and the unit of a field, for its JSON schema; the guide's tables are written from that."""
+    return Field(description=text, json_schema_extra={"unit": unit} if unit else None)

@@ -34,7 +34,8 @@ def _number(value: float) -> str:
 def writhe_cost(intervals: int) -> dict[str, float]:
     """CPU time (us) of the writhe of one frame."""
     curve, e3 = np.ascontiguousarray(open_curve(intervals)), np.array([0.0, 0.0, 1.0])
-    return {"intervals": float(intervals), "writhe": kernels.best(lambda: writhe(curve, e3, e3))}
+    cost = kernels.best(lambda: writhe(curve, e3, e3))
+    return {"intervals": float(intervals), "writhe": cost, "aim": kernels.WRITHE_AIM_US.get(intervals, nan)}
 
 
 def _beside_aim(row: dict[str, float]) -> dict[str, float]:

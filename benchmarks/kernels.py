@@ -14,6 +14,7 @@ from validation.system import NewtonSystem, StagesSystem
 
 INTERVALS = (100, 200, 400, 1000)
 AIM_US = {1000: 500.0}
+WRITHE_AIM_US = {1000: 20e3}
 
 
 def best(action: Callable[[], object], repeats: int = 7, each: int = 20) -> float:

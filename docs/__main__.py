@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from docs import guide
+from docs import guide, measured
 from docs.markers import with_tables
 
 HERE = Path(__file__).parent
-DOCUMENTS = {"guide.md": guide.TABLES}
+DOCUMENTS = {"guide.md": guide.TABLES, "measured.md": measured.TABLES}
 """The tables of each document, by their names in its markers."""
 
 

@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from time import process_time
 
+from validation.kept import keep
 from validation.provenance import provenance
 from validation.row import Row
 
@@ -30,6 +31,7 @@ def main(names: list[str]) -> int:
     if unknown:
         print(f"unknown scene {unknown[0]!r}: must be one of {', '.join(SCENES)}", file=sys.stderr)
         return 2
+    RESULTS.mkdir(exist_ok=True)
     printed = [*provenance(), "", HEADER]
     print("\n".join(printed), flush=True)
     missed = 0
@@ -40,9 +42,9 @@ def main(names: list[str]) -> int:
         text = [*map(line, rows), f"      {name}: {process_time() - started:.1f} s of CPU time"]
         print("\n".join(text), flush=True)
         printed += text
+        keep(name, rows)
     printed.append(f"{missed} aims missed" if missed else "every aim met")
     print(printed[-1])
-    RESULTS.mkdir(exist_ok=True)
     (RESULTS / f"{'-'.join(names) or 'all'}.txt").write_text("\n".join(printed) + "\n", encoding="utf-8")
     return 1 if missed else 0
 

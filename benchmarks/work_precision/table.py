@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from math import inf, nan
 
 from benchmarks.work_precision.measure import AS_IT_COMES, BOX, METHODS, PYELASTICA, STAGGERED, STATICS, Point
@@ -34,6 +35,40 @@ def results(points: Iterable[Point]) -> list[str]:
     return [*lines, ""]
 
 
+@dataclass(frozen=True)
+class Comparison:
+    """A peer in a scene: its best run, hockle's cheapest that is no worse, and times less CPU over its runs."""
+
+    scene: str
+    quantity: str
+    peer: str
+    best: Point
+    method: str
+    cpu: float
+    least: float
+    most: float
+
+    @property
+    def aim(self) -> float:
+        """How many times less CPU is aimed at."""
+        return AIM.get(self.peer.removesuffix(AS_IT_COMES), 1.0)
+
+
+def comparisons(points: Iterable[Point]) -> Iterator[Comparison | tuple[str, str, str]]:
+    """Every peer in every scene that it was run in; its names only, where no run of it was within the bound."""
+    for (scene, quantity), all_points in panels(points).items():
+        for peer in dict.fromkeys(p.solver for p in all_points if p.solver not in METHODS):
+            theirs = [p for p in all_points if p.solver == peer and not p.missing]
+            if not theirs:
+                yield scene, quantity, peer
+                continue
+            ratios = [p.cpu / min(work(all_points, m, p.error) for m in OURS) for p in theirs]
+            best = min(theirs, key=lambda p: p.error)
+            method = min(OURS, key=lambda m: work(all_points, m, best.error))
+            cpu = work(all_points, method, best.error)
+            yield Comparison(scene, quantity, peer, best, method, cpu, min(ratios), max(ratios))
+
+
 def at_equal_error(points: Iterable[Point]) -> list[str]:
     """CPU of each peer's best run over that of hockle's cheapest run with no larger error."""
     lines = ["## Times less CPU than the peers", "",
@@ -41,19 +76,12 @@ def at_equal_error(points: Iterable[Point]) -> list[str]:
              "Against hockle's cheapest run whose error is no larger than the peer's; least and largest over its runs.",
              "", "| scene | quantity | peer | its smallest error | its CPU s | hockle | least | largest | aim |",
              "| --- | --- | --- | ---: | ---: | --- | ---: | ---: | ---: |"]  # fmt: skip
-    for (scene, quantity), all_points in panels(points).items():
-        for peer in dict.fromkeys(p.solver for p in all_points if p.solver not in METHODS):
-            theirs = [p for p in all_points if p.solver == peer and not p.missing]
-            if not theirs:
-                lines.append(f"| {scene} | {quantity} | {peer} | no run in the bound | | | | | |")
-                continue
-            ratios = [p.cpu / min(work(all_points, m, p.error) for m in OURS) for p in theirs]
-            best = min(theirs, key=lambda p: p.error)
-            method = min(OURS, key=lambda m: work(all_points, m, best.error))
-            ours = f"{method}, {work(all_points, method, best.error):.3g} s"
-            aim = AIM.get(peer.removesuffix(AS_IT_COMES), 1.0)
-            lines.append(f"| {scene} | {quantity} | {peer} | {best.error:.1e} | {best.cpu:.3g} | {ours} | "
-                         f"{min(ratios):.3g} | {max(ratios):.3g} | {aim:g} |")  # fmt: skip
+    for one in comparisons(points):
+        if not isinstance(one, Comparison):
+            lines.append(f"| {' | '.join(one)} | no run in the bound | | | | | |")
+            continue
+        lines.append(f"| {one.scene} | {one.quantity} | {one.peer} | {one.best.error:.1e} | {one.best.cpu:.3g} | "
+                     f"{one.method}, {one.cpu:.3g} s | {one.least:.3g} | {one.most:.3g} | {one.aim:g} |")  # fmt: skip
     return [*lines, ""]
 
 
@@ -74,19 +102,49 @@ def summary(points: Iterable[Point]) -> list[str]:
     return [*lines, ""]
 
 
+@dataclass(frozen=True)
+class Agreement:
+    """The finest values of box and staggered, and what the last refinement changed of them."""
+
+    scene: str
+    quantity: str
+    values: list[float]
+    bars: list[float]
+
+    @property
+    def gap(self) -> float:
+        """How far the methods differ."""
+        return abs(self.values[0] - self.values[1])
+
+    @property
+    def met(self) -> bool:
+        """Whether the bars meet."""
+        return self.gap <= sum(self.bars)
+
+    @property
+    def shown(self) -> list[str]:
+        """The values with their bars."""
+        return [f"{v:.8g} ± {b:.1e}" for v, b in zip(self.values, self.bars, strict=True)]
+
+
+def agreements(points: Iterable[Point]) -> Iterator[Agreement]:
+    """Both methods in every scene."""
+    for (scene, quantity), all_points in panels(points).items():
+        values, bars = [], []
+        for method in (BOX, STAGGERED):
+            series = [p.value for p in all_points if p.solver == method and not p.missing]
+            values.append(series[-1] if series else nan)
+            bars.append(abs(series[-1] - series[-2]) if len(series) > 1 else nan)
+        yield Agreement(scene, quantity, values, bars)
+
+
 def agreement(points: Iterable[Point]) -> list[str]:
     """The finest values of both methods, what the last refinement changed of them, and whether these bars meet."""
     lines = ["## Agreement of the methods", "",
              "Error bar: what the last refinement changed.", "",
              "| scene | quantity | box | staggered | difference | within the bars |",
              "| --- | --- | ---: | ---: | ---: | --- |"]  # fmt: skip
-    for (scene, quantity), all_points in panels(points).items():
-        values, bars = [], []
-        for method in (BOX, STAGGERED):
-            found = [p.value for p in all_points if p.solver == method and not p.missing]
-            values.append(found[-1] if found else nan)
-            bars.append(abs(found[-1] - found[-2]) if len(found) > 1 else nan)
-        gap = abs(values[0] - values[1])
-        shown = " | ".join(f"{v:.8g} ± {b:.1e}" for v, b in zip(values, bars, strict=True))
-        lines.append(f"| {scene} | {quantity} | {shown} | {gap:.1e} | {'yes' if gap <= sum(bars) else 'no'} |")
+    for one in agreements(points):
+        within = "yes" if one.met else "no"
+        lines.append(f"| {one.scene} | {one.quantity} | {' | '.join(one.shown)} | {one.gap:.1e} | {within} |")
     return [*lines, ""]

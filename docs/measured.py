@@ -127,12 +127,12 @@ def _met(met: bool) -> str:
 def origins() -> str:
     """The commit, the CPU and the versions that each command measured."""
     validated = json.loads((Path(__file__).parents[1] / "validation/results/rows.json").read_text(encoding="utf-8"))
-    peers_made = _read("work_precision.json")
-    made: list[tuple[str, Iterable[str]]] = [
+    compared = _read("work_precision.json")
+    parts: list[tuple[str, Iterable[str]]] = [
         ("python -m validation", _made_with(validated)), ("make bench", [_line(_read("last.json"))]),
-        ("make bench-skipping", [_line(_read("skipping.json"))]), ("make bench-work-precision", _made_with(peers_made)),
+        ("make bench-skipping", [_line(_read("skipping.json"))]), ("make bench-work-precision", _made_with(compared)),
     ]  # fmt: skip
-    return markdown(("command", "measured with"), [(f"`{command}`", "; or ".join(lines)) for command, lines in made])
+    return markdown(("command", "measured with"), [(f"`{command}`", "; or ".join(lines)) for command, lines in parts])
 
 
 def _made_with(parts: dict[str, Any]) -> list[str]:

@@ -1,4 +1,4 @@
-"""What the service is told: by its environment, over one settings file, over defaults that need neither."""
+"""Settings of the service: its environment, over one settings file, over defaults that need neither."""
 
 from __future__ import annotations
 

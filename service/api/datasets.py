@@ -69,10 +69,10 @@ def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Respon
         return Response(status_code=304, headers=headers)
     headers["Content-Disposition"] = f'attachment; filename="{job_id}.nc"'
     with _there(job):
-        found = parts.datasets.find(published.file)
-        if isinstance(found, Bucket):
-            return _object(found, published, request, headers)
-    return DatasetFile(found, headers=headers, media_type=NETCDF)
+        place = parts.datasets.find(published.file)
+        if isinstance(place, Bucket):
+            return _object(place, published, request, headers)
+    return DatasetFile(place, headers=headers, media_type=NETCDF)
 
 
 @router.get("/data", responses=problems(404, 409, 422, 503))
@@ -82,10 +82,10 @@ def data(job_id: str, part: Annotated[Part, Query()], parts: InParts, jobs: Jobs
     published = _published(job)
     with _there(job):
         path = parts.datasets.file(published.file, published.bytes, published.sha256)
-    told = part.model_dump()
-    names = [name.strip() for name in told.pop("variables").split(",")]
+    arguments = part.model_dump()
+    names = [name.strip() for name in arguments.pop("variables").split(",")]
     try:
-        return subset(path, names, **told)
+        return subset(path, names, **arguments)
     except SubsetTooLarge as error:
         raise Problem(422, "subset_too_large", str(error)) from None
     except UnknownVariable as error:

@@ -17,7 +17,7 @@ from service.api.numbers import WHOLE
 from service.api.parts import InParts, Jobs, OwnJobs, Reader, Submitter
 from service.api.problems import Problem
 from service.api.requests import wanted
-from service.api.submitting import told_submission
+from service.api.submitting import requested
 from service.cases import CaseError, FieldError
 from service.jobs import ENDED, Job, Selection, Status
 
@@ -136,7 +136,7 @@ async def execute(process_id: str, caller: Submitter, parts: InParts, response: 
     if not isinstance(case, dict):
         raise CaseError([FieldError("/inputs/case", case, "must be an object: a case, or a shipped one with settings")])
     try:
-        submission = told_submission(wanted(case), case, parts, caller, "")
+        submission = requested(wanted(case), case, parts, caller, "")
     except CaseError as error:
         inside = [FieldError(f"/inputs/case{fault.pointer}", fault.value, fault.rule) for fault in error.errors]
         raise CaseError(inside) from None
@@ -168,10 +168,10 @@ async def job_of_process(job_id: str, jobs: Jobs) -> StatusInfo:
 async def results(job_id: str, jobs: Jobs) -> dict[str, Link]:
     """The outputs, by reference: the address of the dataset."""
     job = jobs.get(job_id)
-    told = document(job)
-    if job.status is not Status.SUCCESSFUL or told.dataset is None:
+    native = document(job)
+    if job.status is not Status.SUCCESSFUL or native.dataset is None:
         _no_results(job)
-    return {"dataset": Link(href=told.links["dataset"], rel="item", type=NETCDF)}
+    return {"dataset": Link(href=native.links["dataset"], rel="item", type=NETCDF)}
 
 
 @router.delete("/jobs/{job_id}", responses=problems(404))
@@ -196,13 +196,13 @@ def _check_process(process_id: str) -> None:
 
 
 def _status(job: Job) -> StatusInfo:
-    told: JobDocument = document(job)
+    native: JobDocument = document(job)
     here = f"/ogc/jobs/{job.id}"
-    links = [Link(href=here, rel="self"), Link(href=told.links["self"], rel="alternate")]
-    if job.status is Status.SUCCESSFUL and told.dataset is not None:
+    links = [Link(href=here, rel="self"), Link(href=native.links["self"], rel="alternate")]
+    if job.status is Status.SUCCESSFUL and native.dataset is not None:
         links.append(Link(href=f"{here}/results", rel=f"{REL}/results"))
-    return StatusInfo(processID=PROCESS, jobID=job.id, status=job.status, message=job.message, created=told.created,
-                      started=told.started, finished=told.finished, progress=int(100 * job.progress), links=links)
+    return StatusInfo(processID=PROCESS, jobID=job.id, status=job.status, message=job.message, created=native.created,
+                      started=native.started, finished=native.finished, progress=int(100 * job.progress), links=links)
 
 
 def _no_results(job: Job) -> NoReturn:

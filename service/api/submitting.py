@@ -45,7 +45,7 @@ async def submit(
     job for a day. A job of one's own that has run the same case is the answer instead of a new one, unless `reuse` is
     false.
     """
-    submission = told_submission(wanted(body), body, parts, caller, idempotency_key or "")
+    submission = requested(wanted(body), body, parts, caller, idempotency_key or "")
     with parts.submissions.put(submission) as future:
         job = await asyncio.wrap_future(future)
     seconds = wait_preferred(prefer)
@@ -54,7 +54,7 @@ async def submit(
     return answer(job, 200 if job.status in ENDED else 202, headers)
 
 
-def told_submission(wanted: Wanted, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
+def requested(wanted: Wanted, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
     """What the registry is asked for. Raises CaseError for its cost or its limits, Problem for its webhook."""
     spec, request = wanted.spec, wanted.request
     check_cost(spec, parts.settings.longest_run)

@@ -64,8 +64,9 @@ def audit(_: Operator, stretch: Annotated[Stretch, Query()], parts: InParts) -> 
     """Who submitted and cancelled which job, who created and revoked which key."""
     deeds = trail(parts.registry.database, stretch.limit, stretch.before)
     more = len(deeds) == stretch.limit
-    told = [DeedDocument(**vars(deed) | {"time": datetime.fromtimestamp(deed.time, UTC)}) for deed in deeds]
-    return TrailDocument(deeds=told, next=f"/v1/audit?limit={stretch.limit}&before={told[-1].id}" if more else None)
+    documents = [DeedDocument(**vars(deed) | {"time": datetime.fromtimestamp(deed.time, UTC)}) for deed in deeds]
+    following = f"/v1/audit?limit={stretch.limit}&before={documents[-1].id}" if more else None
+    return TrailDocument(deeds=documents, next=following)
 
 
 class _Told(Collector):
@@ -75,27 +76,27 @@ class _Told(Collector):
         self._measures = measures
 
     def collect(self) -> Iterator[Metric]:
-        told = self._measures
+        measures = self._measures
         now = GaugeMetricFamily("hockle_jobs", "Jobs by status", labels=["status"])
-        for status, count in told.by_status.items():
+        for status, count in measures.by_status.items():
             now.add_metric([status], count)
         ended = CounterMetricFamily("hockle_jobs_ended", "Ended jobs by outcome", labels=["status", "outcome"])
-        for labels, count in told.by_outcome.items():
+        for labels, count in measures.by_outcome.items():
             ended.add_metric(labels, count)
         yield from (now, ended)
-        yield GaugeMetricFamily("hockle_queue_age_seconds", "Age of the oldest waiting job", told.queue_age)
-        yield GaugeMetricFamily("hockle_lease_age_seconds", "Since the most silent worker renewed", told.lease_age)
-        taken = told.steps + told.steps_redone  # the first alone falls where a run goes back to its checkpoint
+        yield GaugeMetricFamily("hockle_queue_age_seconds", "Age of the oldest waiting job", measures.queue_age)
+        yield GaugeMetricFamily("hockle_lease_age_seconds", "Since the most silent worker renewed", measures.lease_age)
+        taken = measures.steps + measures.steps_redone  # the first alone falls where a run goes back to its checkpoint
         yield CounterMetricFamily("hockle_steps", "Steps of the solver, those computed again included", taken)
-        yield CounterMetricFamily("hockle_steps_redone", "Steps lost and computed again", told.steps_redone)
-        yield _histogram("hockle_drift_topology_turns", "|Tw + Wr - Lk| at the end of a run", told.drift_topology)
+        yield CounterMetricFamily("hockle_steps_redone", "Steps lost and computed again", measures.steps_redone)
+        yield _histogram("hockle_drift_topology_turns", "|Tw + Wr - Lk| at the end of a run", measures.drift_topology)
         yield _histogram("hockle_drift_energy_ratio", "Energy balance at the end over the energy that changed its form",
-                         told.drift_energy)
+                         measures.drift_energy)
 
 
 def _histogram(name: str, text: str, of_methods: list[Histogram]) -> Metric:
     family = HistogramMetricFamily(name, text, labels=["method"])
-    for told in of_methods:
-        buckets = [(str(bound), float(below)) for bound, below in zip(BOUNDS, told.below, strict=True)]
-        family.add_metric([told.method], [*buckets, ("+Inf", float(told.count))], told.total)
+    for one in of_methods:
+        buckets = [(str(bound), float(below)) for bound, below in zip(BOUNDS, one.below, strict=True)]
+        family.add_metric([one.method], [*buckets, ("+Inf", float(one.count))], one.total)
     return family

@@ -1,4 +1,4 @@
-"""Cases: what a simulation is told, read and checked, and built into the solver's scene."""
+"""Cases: what a simulation needs to know, read and checked, and built into the solver's scene."""
 
 from service.cases.build import build_scene
 from service.cases.case import CaseSpec

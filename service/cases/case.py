@@ -1,4 +1,4 @@
-"""A case, schema version 1: everything that a simulation is told, as its file or request says it."""
+"""A case, schema version 1: everything that a simulation needs to know, as its file or request says it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a case would cost, told before it runs.
+"""What a case would cost, estimated before it runs.
 
     steps   = t_end / dt_max, and no fewer than frames
     seconds = steps (STEP + STEP_NODE n) + frames (FRAME + FRAME_NODE n + WRITHE n^2)        n nodes

@@ -34,9 +34,9 @@ def next_in_turn(database: Database, besides: Collection[str] = ()) -> str | Non
     )
     his = (jobs.c.owner == owner, *_waiting(besides))
     highest = select(func.max(jobs.c.priority)).where(*his).scalar_subquery()
-    found = select(jobs.c.id).where(*his, jobs.c.priority == highest).order_by(jobs.c.id).limit(1)
+    oldest = select(jobs.c.id).where(*his, jobs.c.priority == highest).order_by(jobs.c.id).limit(1)
     with database.reading() as connection:
-        return connection.scalar(found)
+        return connection.scalar(oldest)
 
 
 def claim(database: Database, job_id: str, lease: float, worker: str) -> HeldJob | None:
@@ -53,11 +53,11 @@ def claim(database: Database, job_id: str, lease: float, worker: str) -> HeldJob
         row = dict(connection.execute(
             select(*JOB_COLUMNS, jobs.c.case_json).where(jobs.c.id == job_id)
         ).mappings().one())  # fmt: skip
-        told = json.loads(row.pop("case_json"))
+        case_data = json.loads(row.pop("case_json"))
         job = job_of(row)
         latest = select(func.max(owners.c.served)).scalar_subquery()
         connection.execute(update(owners).where(owners.c.name == job.owner).values(served=latest + 1))
-    return HeldJob(database, job, told)
+    return HeldJob(database, job, case_data)
 
 
 @dataclass(frozen=True)
@@ -97,12 +97,12 @@ class HeldJob:
         Returns with which status it has ended; None if it is another's now, and nothing was written. It may be tried
         again after a failure that leaves open whether it was written.
         """
-        told = {f"dataset_{name}": value for name, value in asdict(dataset).items()} if dataset else {}
-        told |= {f"drift_{name}": value for name, value in asdict(drift).items()} if drift else {}
+        columns = {f"dataset_{name}": value for name, value in asdict(dataset).items()} if dataset else {}
+        columns |= {f"drift_{name}": value for name, value in asdict(drift).items()} if drift else {}
         with self.database.writing() as transaction:
             (
                 transaction.change(*self._mine, ~jobs.c.cancel_requested, event="ended", status=status,
-                                   outcome=outcome, message=message, **told, **asdict(reached))
+                                   outcome=outcome, message=message, **columns, **asdict(reached))
                 or transaction.change(*self._mine, event="ended", status=Status.DISMISSED,
                                       outcome=Outcome.CANCELLED.value, message=CANCELLED, **asdict(reached))
             )  # fmt: skip

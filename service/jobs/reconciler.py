@@ -86,11 +86,11 @@ def dismiss_cancelled(database: Database) -> None:
     waits while all that wait are looked through."""
     cancelled = jobs.c.status == Status.ACCEPTED, jobs.c.cancel_requested
     with database.reading() as connection:
-        found = connection.scalars(select(jobs.c.id).where(*cancelled)).all()
-    if not found:
+        cancelled_ids = connection.scalars(select(jobs.c.id).where(*cancelled)).all()
+    if not cancelled_ids:
         return
     with database.writing() as transaction:
-        transaction.change(jobs.c.id.in_(found), *cancelled, event="ended", status=Status.DISMISSED,
+        transaction.change(jobs.c.id.in_(cancelled_ids), *cancelled, event="ended", status=Status.DISMISSED,
                            outcome=Outcome.CANCELLED.value, message="cancelled while it waited")
 
 

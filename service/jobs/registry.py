@@ -84,10 +84,10 @@ class Registry:
     def case(self, job_id: str) -> dict[str, Any]:
         """The case of a job. Raises UnknownJob."""
         with self.database.reading() as connection:
-            told = connection.scalar(select(jobs.c.case_json).where(jobs.c.id == job_id, self._seen))
-        if told is None:
+            text = connection.scalar(select(jobs.c.case_json).where(jobs.c.id == job_id, self._seen))
+        if text is None:
             raise UnknownJob(job_id)
-        case: dict[str, Any] = json.loads(told)
+        case: dict[str, Any] = json.loads(text)
         return case
 
     def page(self, limit: int, selection: Selection = Selection()) -> Page:
@@ -102,8 +102,8 @@ class Registry:
         if selection.until is not None:
             query = query.where(jobs.c.created < selection.until)
         with self.database.reading() as connection:
-            found = [job_of(row) for row in connection.execute(query).mappings()]
-        return Page(found[:limit], found[limit - 1].id if len(found) > limit else None)
+            listed = [job_of(row) for row in connection.execute(query).mappings()]
+        return Page(listed[:limit], listed[limit - 1].id if len(listed) > limit else None)
 
     def cancel(self, job_id: str, actor: Actor | None = None) -> Job:
         """Dismiss a job that waits; tell the worker of one that runs. Raises UnknownJob."""
@@ -120,16 +120,16 @@ class Registry:
     def versions(self, job_ids: Collection[str]) -> dict[str, int]:
         """The versions of some jobs, by id."""
         with self.database.reading() as connection:
-            found = connection.execute(select(jobs.c.id, jobs.c.version).where(jobs.c.id.in_(job_ids), self._seen))
-            return {row.id: row.version for row in found}
+            rows = connection.execute(select(jobs.c.id, jobs.c.version).where(jobs.c.id.in_(job_ids), self._seen))
+            return {row.id: row.version for row in rows}
 
     def events(self, job_id: str, after: int = 0) -> list[Event]:
         """What happened to a job since its version `after`, oldest first."""
         query = select(events.c.seq, events.c.time, events.c.kind, events.c.data).order_by(events.c.seq)
         query = query.join(jobs, jobs.c.id == events.c.job_id).where(jobs.c.id == job_id, self._seen)
         with self.database.reading() as connection:
-            found = connection.execute(query.where(events.c.seq > after))
-            return [Event(row.seq, row.time, row.kind, json.loads(row.data)) for row in found]
+            rows = connection.execute(query.where(events.c.seq > after))
+            return [Event(row.seq, row.time, row.kind, json.loads(row.data)) for row in rows]
 
     @property
     def _seen(self) -> ColumnElement[bool]:

@@ -23,13 +23,13 @@ Blocks = Callable[[], Iterator[Block]]
 
 def versions() -> dict[str, str]:
     """The versions of what computed the dataset, as its attributes."""
-    told = {"python_version": platform.python_version()}
+    versions = {"python_version": platform.python_version()}
     for package in ("hockle", "numpy", "numba", "netCDF4"):
         try:
-            told[f"{package.lower()}_version"] = version(package)
+            versions[f"{package.lower()}_version"] = version(package)
         except PackageNotFoundError:
-            told[f"{package.lower()}_version"] = "not installed"
-    return told
+            versions[f"{package.lower()}_version"] = "not installed"
+    return versions
 
 
 def write(

@@ -56,8 +56,8 @@ class Datasets:
 
     def file(self, name: str, size: int, sha256: str) -> Path:
         """A dataset as a file, copied to this host if need be. Raises FileNotFoundError, StoreUnreachable."""
-        found = self.find(name)
-        return self._copy(found, name, size, sha256) if isinstance(found, Bucket) else found
+        place = self.find(name)
+        return self._copy(place, name, size, sha256) if isinstance(place, Bucket) else place
 
     def _copy(self, bucket: Bucket, name: str, size: int, sha256: str) -> Path:
         path = self._copies / name
@@ -76,9 +76,9 @@ class Datasets:
 
     def _make_room(self, size: int) -> None:
         """Remove the copies that were asked for longest ago, until there is room for one more."""
-        found = sorted(self._kept())
-        held = size + sum(bytes_ for _, bytes_, _ in found)
-        for asked, bytes_, path in found:
+        copies = sorted(self._kept())
+        held = size + sum(bytes_ for _, bytes_, _ in copies)
+        for asked, bytes_, path in copies:
             if held <= ROOM or asked > time.time() - IN_USE:
                 return
             path.unlink(missing_ok=True)

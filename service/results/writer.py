@@ -96,10 +96,10 @@ class DatasetWriter:
 
     def _history(self, intervals: int) -> str:
         """How the values came about."""
-        told = f"simulated by hockle with {intervals} intervals"
+        history = f"simulated by hockle with {intervals} intervals"
         if not self._spec.numerics.verify:
-            return told
-        return (f"{told} and with {2 * intervals} and steps half as long; the values are extrapolated from both "
+            return history
+        return (f"{history} and with {2 * intervals} and steps half as long; the values are extrapolated from both "
                 "(Richardson, order 2), the errors are those of the finer run")  # fmt: skip
 
     def _attributes(self, outcome: str, message: str, history: str, statistics: Statistics) -> dict[str, Any]:

@@ -54,7 +54,7 @@ class Outcome(StrEnum):
     )
     ROD_CROSSED_ITSELF = (
         "rod_crossed_itself",
-        "the rod passed through itself, or even the smallest step could not rule it out",
+        "even at the smallest step it could not be ruled out that the rod passed through itself",
         "use more intervals, a finer contact.spacing, a stiffer contact law, or a smaller dt_max",
         "solver",
     )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from uuid import uuid4
@@ -11,6 +13,16 @@ import pytest
 from service.results import bucket
 
 LONGEST = 60.0
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Before tests run side by side, compile the kernels of both methods, each once: else each side does it."""
+    if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
+        return
+    warming = [subprocess.Popen([sys.executable, "-c", f"import solver; solver.warm({method!r})"])
+               for method in ("box", "staggered")]  # fmt: skip
+    for process in warming:
+        process.wait()
 
 
 @pytest.fixture

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
-
 from solver.kernels.kernel import compile_apart
-from solver.measures.topology import writhe
+from solver.measures.topology import writhe_of_rod
 from solver.methods.registry import discretized
 from solver.scene.contact import Contact
 from solver.scene.ends import End
@@ -50,5 +48,5 @@ def exercise(method: str, touching: bool) -> None:
         moving.take_step(t, dt)
     fields = moving.fields()
     moving.energies(), moving.twist(), moving.smallest_gap()
-    writhe(fields.r, np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 1.0]))
+    writhe_of_rod(fields.r, fields.orientation)
     moving.compile()

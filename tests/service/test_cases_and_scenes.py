@@ -20,6 +20,7 @@ from service.cases.initial import Centreline, Straight
 from service.cases.rod import RodSpec
 from service.cases.surroundings import ContactSpec, DistributedSpec, FluidSpec, LoadsSpec, PointSpec
 from solver import Condition, Contact, Curve, DistributedLoad, End, Fluid, Initial, Numerics, PointLoad, Rod, Scene
+from solver.scene.view import View
 
 TRANSLATION = tuple(f"{kind}{i}" for kind in "vxf" for i in (1, 2, 3))
 ROTATION = tuple(f"{kind}{i}" for kind in ("omega", "theta", "q") for i in (1, 2, 3))
@@ -48,7 +49,8 @@ class Pair:
 
 
 PAIRS = (
-    Pair(Scene, (CaseSpec, LoadsSpec, OutputSpec, EndsSpec), {"output_interval": ("interval",), "points": ("point",)},
+    Pair(Scene, (CaseSpec, LoadsSpec, OutputSpec, EndsSpec), {"output_interval": ("interval",), "points": ("point",),
+                                                                "user": ()},  # Python's own
          ("schema_version", "name", "title", "description", "loads", "ends", "output", "fields")),
     Pair(Rod, (RodSpec,),
          {"stiffness": ("bending_stiffness", "torsional_stiffness", "youngs_modulus", "shear_modulus"),
@@ -107,7 +109,8 @@ NARROWER = {
 def of_scene() -> Iterator[type]:
     for module in iter_modules(solver.scene.__path__, "solver.scene."):
         for thing in vars(import_module(module.name)).values():
-            if isinstance(thing, type) and is_dataclass(thing) and thing.__module__ == module.name:
+            own = isinstance(thing, type) and is_dataclass(thing) and thing.__module__ == module.name
+            if own and thing is not View:
                 yield thing
 
 

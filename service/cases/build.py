@@ -72,6 +72,7 @@ def _scene(spec: CaseSpec, rod: Rod, initial: Initial) -> Scene:
         gravity=spec.loads.gravity,
         distributed=tuple(load.build() for load in spec.loads.distributed),
         points=tuple(load.build() for load in spec.loads.point),
+        loads=spec.loads.others(),
         damping=spec.loads.damping,
         fluid=spec.fluid.build() if spec.fluid else None,
         contact=spec.contact.build() if spec.contact else None,

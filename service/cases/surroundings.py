@@ -72,6 +72,11 @@ class LoadsSpec(Spec):
     damping: Annotated[NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length", "1/s")] = 0.0
 
 
+    def others(self) -> tuple[object, ...]:
+        """The solver's loads of all other kinds."""
+        return ()
+
+
 class FluidSpec(Spec):
     """Morison's fluid, still or with a uniform current.
 

@@ -102,6 +102,17 @@ def _middle(a: Any, b: Any) -> Any:
     return lambda a, b: times(0.5, plus(a, b))
 
 
+def without(a: Any, b: Any) -> Any:
+    """a - b, or a where b is None."""
+
+
+@overload(without, strict=False)
+def _without(a: Any, b: Any) -> Any:
+    if isinstance(b, numba.types.NoneType):
+        return lambda a, b: a
+    return lambda a, b: minus(a, b)
+
+
 def stiffness(a: Any, j: int) -> Any:
     """Matrix j of an array (n, 3, 3); the number of (n,) about one axis."""
 

@@ -19,7 +19,6 @@ from solver.scene.initial import Initial
 from solver.scene.loads import DistributedLoad, PointLoad
 from solver.scene.numerics import Numerics
 from solver.scene.rod import Rod
-from solver.scene.user import UserLoad
 from solver.scene.view import View, answer
 
 
@@ -40,8 +39,8 @@ class Scene:
     """Viscous damping c (1/s): B = -c rho_c A v, Q = -c I omega."""
     fluid: Fluid | None = None
     contact: Contact | None = None
-    user: tuple[UserLoad, ...] = ()
-    """Loads of the user's own."""
+    loads: tuple[object, ...] = ()
+    """Other loads: `UserLoad`s, and what is `Given` by a module of `physics.loads`."""
     numerics: Numerics = field(default_factory=Numerics)
     topology: bool = True
     """Whether the frames carry Wr and Lk."""

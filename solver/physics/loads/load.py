@@ -2,15 +2,16 @@
 
 A load is a module of this folder, entered in `registry.LOADS`, with
 
+    Given       what a scene's `loads` hold, if it is no other part of a scene that gives the load;
     Record      a NamedTuple of `present` and arrays, a line for each point: what its kernels read;
     of          makes the `Source` of a scene: its record, and how that changes with time;
     force       kernel: force (lab) and moment (material) per length at point j at the i-th time within a step;
     account     kernel: the `Account` of what becomes of its power, unless that is stored;
 
-and, if it has one, `tangents`, `energy`, `carrier`, `entrained` (see below), and `about`, which gives its record in the
-plane of an axis: without it a scene with this load turns in space. The kernels are written with `kernels.vectors`, so
-that one text holds in space and in a plane. Each method says in one place what a point is to it, and what it makes of
-tangents.
+and, if it has one, `tangents`, `energy`, `conservative`, `carrier`, `entrained` (see below), and `about`, which gives
+its record in the plane of an axis: without it a scene with this load turns in space. The kernels are written with
+`kernels.vectors`, so that one text holds in space and in a plane. Each method says in one place what a point is to it,
+and what it makes of tangents.
 """
 
 from __future__ import annotations
@@ -18,6 +19,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import Any, NamedTuple
+
+from numba import types
+from numba.extending import overload
 
 from solver.arrays import Array
 from solver.kernels.forms import for_each, forms_of, of_many_forms
@@ -34,7 +38,8 @@ class Account(IntEnum):
     GIVEN = 1
     """All of it is work of the loads."""
     LOST = 2
-    """What it does against the motion relative to its `carrier` is dissipated, the rest is work of the loads."""
+    """What it does against the motion relative to its `carrier` is dissipated, but for its `conservative` part; what is
+    done by the carrier is work of the loads."""
     VISCOUS = 3
     """All of it is dissipated, and proportional to the velocity: counted by what the rod has moved in a step."""
 
@@ -131,6 +136,11 @@ def entrained(load: Any, j: int, at: Point) -> Any:
 
 
 @of_many_forms
+def conservative(load: Any, i: int, j: int, at: Point) -> Any:
+    """The part of the force whose power is the fall of the load's `energy`; None if it has none beside another part."""
+
+
+@of_many_forms
 def account(load: Any) -> int:
     """The load's `Account`."""
     return 0
@@ -192,7 +202,8 @@ def _add_powers(load: Any, i: int, motion: Any, out: Array) -> None:
         else:
             through = carried_power(lab, carrier(load))
             given += through
-            lost += through - power - entrained_power(entrained(load, j, at))
+            stored = entrained_power(entrained(load, j, at)) - carried_power(conservative(load, i, j, at), at.V)
+            lost += through - power - stored
     out[0] += given
     out[1] += lost
 
@@ -226,12 +237,16 @@ def total_power(force: Any, moment: Any, V: Any, omega: Any) -> float:
     return float(dot(force, V) + dot(moment, omega))
 
 
-@inner
 def carried_power(force: Any, velocity: Any) -> float:
-    """force . velocity of the load's source, which may be at rest."""
-    if velocity is None:
-        return 0.0
-    return float(dot(force, velocity))
+    """force . velocity, of which either may not be there."""
+    raise NotImplementedError
+
+
+@overload(carried_power, strict=False, inline="always")
+def _carried_power(force: Any, velocity: Any) -> Any:
+    if isinstance(force, types.NoneType) or isinstance(velocity, types.NoneType):
+        return lambda force, velocity: 0.0
+    return lambda force, velocity: dot(force, velocity)
 
 
 @inner

@@ -34,13 +34,19 @@ LoadsAbout = namedtuple("LoadsAbout", [_name(load) for load in ABOUT])  # type: 
 
 
 for _load in LOADS:
-    for _form in ("force", "tangents", "prepare", "energy", "carrier", "entrained", "account"):
+    for _form in ("force", "tangents", "prepare", "energy", "conservative", "carrier", "entrained", "account"):
         if hasattr(_load, _form):
             forms_of(getattr(protocol, _form))[_load.Record] = getattr(_load, _form)
 
 
 def sources_of(scene: Scene, samples: Samples) -> tuple[Source, ...]:
-    """Each load of a scene, present or absent, sampled where a method wants it."""
+    """Each load of a scene, present or absent, sampled where a method wants it.
+
+    Raises TypeError for one of which no law is known.
+    """
+    for one in scene.loads:
+        if not any(isinstance(one, load.Given) for load in LOADS if hasattr(load, "Given")):
+            raise TypeError(f"a load must be of a kind that physics.loads.registry lists, got {one!r}")
     return tuple(load.of(scene, samples) for load in LOADS)
 
 

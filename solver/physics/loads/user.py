@@ -133,15 +133,19 @@ def account(load: Record) -> int:
     return load.account
 
 
+def _of_account(scene: Scene, name: str) -> tuple[UserLoad, ...]:
+    return tuple(load for load in scene.loads if isinstance(load, UserLoad) and load.account == name)
+
+
 def _kind(what: Account) -> SimpleNamespace:
     """The load that all the user's loads of an account make together."""
     name = what.name.lower()
 
     def of(scene: Scene, samples: Samples) -> Source:
-        return UserLoads(tuple(load for load in scene.user if load.account == name), samples, what)
+        return UserLoads(_of_account(scene, name), samples, what)
 
-    return SimpleNamespace(__name__=f"user_{name}", Record=Record, of=of, force=force, tangents=tangents,
-                           prepare=prepare, energy=energy, account=account)  # fmt: skip
+    return SimpleNamespace(__name__=f"user_{name}", Given=UserLoad, Record=Record, of=of, prepare=prepare, force=force,
+                           tangents=tangents, energy=energy, account=account)  # fmt: skip
 
 
 KINDS = tuple(_kind(what) for what in (Account.GIVEN, Account.LOST, Account.STORED))

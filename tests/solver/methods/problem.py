@@ -176,14 +176,14 @@ def problem(
     damping: float = 0.0,
     fluid: Fluid | None = None,
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    user: tuple[UserLoad, ...] = (),
+    others: tuple[UserLoad, ...] = (),
     **loads: tuple[Array, Array],
 ) -> Problem:
     """A step with a random past and a random iterate; `loads`: forces and moments (n, 3) of given loads by name."""
     random = np.random.default_rng(seed)
     numerics = Numerics(intervals=intervals, rho_inf=0.6, rho_inf_space=rho_inf_space)
     scene = Scene(rod(diameter), two_turns(), End.clamp(), End.clamp(), 1.0, 1.0, contact=contact, numerics=numerics,
-                  damping=damping, fluid=fluid, gravity=gravity, user=user)  # fmt: skip
+                  damping=damping, fluid=fluid, gravity=gravity, loads=others)  # fmt: skip
     n, s, h = intervals + 1, np.linspace(0.0, LENGTH, intervals + 1), LENGTH / intervals
     section = sample(scene.rod, s)
     old, new = _initial_state(scene.initial, s, section)[0], State.empty(n)

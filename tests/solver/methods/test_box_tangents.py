@@ -45,7 +45,7 @@ TERMS: dict[str, dict[str, object]] = {
     "normal drag": {"fluid": Fluid(DENSITY, drag_normal=0.2)},
     "tangential drag": {"fluid": Fluid(DENSITY, drag_tangential=0.06)},
     "drag in a current": {"fluid": Fluid(DENSITY, 1.0, 0.2, 0.016, (0.1, -0.2, 0.3))},
-    "a user's load by place and velocity": {"user": (Bed(),)},
+    "a user's load by place and velocity": {"others": (Bed(),)},
 }  # fmt: skip
 
 

@@ -48,7 +48,7 @@ BREAKS: dict[str, Any] = {
     "points": (PointLoad(0.5, force=ASIDE),),
     "fluid": Fluid(1000.0, current=(1.0, 1.0, 0.0)),
     "contact": Contact(1e-7, 3.0, 0.0, 1.0, 1.0, 0.1, 0.3, 0.05),
-    "user": (Mine(),),
+    "loads": (Mine(),),
 }
 """By the part of a scene: what does not keep the motion about any axis."""
 WITHOUT_DIRECTION = {"t_end", "output_interval", "damping", "numerics", "topology", "analysis"}

@@ -17,7 +17,7 @@ from solver.arrays import Array
 from solver.kernels.forms import for_each
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
-from solver.kernels.vectors import add_vector, dot, middle, plus, times
+from solver.kernels.vectors import add_vector, dot, middle, plus, times, without
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, State
 from solver.methods.space.box.nodes import Motion
 from solver.physics.elasticity import moment
@@ -30,6 +30,7 @@ from solver.physics.loads.load import (
     account,
     carried_power,
     carrier,
+    conservative,
     entrained,
     force,
     has_power,
@@ -147,10 +148,10 @@ def _add_power(load: Any, motion: Motion, h: float, power: Array) -> None:
 
 @inner
 def _at_node(load: Any, motion: Motion, j: int) -> Any:
-    """The load's force, the velocity, and the mass that the load entrains at node j."""
+    """The load's force but for its conservative part, the velocity, and the mass that the load entrains at node j."""
     at = point(motion, j)
     lab, _ = force(load, 0, j, at)
-    return lab, at.V, entrained(load, j, at)
+    return without(lab, conservative(load, 0, j, at)), at.V, entrained(load, j, at)
 
 
 @inner

@@ -73,7 +73,7 @@ def last(scene: Scene) -> Frame:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_users_weight_is_weight(method: str) -> None:
-    mine, own = last(scene(method, user=(Weight(),))), last(scene(method, gravity=tuple(G)))
+    mine, own = last(scene(method, loads=(Weight(),))), last(scene(method, gravity=tuple(G)))
     for name in ("r", "v", "f", "kappa"):
         assert_allclose(getattr(mine, name), getattr(own, name), atol=1e-7 * np.abs(getattr(own, name)).max())
     for name in ("energy_potential", "energy_kinetic", "work_loads", "energy_balance"):
@@ -82,7 +82,7 @@ def test_a_users_weight_is_weight(method: str) -> None:
 
 @pytest.mark.parametrize("method", METHODS)
 def test_the_power_of_a_load_that_is_given_is_its_work(method: str) -> None:
-    pushed, weighed = last(scene(method, user=(Push(),))), last(scene(method, gravity=tuple(G)))
+    pushed, weighed = last(scene(method, loads=(Push(),))), last(scene(method, gravity=tuple(G)))
     start = next(iter(simulate(scene(method, gravity=tuple(G)))))
     assert pushed.energy_potential == 0.0
     fallen = start.energy_potential - weighed.energy_potential
@@ -102,7 +102,7 @@ def test_a_users_drag_is_morisons(method: str) -> None:
 
     numerics = Numerics(method=method, intervals=20, dt_max=0.005)  # type: ignore[arg-type]
     thrown = Scene(ROD, Initial.straight(velocity=(0.5, 0.2, 0.0)), End.free(), End.free(), 0.1, 0.1, numerics=numerics)
-    mine, own = last(replace(thrown, user=(Drag(),))), last(replace(thrown, fluid=Fluid(1000.0, drag_normal=1.2)))
+    mine, own = last(replace(thrown, loads=(Drag(),))), last(replace(thrown, fluid=Fluid(1000.0, drag_normal=1.2)))
     assert_allclose(mine.v, own.v, atol=1e-8)
     assert mine.dissipation == pytest.approx(own.dissipation, rel=1e-8)
     assert own.dissipation > 0.1 * own.energy_kinetic
@@ -112,7 +112,7 @@ def test_a_users_drag_is_morisons(method: str) -> None:
 def test_a_rod_that_falls_onto_an_elastic_bed_keeps_its_energy(method: str) -> None:
     lying = Initial.straight((0.0, 0.0, 0.05), (1.0, 0.0, 0.0), a1=(0.0, 1.0, 0.0), velocity=(0.0, 0.0, -0.5))
     numerics = Numerics(method=method, intervals=20, dt_max=0.002, rho_inf=1.0)  # type: ignore[arg-type]
-    frames = list(simulate(Scene(ROD, lying, End.free(), End.free(), 0.4, 0.02, user=(Bed(),), numerics=numerics)))
+    frames = list(simulate(Scene(ROD, lying, End.free(), End.free(), 0.4, 0.02, loads=(Bed(),), numerics=numerics)))
     pressed = max(frame.energy_potential for frame in frames)
     thrown = frames[0].energy_kinetic
     assert pressed > 0.9 * thrown  # for a moment it rests on the bed
@@ -123,13 +123,19 @@ def test_a_rod_that_falls_onto_an_elastic_bed_keeps_its_energy(method: str) -> N
 @pytest.mark.parametrize("method", METHODS)
 def test_what_a_users_load_raises_reaches_the_user(method: str) -> None:
     with pytest.raises(RuntimeError, match="no such depth"):
-        last(scene(method, user=(Broken(),)))
+        last(scene(method, loads=(Broken(),)))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_load_of_which_no_law_is_known_is_refused(method: str) -> None:
+    with pytest.raises(TypeError, match="must be of a kind"):
+        last(scene(method, loads=("a push",)))
 
 
 def test_a_rod_in_statics_rests_on_its_bed() -> None:
     lying = Initial.straight((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), a1=(0.0, 1.0, 0.0))
     numerics = Numerics(method="staggered", intervals=20)
-    resting = Scene(ROD, lying, End.free(), End.free(), 1.0, 1.0, gravity=(0.0, 0.0, -9.81), user=(Bed(),),
+    resting = Scene(ROD, lying, End.free(), End.free(), 1.0, 1.0, gravity=(0.0, 0.0, -9.81), loads=(Bed(),),
                     numerics=numerics, analysis="static")  # fmt: skip
     weight = 9.81 * 1500.0 * pi / 4 * DIAMETER**2
     assert weight > 0.0

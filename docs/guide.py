@@ -89,6 +89,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "loads": _part("LoadsSpec"),
     "distributed load": _part("DistributedSpec"),
     "point load": _part("PointSpec"),
+    "floor": _part("FloorSpec"),
     "contact": _part("ContactSpec"),
     "numerics": _part("NumericsSpec"),
     "output": _part("OutputSpec"),

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from math import radians
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from service.cases.errors import refusal
 from service.cases.quantities import (
+    Finite,
     FrameName,
     NotNegative,
     Positive,
@@ -21,6 +23,7 @@ from service.cases.quantities import (
 )
 from service.meaning import means
 from solver import Contact, DistributedLoad, Fluid, PointLoad
+from solver.physics.loads import floor
 
 MOST_LOADS = 100
 NOTHING: Triple = (0.0, 0.0, 0.0)
@@ -55,6 +58,26 @@ class PointSpec(Spec):
         return PointLoad(self.s, curves(self.force), curves(self.moment), self.frame)
 
 
+class FloorSpec(Spec):
+    """An elastic floor with friction, below a plane through the lab point `height` times the unit normal."""
+
+    stiffness: Annotated[Positive, means("k: force per length k d at the depth d of the centreline", "N/m²")]
+    height: Annotated[Finite, means("of the plane along its normal", "m")] = 0.0
+    normal: Annotated[Triple, means("vector, lab, out of the floor, of any length > 0")] = (0.0, 0.0, 1.0)
+    friction: Annotated[NotNegative, means("µ: friction µ k d against the motion along the plane", "1")] = 0.0
+    slip: Annotated[Positive, means("speed below which friction fades smoothly", "m/s")] = 1e-3
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if not any(self.normal):
+            raise refusal("normal", self.normal, "must not be zero")
+        return self
+
+    def build(self) -> floor.Given:
+        """The solver's load."""
+        return floor.Given(self.stiffness, self.height, self.normal, self.friction, self.slip)
+
+
 class LoadsSpec(Spec):
     """Weight, distributed and point loads, viscous damping."""
 
@@ -69,12 +92,13 @@ class LoadsSpec(Spec):
         Field(max_length=MOST_LOADS),
         means("loads at one place, each with the fields of the second table below"),
     ] = ()
+    floor: Annotated[FloorSpec | None, means("an elastic floor, with the fields of the third table below")] = None
     damping: Annotated[NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length", "1/s")] = 0.0
 
 
     def others(self) -> tuple[object, ...]:
         """The solver's loads of all other kinds."""
-        return ()
+        return () if self.floor is None else (self.floor.build(),)
 
 
 class FluidSpec(Spec):

@@ -50,7 +50,7 @@ class Pair:
 
 PAIRS = (
     Pair(Scene, (CaseSpec, LoadsSpec, OutputSpec, EndsSpec), {"output_interval": ("interval",), "points": ("point",),
-                                                                "loads": ("loads",)},
+                                                                "loads": ("loads", "floor")},
          ("schema_version", "name", "title", "description", "ends", "output", "fields")),
     Pair(Rod, (RodSpec,),
          {"stiffness": ("bending_stiffness", "torsional_stiffness", "youngs_modulus", "shear_modulus"),
@@ -75,7 +75,6 @@ PAIRS = (
 SCENE_KEYS = {"output_interval": "output.interval", "gravity": "loads.gravity", "damping": "loads.damping"}
 
 OTHER_DEFAULTS = {
-    "Scene.loads",  # loads of every kind, in a case
     "Scene.numerics",  # a case's own are resolved by what else it says
     "Numerics.dt_max",  # 0.05 s, where a case says nothing else about its steps
     "Contact.k3", "Contact.k4",  # the solver has none

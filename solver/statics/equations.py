@@ -173,12 +173,10 @@ class Equations:
         """The residual (N + 2, 9) and the factored tangent at a point."""
         left = self.residual(point)
         segment_tangents(self.chain, self.loads, self._driven, self.stages, 0, self.tangents)
-        D, lower, upper = self._blocks()
-        scale = self._rows[:, None] * self.units
-        return left, Solver(D * scale, lower * scale, upper * scale, _places(len(D)), self.units)
+        return left, Solver(*self.blocks(), _places(len(self.start.quaternion)), self.units)
 
-    def _blocks(self) -> tuple[Array, Array, Array]:
-        """Diagonal (N + 2, 9, 9), and the blocks before and behind it, with dimensions."""
+    def blocks(self) -> tuple[Array, Array, Array]:
+        """Diagonal (N + 2, 9, 9) of the tangent, and the blocks before and behind it, dimensionless."""
         T, R, n = self.tangents, self.stages.R[0], len(self.start.quaternion)
         D, lower, upper = (np.zeros((n, BLOCK, BLOCK)) for _ in range(3))
         lever, one = levers(R, self.chain.h), np.eye(3)
@@ -199,7 +197,8 @@ class Equations:
                 block[X][end.held[:3]] = 0.0
             D[a, PSI, PSI][end.held[3:]] = one[end.held[3:]] * self._unit(PSI)
             D[a, X, X][end.held[:3]] = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
-        return D, lower, upper
+        scale = self._rows[:, None] * self.units
+        return D * scale, lower * scale, upper * scale
 
 
 def levers(R: Array, h: float) -> Array:

@@ -20,6 +20,8 @@ BAND = 5
 
 def negative_modes(equations: Equations) -> int:
     """Directions of falling energy at the point that `equations` has linearised last; loads are held as they are."""
+    if equations.tangents.K.any():
+        return _with_place(equations)
     chain, n, length = equations.chain, len(equations.start.quaternion), float(equations.s[-1])
     T, R = equations.tangents, equations.stages.R[0]
     bands = _second_variation(T.stiff, T.behind, equations) * (length / equations.stiffness)
@@ -35,6 +37,31 @@ def negative_modes(equations: Equations) -> int:
     S = W - G.T @ solve_banded((BAND, BAND), full, G)
     falling = int(np.sum(eigvalsh(S) < 0.0))
     return int(_negative_pivots(bands.copy())) + falling - int(ties.shape[1])
+
+
+def _with_place(equations: Equations) -> int:
+    """The same where loads depend on the place: of the whole system, from block to block.
+
+    Rotations, displacements and forces of all blocks are kept. The forces are the multipliers of as many conditions,
+    each of which has one negative eigenvalue.
+    """
+    D, lower, upper = equations.blocks()
+    count, before = 0, np.zeros((0, 0))
+    for a in range(len(D)):
+        own, beside = 0.5 * (D[a] + D[a].T), 0.5 * (lower[a] + upper[a - 1].T)
+        for side in (0, 1):
+            if a == side * (len(D) - 1):
+                held = np.concatenate([equations.ends[side].held[3:], equations.ends[side].held[:3], [False] * 3])
+                own[held], own[:, held], beside[held] = 0.0, 0.0, 0.0
+                own[held, held] = 1.0
+            elif a == 1 and side == 0:
+                held = np.concatenate([equations.ends[0].held[3:], equations.ends[0].held[:3], [True] * 3])
+                beside[:, held] = 0.0
+        if a > 0:
+            own -= beside @ np.linalg.solve(before, beside.T)
+        count += int(np.sum(np.linalg.eigvalsh(own) < 0.0))
+        before = own
+    return count - 3 * (len(D) - 1)
 
 
 def _second_variation(stiff: Array, behind: Array, equations: Equations) -> Array:

@@ -30,7 +30,8 @@ def of(scene: Scene, samples: Samples) -> Source:
     """The added mass of a scene's fluid."""
     fluid = scene.fluid
     area, ratio = 0.25 * pi * samples.section.diameter**2, fluid.density * fluid.added_mass if fluid else 0.0
-    return Source(Record(ratio > 0.0, ratio * area, np.array([fluid.current if fluid else (0.0, 0.0, 0.0)])))
+    current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)], dtype=float)
+    return Source(Record(ratio > 0.0, ratio * area, current))
 
 
 def about(record: Record, axis: Any) -> Record:

@@ -30,7 +30,7 @@ def of(scene: Scene, samples: Samples) -> Source:
     fluid = scene.fluid
     half = 0.5 * fluid.density * samples.section.diameter if fluid else 0.0 * samples.section.diameter
     normal, tangential = (fluid.drag_normal, fluid.drag_tangential) if fluid else (0.0, 0.0)
-    current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)])
+    current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)], dtype=float)
     present = bool(fluid and fluid.density * (normal + tangential) > 0.0)
     return Source(Record(present, half * normal, pi * half * tangential, current))
 

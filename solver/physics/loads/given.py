@@ -31,16 +31,18 @@ class GivenLoads(Source):
 
     def __init__(self, scene: Scene, samples: Samples, kind: type[Record], following: bool) -> None:
         inside = tuple(load for load in scene.points if load.s not in (0.0, scene.rod.length))
-        self._following = following
-        self._distributed = [(load, _profiles(load, samples.s)) for load in scene.distributed]
-        self._points = [(load, point_weights(load.s, samples.centres, samples.lengths)) for load in inside]
-        self._density = np.zeros((len(samples.s), 6))
+        n, arrays = len(samples.s), (np.zeros((samples.times, len(samples.s), 3)) for _ in range(2))
         loads: list[DistributedLoad | PointLoad] = [*scene.distributed, *inside]
-        loads = [load for load in loads if any(not _is_zero(c) for c in self._components(load))]
-        arrays = (np.zeros((samples.times, len(samples.s), 3)) for _ in range(2))
-        super().__init__(kind(bool(loads), *arrays))
-        self.steady = all(_is_steady(load) for load in loads)
-        self.corners = tuple(corner for load in loads for curve in _schedules(load) for corner in curve.corners)
+        self._following = following
+        acting = [load for load in loads if any(not _is_zero(c) for c in self._part(load))]
+        super().__init__(kind(bool(acting), *arrays))
+        self._distributed = [(load, np.stack([p(samples.s) for p in self._part(load)], axis=1))
+                             for load in acting if isinstance(load, DistributedLoad)]  # fmt: skip
+        self._points = [(load, point_weights(load.s, samples.centres, samples.lengths))
+                        for load in acting if isinstance(load, PointLoad)]  # fmt: skip
+        self._density = np.zeros((n, 3))
+        self.steady = all(_is_steady(load) for load in acting)
+        self.corners = tuple(corner for load in acting for curve in _schedules(load) for corner in curve.corners)
         for i in range(samples.times):
             self.set_time(0.0, i)
 
@@ -49,21 +51,21 @@ class GivenLoads(Source):
         self.record.force[i] = 0.0
         self.record.moment[i] = 0.0
         for load, density in self._distributed:
-            self._add(load, i, np.multiply(density, load.schedule.value(t), out=self._density))
+            self._target(load)[i] += np.multiply(density, load.schedule.value(t), out=self._density)
         for point, weights in self._points:
-            for k, component in enumerate((*point.force, *point.moment)):
+            for k, component in enumerate(self._part(point)):
                 np.multiply(weights, component.value(t), out=self._density[:, k])
-            self._add(point, i, self._density)
+            self._target(point)[i] += self._density
 
-    def _components(self, load: DistributedLoad | PointLoad) -> Sequence[object]:
-        """The force, or the moment, that the load has here."""
-        return load.force if (load.frame == "material") == self._following else load.moment
+    def _acts_by_force(self, load: DistributedLoad | PointLoad) -> bool:
+        """Whether it is the load's force, not its moment, that is of this kind."""
+        return (load.frame == "material") == self._following
 
-    def _add(self, load: DistributedLoad | PointLoad, i: int, density: Array) -> None:
-        if (load.frame == "material") == self._following:
-            self.record.force[i] += density[:, :3]
-        else:
-            self.record.moment[i] += density[:, 3:]
+    def _part(self, load: DistributedLoad | PointLoad) -> Any:
+        return load.force if self._acts_by_force(load) else load.moment
+
+    def _target(self, load: DistributedLoad | PointLoad) -> Array:
+        return self.record.force if self._acts_by_force(load) else self.record.moment  # type: ignore[no-any-return]
 
 
 def nodes_act(s: Array) -> tuple[Array, Array]:
@@ -87,10 +89,6 @@ def point_weights(at: float, centres: Array, lengths: Array) -> Array:
     weights = np.zeros_like(centres)
     weights[i], weights[i + 1] = (1.0 - share) / lengths[i], share / lengths[i + 1]
     return weights
-
-
-def _profiles(load: DistributedLoad, s: Array) -> Array:
-    return np.stack([p(s) for p in (*load.force, *load.moment)], axis=1)
 
 
 def _is_steady(load: DistributedLoad | PointLoad) -> bool:

@@ -10,14 +10,15 @@ from scipy.sparse import coo_array, csr_array
 
 from solver.arrays import Array
 from solver.methods.box import BoxMethod
-from solver.methods.linear.elimination import factor, solve
-from solver.methods.linear.shooting import shoot
+from solver.methods.linear.shooting import Shooting
+from solver.methods.linear.system import LinearSolver, factor, solve
 from solver.methods.linear.tridiagonal import solve_stages
 from solver.methods.schemes import Scheme, c0_of
 from solver.methods.space.box.intervals import MEANS, interval_panel
 from solver.methods.space.box.schemes import BOX
 from solver.methods.space.segments.motion import move, spin_steadily
 from solver.methods.staggered import SCHEME, StaggeredMethod
+from solver.methods.status import CONVERGED
 from solver.methods.time.generalized_alpha.history import history
 from solver.methods.time.generalized_alpha.newton import balance_nodes, form_residuals, set_scales
 from solver.methods.time.radau.newton import evaluate, factor_both, transform_residuals, update
@@ -31,7 +32,7 @@ class NewtonSystem:
         self._scheme = Scheme.of(rho_inf)
         self._c0 = c0_of(self._scheme, dt)
         self._ends = method._ends(0.0, dt)
-        self._marched = np.zeros((len(method.s), 12, 7))
+        self._shooting = Shooting.empty(len(method.s) - 1)
         method.trial.Y[:] = method.state.Y
         history(method.state, self._scheme, dt, method.work.past)
         method.work.feedback[:] = 0.0
@@ -47,21 +48,27 @@ class NewtonSystem:
                        work.feedback, work.system)  # fmt: skip
 
     def factor(self) -> bool:
-        """Block elimination: form the panels and factor them."""
-        method, work = self._method, self._method.work
-        return bool(factor(method.trial.Y, self._c0, method.h, work.nodes, method.section, work.system))
+        """Form the panels and factor them by the method's linear solver, block elimination by default."""
+        return self._factor(self._method.work.linear)
 
     def solve(self) -> Array:
-        """Block elimination: the solution (12 n,) with the factors."""
-        solve(self._method.work.system, 1.0, self._method.work.system.b, self._method.work.system.x)
-        return self._method.work.system.x.ravel().copy()
+        """The solution (12 n,) with the factors."""
+        return self._solve(self._method.work.linear)
 
     def shoot(self) -> tuple[Array, float]:
         """Shooting: the solution (12 n,) and the growth of the homogeneous solutions."""
+        self._factor(self._shooting)
+        return self._solve(self._shooting), float(self._shooting.growth[0])
+
+    def _factor(self, linear: LinearSolver) -> bool:
         method, work = self._method, self._method.work
-        x = np.zeros_like(work.system.x)
-        growth = shoot(method.trial.Y, self._c0, method.h, work.nodes, method.section, work.system, self._marched, x)
-        return x.ravel(), float(growth)
+        status = factor(linear, method.trial.Y, work.past, self._c0, method.h, work.nodes, method.section, work.system)
+        return bool(status == CONVERGED)
+
+    def _solve(self, linear: LinearSolver) -> Array:
+        system = self._method.work.system
+        solve(linear, system, 1.0, system.b, system.x)
+        return system.x.ravel().copy()
 
     def as_sparse(self) -> tuple[csr_array, Array]:
         """Matrix and right-hand side: conditions at s = 0, intervals, conditions at L."""

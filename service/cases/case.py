@@ -16,6 +16,7 @@ from service.cases.surroundings import ContactSpec, FluidSpec, LoadsSpec
 from service.meaning import means
 from solver import Numerics
 from solver.measures.frame import OUTPUTS
+from solver.methods.linear.registry import LINEAR_SOLVERS
 from solver.run.pilot import FIRST_INTERVALS
 
 ALL_FIELDS = tuple(output.name for output in OUTPUTS if output.along_rod)
@@ -38,6 +39,11 @@ NULLABLE = ("tolerance", "intervals", "dt_max", "increment_tolerance")
 
 Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 
+if TYPE_CHECKING:
+    LinearSolver = str
+else:
+    LinearSolver = Literal[tuple(LINEAR_SOLVERS)]
+
 
 class NumericsSpec(Spec):
     """How the equations are solved: see `solver.Numerics`. Either by `intervals` and `dt_max`, or to a `tolerance`."""
@@ -49,9 +55,9 @@ class NumericsSpec(Spec):
               "`staggered`, and no other"),
     ] = "box"  # fmt: skip
     linear_solver: Annotated[
-        Literal["block_elimination", "shooting"],
+        LinearSolver,
         means("`shooting`: the paper's, which loses its digits on thin rods at short steps"),
-    ] = "block_elimination"
+    ] = Numerics.linear_solver
     intervals: Annotated[
         Annotated[int, Field(ge=2, le=20_000)] | None,
         means(f"along the rod, instead of a tolerance; {INTERVALS} where another resolution is given"),

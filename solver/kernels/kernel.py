@@ -27,7 +27,7 @@ from numba.core.registry import cpu_target
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "nogil": True}
+OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "nogil": True}
 
 APART = "HOCKLE_COMPILES"
 """The environment variable that tells a process that it is the one that compiles."""
@@ -84,7 +84,7 @@ def _good_for() -> str:
 
 def kernel(function: Function) -> Function:
     """Compile a function of plain arrays and numbers."""
-    return numba.njit(**_OPTIONS)(function)  # type: ignore[no-any-return]
+    return numba.njit(**OPTIONS)(function)  # type: ignore[no-any-return]
 
 
 def inner(function: Function) -> Function:
@@ -95,4 +95,4 @@ def inner(function: Function) -> Function:
 
 def inlined(function: Function) -> Function:
     """Compile a function that is to vanish into its callers: one that is called for every node or interval."""
-    return numba.njit(inline="always", **_OPTIONS)(function)  # type: ignore[no-any-return]
+    return numba.njit(inline="always", **OPTIONS)(function)  # type: ignore[no-any-return]

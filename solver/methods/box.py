@@ -12,6 +12,7 @@ from solver.kernels.handed import Handed
 from solver.kernels.rotation import relative_rotation, rotate_back, tangents_of
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
+from solver.methods.linear.registry import linear_solver_of
 from solver.methods.schemes import BACKWARD_EULER, Scheme, c0_of
 from solver.methods.space.box.energies import energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, State, V
@@ -61,13 +62,12 @@ class BoxMethod:
         self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=1)
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)
-        self._scales = Scales(float(scene.rod.length), mean_bending(self.section.elastic),
-                              numerics.linear_solver == "shooting")  # fmt: skip
+        self._scales = Scales(float(scene.rod.length), mean_bending(self.section.elastic))
         self._gain = STRETCH_FEEDBACK / scene.t_end
         self._measured = Measured(0.0, 0.0, 0.0, 0.0, 0.0)
         self._bending = total_bending(self.state.Y, self.h)
         self._stretch, self._stretch_before, self._trial_stretch = np.zeros((3, numerics.intervals, 3))
-        self.work = Work.empty(numerics.intervals, self._scales.shooting, SpaceScheme.of(numerics.rho_inf_space),
+        self.work = Work.empty(numerics.intervals, SpaceScheme.of(numerics.rho_inf_space), linear_solver_of(numerics),
                                scene.contact is not None)  # fmt: skip
         self.shortest_step = 0.0
         """Step (s) below which the scheme along s does not resolve the equations; 0 for the box scheme."""

@@ -51,7 +51,9 @@ class Simulation(Run):
 
     def warm(self) -> None:
         """Have every kernel compiled."""
-        load(self._scene.numerics.method, touching=not isinstance(self._method, OneAxisMethod))
+        numerics = self._scene.numerics
+        load(numerics.method, not isinstance(self._method, OneAxisMethod), numerics.linear_solver,
+             numerics.rho_inf_space < 1.0)  # fmt: skip
 
     def _first_frame(self) -> Frame:
         frame = self._accounts.frame(0.0)

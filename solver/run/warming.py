@@ -24,21 +24,25 @@ def warm(method: str = Numerics.method) -> None:
 
 
 @cache
-def load(method: str, touching: bool) -> None:
-    """Load the kernels for scenes that can touch themselves, or for those that turn about one axis and cannot."""
-    name = f"{method}-touching" if touching else method
-    compile_apart(name, f"from solver.run.warming import exercise; exercise({method!r}, {touching})")
-    exercise(method, touching)
+def load(method: str, touching: bool, linear_solver: str = Numerics.linear_solver, wide: bool = False) -> None:
+    """Load the kernels for scenes that can touch themselves, or for those that turn about one axis and cannot.
+
+    `linear_solver` of the box method; `wide`: with auxiliary derivatives along s, rho_inf_space < 1.
+    """
+    chosen = (method, touching, linear_solver, wide)
+    parts = [method, "touching" * touching, linear_solver * (linear_solver != Numerics.linear_solver), "wide" * wide]
+    compile_apart("-".join(filter(None, parts)), f"from solver.run.warming import exercise; exercise(*{chosen!r})")
+    exercise(*chosen)
 
 
-def exercise(method: str, touching: bool) -> None:
+def exercise(method: str, touching: bool, linear_solver: str = Numerics.linear_solver, wide: bool = False) -> None:
     """Call a method's kernels by two steps of a tiny scene, about one axis where it cannot touch itself."""
     contact = Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05)
+    numerics = Numerics(method=method, linear_solver=linear_solver, intervals=4, dt_max=1e-3,  # type: ignore[arg-type]
+                        rho_inf_space=0.5 if wide else 1.0)  # fmt: skip
     scene = Scene(
         rod=Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), initial=Initial.straight(), start=End.clamp(), end=End.free(),
-        t_end=1e-3, output_interval=1e-3, fluid=Fluid(1000.0),
-        numerics=Numerics(method=method, intervals=4, dt_max=1e-3),  # type: ignore[arg-type]
-        contact=contact if touching else None,
+        t_end=1e-3, output_interval=1e-3, fluid=Fluid(1000.0), numerics=numerics, contact=contact if touching else None,
     )  # fmt: skip
     moving, dt = discretized(scene), 1e-6
     for t in (0.0, dt):

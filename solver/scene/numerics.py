@@ -13,9 +13,10 @@ import numpy as np
 class Numerics:
     """How the equations are solved.
 
-    `intervals` of equal length along s; `dt_max` the largest step (s); `rho_inf` the spectral radius
-    of generalized-alpha at infinite frequency in time, `rho_inf_space` the same along s (1 is the box
-    scheme); `increment_tolerance` bounds each step's error relative to the step's motion (None: the method's own).
+    `linear_solver` of the box method: a name in solver/methods/linear/registry.py; `intervals` of equal length along s;
+    `dt_max` the largest step (s); `rho_inf` the spectral radius of generalized-alpha at infinite frequency in time,
+    `rho_inf_space` the same along s (1 is the box scheme); `increment_tolerance` bounds each step's error relative to
+    the step's motion (None: the method's own).
 
     With a `tolerance` (staggered method) pilot runs choose the intervals, at most `most_intervals`, and the steps, so
     that the relative error of r, kappa and the energies is below it. `verify`: the scene also runs with intervals and
@@ -23,7 +24,7 @@ class Numerics:
     """
 
     method: Literal["box", "staggered"] = "box"
-    linear_solver: Literal["block_elimination", "shooting"] = "block_elimination"
+    linear_solver: str = "block_elimination"
     intervals: int = 200
     dt_max: float = 0.1
     rho_inf: float = 0.5
@@ -46,8 +47,10 @@ class Numerics:
         for name in ("rho_inf", "rho_inf_space"):
             if not 0 <= getattr(self, name) <= 1:
                 raise ValueError(f"{name} must be in [0, 1], got {getattr(self, name)}")
-        if self.linear_solver == "shooting" and self.rho_inf_space != 1.0:
-            raise ValueError(f"rho_inf_space must be 1 with linear_solver shooting, got {self.rho_inf_space}")
+        if self.linear_solver != Numerics.linear_solver and self.rho_inf_space != 1.0:
+            raise ValueError(
+                f"rho_inf_space must be 1 with linear_solver {self.linear_solver}, got {self.rho_inf_space}"
+            )
         for name in ("increment_tolerance", "tolerance"):
             value = getattr(self, name)
             if value is not None and not value > 0:

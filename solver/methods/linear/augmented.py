@@ -7,19 +7,55 @@ rows, A = x / (rows h). This is an option for comparison: it costs several times
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from solver.arrays import Array
+from solver.kernels.dispatch import variant
 from solver.kernels.kernel import kernel
 from solver.kernels.scratch import scratch
-from solver.methods.space.box.fields import OMEGA, F, Linear, Nodes, V
-from solver.methods.space.box.intervals import interval_panel, interval_residuals
+from solver.methods.linear.panels import Swaps, close, eliminate, forward_panel
+from solver.methods.linear.system import System, factor, solve, take_own_unknowns
+from solver.methods.space.box.fields import OMEGA, F, Nodes, V
+from solver.methods.space.box.intervals import MEANS, interval_panel, interval_residuals
 from solver.methods.space.box.schemes import AT_LEFT_NODE, MINUS_DIFFERENCE
+from solver.methods.status import CONVERGED, SINGULAR
 from solver.physics.section import Section
 
 
+class Augmented(NamedTuple):
+    """The auxiliary derivatives `A` (n, 12) along s, and the system with 24 unknowns a node, Y and A.
+
+    `panels` (N, 42, 48) with `swaps` (N, 24); `last` (24, 48) with `last_swaps` (24,); residuals `b_start` (18,) and
+    `b` (N, 24); `rhs_start`, `rhs` the same shapes; `y` (N, 42); `x` (n, 24).
+    """
+
+    A: Array
+    panels: Array
+    swaps: Swaps
+    last: Array
+    last_swaps: Swaps
+    b_start: Array
+    b: Array
+    rhs_start: Array
+    rhs: Array
+    y: Array
+    x: Array
+
+    @classmethod
+    def empty(cls, intervals: int) -> Augmented:
+        """Zeros for a rod of `intervals` intervals."""
+        N, n = intervals, intervals + 1
+        return cls(np.zeros((n, 12)), np.zeros((N, 42, 48)), np.zeros((N, 24), np.int64), np.zeros((24, 48)),
+                   np.zeros(24, np.int64), np.zeros(18), np.zeros((N, 24)), np.zeros(18), np.zeros((N, 24)),
+                   np.zeros((N, 42)), np.zeros((n, 24)))  # fmt: skip
+
+
 @kernel
-def wide_residuals(Y: Array, past: Array, c0: float, h: float, nodes: Nodes, system: Linear) -> None:
+def wide_residuals(wide: Augmented, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, system: System) -> None:
     """Write the residuals of the wide system; those of the box part, `system.b`, are complete but for A."""
-    wide, rows, gamma = system.wide, system.rows, system.space.gamma
+    rows, gamma = system.rows, system.space.gamma
     nothing, at_start = scratch((1, 3)), scratch((1, 12))
     interval_residuals(Y, past, c0, h, AT_LEFT_NODE, nodes, nothing, rows, at_start)
     wide.b_start[:6] = system.b_start
@@ -41,7 +77,7 @@ def wide_residuals(Y: Array, past: Array, c0: float, h: float, nodes: Nodes, sys
 
 
 @kernel
-def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, mean: Array,
+def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: System, mean: Array,
                W: Array) -> None:  # fmt: skip
     """Write the tangents of interval j into rows 18 to 41 of W (42, 48)."""
     interval_panel(j, Y, c0, h, system.space, nodes, section, system.rows, system.columns, mean, W, 18)
@@ -53,7 +89,7 @@ def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Sec
 
 
 @kernel
-def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, mean: Array,
+def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: System, mean: Array,
                W: Array) -> None:  # fmt: skip
     """Write the 18 conditions at s = 0 into the first rows of W (42, 48)."""
     interval_panel(0, Y, c0, h, AT_LEFT_NODE, nodes, section, system.rows, system.columns, mean, W, 6)
@@ -63,9 +99,76 @@ def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, sy
         W[6 + k, 12 + k] = 1.0
 
 
+@variant(factor, Augmented)
 @kernel
-def take_auxiliary(fraction: float, h: float, system: Linear) -> None:
-    """Subtract the increments of A in the wide solution."""
-    for j in range(len(system.wide.A)):
+def factor_wide(wide: Augmented, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, section: Section,
+                system: System) -> int:  # fmt: skip
+    """Write the residuals that the box scheme has not, and factor panel after panel."""
+    wide_residuals(wide, Y, past, c0, h, nodes, system)
+    mean = scratch((MEANS, 3))
+    for j in range(len(wide.panels)):
+        W = wide.panels[j]
+        W[:, :] = 0.0
+        if j == 0:
+            wide_start(Y, c0, h, nodes, section, system, mean, W)
+        else:
+            W[:18, :24] = wide.panels[j - 1, 24:, 24:]
+        wide_panel(j, Y, c0, h, nodes, section, system, mean, W)
+        if not eliminate(W, wide.swaps[j]):
+            return SINGULAR
+    wide.last[:, :] = 0.0
+    wide.last[:18, :24] = wide.panels[len(wide.panels) - 1, 24:, 24:]
+    wide.last[18:, :12] = system.end
+    return CONVERGED if eliminate(wide.last, wide.last_swaps) else SINGULAR
+
+
+@variant(solve, Augmented)
+@kernel
+def solve_wide(wide: Augmented, system: System, scale: float, b: Array, x: Array) -> None:
+    """Solve for Y's unknowns into `x`, and for all into `wide.x`."""
+    end = scratch(6)
+    for i in range(6):
+        end[i] = scale * system.b_end[i]
+    for i in range(18):
+        wide.rhs_start[i] = scale * wide.b_start[i]
+    for j in range(len(b)):
         for k in range(12):
-            system.wide.A[j, k] -= fraction * system.wide.x[j, 12 + k] / (system.rows[k] * h)
+            wide.rhs[j, k] = b[j, k] + scale * (wide.b[j, k] - system.b[j, k])
+            wide.rhs[j, 12 + k] = scale * wide.b[j, 12 + k]
+    _substitute(wide, end)
+    x[:, :] = wide.x[:, :12]
+
+
+@kernel
+def _substitute(wide: Augmented, b_end: Array) -> None:
+    panels, y, x, size = wide.panels, wide.y, wide.x, len(wide.last)
+    N, carried = len(panels), len(wide.rhs_start)
+    for i in range(carried):
+        y[0, i] = wide.rhs_start[i]
+    for j in range(N):
+        for i in range(size):
+            y[j, carried + i] = wide.rhs[j, i]
+        forward_panel(panels[j], wide.swaps[j], y[j])
+        for i in range(carried):
+            if j + 1 < N:
+                y[j + 1, i] = y[j, size + i]
+            else:
+                x[N, i] = y[j, size + i]
+    close(wide.last, wide.last_swaps, b_end, x[N])
+    for j in range(N - 1, -1, -1):
+        for i in range(size - 1, -1, -1):
+            total = y[j, i]
+            for k in range(size):
+                total -= panels[j, i, size + k] * x[j + 1, k]
+            for k in range(i + 1, size):
+                total -= panels[j, i, k] * x[j, k]
+            x[j, i] = total / panels[j, i, i]
+
+
+@variant(take_own_unknowns, Augmented)
+@kernel
+def take_auxiliary(wide: Augmented, fraction: float, h: float, system: System) -> None:
+    """Subtract the increments of A in the wide solution."""
+    for j in range(len(wide.A)):
+        for k in range(12):
+            wide.A[j, k] -= fraction * wide.x[j, 12 + k] / (system.rows[k] * h)

@@ -8,9 +8,9 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
-from solver.methods.linear.elimination import solve
 from solver.methods.linear.krylov import Krylov, begin, combine, follow, set_out, unsolved
-from solver.methods.space.box.fields import Linear, Nodes, State, V
+from solver.methods.linear.system import LinearSolver, System, solve
+from solver.methods.space.box.fields import Nodes, State, V
 from solver.physics.contact.forces import Touch, allowed_fraction, change_forces, move_points, press
 from solver.physics.contact.members import Members
 
@@ -54,7 +54,7 @@ def add_contact(new: State, nodes: Nodes, h: float, touch: Touch) -> None:
 
 
 @kernel
-def _move(x: Array, c0: float, system: Linear, touch: Touch, members: Members, coupling: Coupling) -> None:
+def _move(x: Array, c0: float, system: System, touch: Touch, members: Members, coupling: Coupling) -> None:
     """Move the points of `members` by the scaled unknowns x (n, 12)."""
     for m in range(members.counts[1]):
         j = members.nodes[m]
@@ -65,15 +65,15 @@ def _move(x: Array, c0: float, system: Linear, touch: Touch, members: Members, c
 
 
 @kernel
-def _change(c0: float, system: Linear, touch: Touch, coupling: Coupling, y: Array) -> None:
+def _change(c0: float, system: System, touch: Touch, coupling: Coupling, y: Array) -> None:
     """y = S x: the change of the forces that belongs to coupling.x."""
     _move(coupling.x, c0, system, touch, touch.pressing.members, coupling)
     change_forces(touch, 0, y)
 
 
 @kernel
-def _solve_for_forces(y: Array, h: float, system: Linear, touch: Touch, sign: float, b_scale: float,
-                      coupling: Coupling) -> None:  # fmt: skip
+def _solve_for_forces(linear: LinearSolver, y: Array, h: float, system: System, touch: Touch, sign: float,
+                      b_scale: float, coupling: Coupling) -> None:  # fmt: skip
     """coupling.x = K^-1 (b_scale b + sign E y), b the system's residuals."""
     members, force = touch.pairs.members, coupling.force
     last = len(force)
@@ -86,31 +86,34 @@ def _solve_for_forces(y: Array, h: float, system: Linear, touch: Touch, sign: fl
         for j in range(max(node - 1, 0), min(node, last - 1) + 1):
             for c in range(3):
                 force[j, 6 + c] += sign * 0.5 * h * density * system.rows[6 + c] * y[3 * m + c]
-    solve(system, b_scale, force, coupling.x)
+    solve(linear, system, b_scale, force, coupling.x)
 
 
 @kernel
-def solve_with_contact(c0: float, h: float, system: Linear, touch: Touch, coupling: Coupling) -> int:
+def solve_with_contact(linear: LinearSolver, c0: float, h: float, system: System, touch: Touch,
+                       coupling: Coupling) -> int:  # fmt: skip
     """Solve the factored system with the contact tangents into system.x; returns how many products it took."""
     krylov, size = coupling.krylov, 3 * touch.pairs.members.counts[1]
     used = 0
-    _solve_for_forces(krylov.y, h, system, touch, 0.0, 1.0, coupling)
+    _solve_for_forces(linear, krylov.y, h, system, touch, 0.0, 1.0, coupling)
     _change(c0, system, touch, coupling, krylov.y)
     begin(krylov, size)
     while unsolved(krylov, used, size, SOLVED):
         set_out(krylov, used, size)
-        _solve_for_forces(krylov.directions[used], h, system, touch, 1.0, 0.0, coupling)
+        _solve_for_forces(linear, krylov.directions[used], h, system, touch, 1.0, 0.0, coupling)
         _change(c0, system, touch, coupling, krylov.z)
         follow(krylov, used, size)
         used += 1
     combine(krylov, used, size)
-    _solve_for_forces(krylov.y, h, system, touch, -1.0, 1.0, coupling)
-    system.x[:, :] = coupling.x
+    _solve_for_forces(linear, krylov.y, h, system, touch, -1.0, 1.0, coupling)
+    for j in range(len(coupling.x)):
+        for k in range(12):
+            system.x[j, k] = coupling.x[j, k]
     return used
 
 
 @kernel
-def contact_fraction(c0: float, system: Linear, touch: Touch, coupling: Coupling) -> float:
+def contact_fraction(c0: float, system: System, touch: Touch, coupling: Coupling) -> float:
     """How much of the update system.x may be taken without using up a pair's distance."""
     _move(system.x, c0, system, touch, touch.pairs.members, coupling)
     return float(allowed_fraction(touch, 0))

@@ -17,14 +17,10 @@ The pivots of V and F are not the largest of their columns, but the multipliers 
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
+from solver.methods.linear.panels import Swaps
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, V
-
-Swaps = NDArray[np.int64]
 
 LOCAL = 6
 """Unknowns of a node that are eliminated with pivoting: omega and kappa."""

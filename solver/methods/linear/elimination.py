@@ -1,16 +1,15 @@
-"""The almost block diagonal system: factored and solved, in O(N).
-
-The box scheme's by condensation.py. That of generalized-alpha in space, with 24 unknowns a node, see augmented.py, by
-panels of the rows carried from the left and the interval's own: the left node's columns are eliminated with row
-pivoting, the remaining rows are carried on (de Boor & Weiss 1980, SOLVEBLOK; Diaz, Fairweather & Keast 1983, COLROW).
-"""
+"""Block elimination: the box scheme's system factored and solved in O(N), by condensation.py; the default."""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from solver.arrays import Array
+from solver.kernels.dispatch import variant
 from solver.kernels.kernel import kernel
 from solver.kernels.scratch import scratch, scratch_like
-from solver.methods.linear.augmented import wide_panel, wide_start
 from solver.methods.linear.condensation import (
     LOCAL,
     WIDTH,
@@ -23,162 +22,89 @@ from solver.methods.linear.condensation import (
     keep_multipliers,
     sweep,
 )
-from solver.methods.space.box.fields import Linear, Nodes, Wide
+from solver.methods.linear.panels import Swaps, close, eliminate
+from solver.methods.linear.system import System, factor, solve
+from solver.methods.space.box.fields import Nodes
 from solver.methods.space.box.intervals import MEANS, interval_panel
 from solver.methods.space.box.schemes import BOX
+from solver.methods.status import CONVERGED, SINGULAR
 from solver.physics.section import Section
 
 
+class Elimination(NamedTuple):
+    """Factors, see condensation.py: `swept` (N, 6, 3, 3), `by_swept` (N, 9, 6), `lower` (N, 72) with `swaps` (N, 6),
+    `upper` (N, 96), `last` (12, 24) with `last_swaps` (12,). Scratch: `rhs` (N, 12)."""
+
+    swept: Array
+    by_swept: Array
+    lower: Array
+    upper: Array
+    swaps: Swaps
+    last: Array
+    last_swaps: Swaps
+    rhs: Array
+
+    @classmethod
+    def empty(cls, intervals: int) -> Elimination:
+        """Zeros for a rod of `intervals` intervals."""
+        N = intervals
+        return cls(np.zeros((N, 6, 3, 3)), np.zeros((N, 9, 6)), np.zeros((N, 72)), np.zeros((N, 96)),
+                   np.zeros((N, 6), np.int64), np.zeros((12, 24)), np.zeros(12, np.int64),
+                   np.zeros((N, 12)))  # fmt: skip
+
+
+@variant(factor, Elimination)
 @kernel
-def _eliminate(W: Array, swaps: Array) -> bool:
-    """Factor the left half of the columns of W in place; `swaps` says where each pivot came from."""
-    size = len(swaps)
-    for k in range(size):
-        pivot, largest = k, abs(W[k, k])
-        for i in range(k + 1, len(W)):
-            entry = abs(W[i, k])
-            if entry > largest:
-                pivot, largest = i, entry
-        if not largest > 0.0:
-            return False
-        swaps[k] = pivot
-        if pivot != k:
-            for c in range(2 * size):
-                W[k, c], W[pivot, c] = W[pivot, c], W[k, c]
-        inverse = 1.0 / W[k, k]
-        for i in range(k + 1, len(W)):
-            if W[i, k] != 0.0:
-                multiplier = W[i, k] * inverse
-                W[i, k] = multiplier
-                for c in range(k + 1, 2 * size):
-                    W[i, c] -= multiplier * W[k, c]
-    return True
-
-
-@kernel
-def _forward(W: Array, swaps: Array, y: Array) -> None:
-    for k in range(len(swaps)):
-        pivot = swaps[k]
-        y[k], y[pivot] = y[pivot], y[k]
-    for k in range(len(swaps)):
-        for i in range(k + 1, len(W)):
-            y[i] -= W[i, k] * y[k]
-
-
-@kernel
-def _close(last: Array, last_swaps: Array, b_end: Array, x: Array) -> None:
-    """Solve for the last node's `x`, which holds the right-hand sides carried there."""
-    size, carried = len(x), len(x) - len(b_end)
-    for i in range(len(b_end)):
-        x[carried + i] = b_end[i]
-    _forward(last, last_swaps, x)
-    for i in range(size - 1, -1, -1):
-        for k in range(i + 1, size):
-            x[i] -= last[i, k] * x[k]
-        x[i] /= last[i, i]
-
-
-@kernel
-def _substitute_wide(wide: Wide, b_end: Array) -> None:
-    panels, y, x, size = wide.panels, wide.y, wide.x, len(wide.last)
-    N, carried = len(panels), len(wide.rhs_start)
-    for i in range(carried):
-        y[0, i] = wide.rhs_start[i]
-    for j in range(N):
-        for i in range(size):
-            y[j, carried + i] = wide.rhs[j, i]
-        _forward(panels[j], wide.swaps[j], y[j])
-        for i in range(carried):
-            if j + 1 < N:
-                y[j + 1, i] = y[j, size + i]
-            else:
-                x[N, i] = y[j, size + i]
-    _close(wide.last, wide.last_swaps, b_end, x[N])
-    for j in range(N - 1, -1, -1):
-        for i in range(size - 1, -1, -1):
-            total = y[j, i]
-            for k in range(size):
-                total -= panels[j, i, size + k] * x[j + 1, k]
-            for k in range(i + 1, size):
-                total -= panels[j, i, k] * x[j, k]
-            x[j, i] = total / panels[j, i, i]
-
-
-@kernel
-def factor(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear) -> bool:
-    """Factor the system of the iterate `Y` (n, 12), making each panel when its turn comes; False if it is singular."""
-    if len(system.wide.A) > 0:
-        return bool(_factor_wide(Y, c0, h, nodes, section, system))
+def factor_blocks(linear: Elimination, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, section: Section,
+                  system: System) -> int:  # fmt: skip
+    """Factor the system, making each panel when its turn comes."""
     # made here, so that the compiler knows their strides
     carried, panel, left, right = scratch((6, WIDTH)), scratch((12, 24)), scratch((12, LOCAL)), scratch((12, WIDTH))
-    swaps, inverse, entries = scratch_like(LOCAL, system.swaps), scratch(LOCAL), left.reshape(12 * LOCAL)
+    swaps, inverse = scratch_like(LOCAL, linear.swaps), scratch(LOCAL)
     mean = scratch((MEANS, 3))
     for m in range(LOCAL):
         swaps[m] = m
-    carried[:, :12] = system.start
-    for j in range(len(system.lower)):
+    for i in range(6):
+        for k in range(12):
+            carried[i, k] = system.start[i, k]
+    for j in range(len(linear.lower)):
         interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 0)
-        sweep(panel, system.swept[j])
-        condense(carried, panel, system.swept[j], left, right)
-        keep_multipliers(carried, panel, system.by_swept[j])
-        if not factor_as_before(left, swaps, inverse):
-            condense(carried, panel, system.swept[j], left, right)
-            if not factor_anew(left, swaps):
-                return False
-        eliminate_right(left, swaps, right, system.upper[j], carried)
-        lower, kept = system.lower[j], system.swaps[j]
-        for m in range(12 * LOCAL):
-            lower[m] = entries[m]
+        sweep(panel, linear.swept[j])
+        keep_multipliers(carried, panel, linear.by_swept[j])
+        for anew in (False, True):
+            condense(carried, panel, linear.swept[j], left, right)
+            if not anew and factor_as_before(left, swaps, inverse):
+                break
+            if anew and not factor_anew(left, swaps):
+                return SINGULAR
+        eliminate_right(left, swaps, right, linear.upper[j], carried)
+        lower, kept = linear.lower[j], linear.swaps[j]
+        for m in range(12):
+            for k in range(LOCAL):
+                lower[LOCAL * m + k] = left[m, k]
         for m in range(LOCAL):
             kept[m] = swaps[m]
-    system.last[:, :] = 0.0
-    system.last[:6, :12] = carried[:, :12]
-    system.last[6:, :12] = system.end
-    return bool(_eliminate(system.last, system.last_swaps))
+    for i in range(6):
+        for k in range(12):
+            linear.last[i, k], linear.last[6 + i, k] = carried[i, k], system.end[i, k]
+            linear.last[i, 12 + k], linear.last[6 + i, 12 + k] = 0.0, 0.0
+    return CONVERGED if eliminate(linear.last, linear.last_swaps) else SINGULAR
 
 
+@variant(solve, Elimination)
 @kernel
-def _factor_wide(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear) -> bool:
-    wide, mean = system.wide, scratch((MEANS, 3))
-    for j in range(len(wide.panels)):
-        W = wide.panels[j]
-        W[:, :] = 0.0
-        if j == 0:
-            wide_start(Y, c0, h, nodes, section, system, mean, W)
-        else:
-            W[:18, :24] = wide.panels[j - 1, 24:, 24:]
-        wide_panel(j, Y, c0, h, nodes, section, system, mean, W)
-        if not _eliminate(W, wide.swaps[j]):
-            return False
-    wide.last[:, :] = 0.0
-    wide.last[:18, :24] = wide.panels[len(wide.panels) - 1, 24:, 24:]
-    wide.last[18:, :12] = system.end
-    return bool(_eliminate(wide.last, wide.last_swaps))
-
-
-@kernel
-def solve(system: Linear, scale: float, b: Array, x: Array) -> None:
-    """Solve with the factors into `x` (n, 12): right-hand side `b` (N, 12), and `scale` times all other residuals."""
-    wide, start, end = system.wide, scratch(6), scratch(6)
+def solve_blocks(linear: Elimination, system: System, scale: float, b: Array, x: Array) -> None:
+    """Forward and backward through the intervals."""
+    start, end = scratch(6), scratch(6)
     for i in range(6):
         start[i] = scale * system.b_start[i]
         end[i] = scale * system.b_end[i]
-    if len(wide.A) == 0:
-        N, y, local = len(b), system.rhs, scratch(12)
-        for j in range(N):
-            forward(start, b[j], system.swept[j], system.by_swept[j], system.lower[j], system.swaps[j],
-                    y[j], local)  # fmt: skip
-        for i in range(6):
-            x[N, i] = start[i]
-        _close(system.last, system.last_swaps, end, x[N])
-        for j in range(N - 1, -1, -1):
-            backward(y[j], system.swept[j], system.lower[j], system.upper[j], x[j + 1], x[j])
-        return
-    for i in range(18):
-        wide.rhs_start[i] = scale * wide.b_start[i]
-    for j in range(len(b)):
-        for k in range(12):
-            wide.rhs[j, k] = b[j, k] + scale * (wide.b[j, k] - system.b[j, k])
-            wide.rhs[j, 12 + k] = scale * wide.b[j, 12 + k]
-    _substitute_wide(wide, end)
-    x[:, :] = wide.x[:, :12]
+    N, y, local = len(b), linear.rhs, scratch(12)
+    for j in range(N):
+        forward(start, b[j], linear.swept[j], linear.by_swept[j], linear.lower[j], linear.swaps[j],
+                y[j], local)  # fmt: skip
+    for i in range(6):
+        x[N, i] = start[i]
+    close(linear.last, linear.last_swaps, end, x[N])
+    for j in range(N - 1, -1, -1):
+        backward(y[j], linear.swept[j], linear.lower[j], linear.upper[j], x[j + 1], x[j])

@@ -7,30 +7,75 @@ exp(L (m / (EJ dt^2))^(1/4)), so that digits are lost on thin rods and at small 
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.dispatch import variant
 from solver.kernels.kernel import kernel
-from solver.kernels.scratch import scratch, scratch_like
-from solver.methods.linear.condensation import Swaps
-from solver.methods.space.box.fields import Linear, Nodes
+from solver.kernels.scratch import scratch
+from solver.methods.linear.panels import Swaps
+from solver.methods.linear.system import System, factor, solve, solves_again
+from solver.methods.space.box.fields import Nodes
 from solver.methods.space.box.intervals import MEANS, interval_panel
 from solver.methods.space.box.schemes import BOX
+from solver.methods.status import CONVERGED, LOST_DIGITS
 from solver.physics.section import Section
 
 LARGEST_GROWTH = 1e12
 """Beyond it fewer than four digits are left and Newton's iteration cannot be trusted."""
 
 
-@kernel
-def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: Linear, marched: Array,
-          x: Array) -> float:  # fmt: skip
-    """Solve the system of the iterate `Y` (n, 12) for its residuals into `x` (n, 12); `marched` (n, 12, 7) is scratch.
+class Shooting(NamedTuple):
+    """Seven solutions `marched` (n, 12, 7), the last the inhomogeneous; `coefficients` (6, 1) of the others; `pivots`
+    (6,) of the conditions at s = 0; `growth` (1,) of the homogeneous solutions from s = 0 to s = L."""
 
-    Returns the growth of the homogeneous solutions from s = 0 to s = L (inf if a block is singular).
-    """
-    N = len(system.lower)
-    if not _start(system.start, system.b_start, marched[0], scratch_like(6, system.swaps)):
+    marched: Array
+    coefficients: Array
+    pivots: Swaps
+    growth: Array
+
+    @classmethod
+    def empty(cls, intervals: int) -> Shooting:
+        """Zeros for a rod of `intervals` intervals."""
+        return cls(np.zeros((intervals + 1, 12, 7)), np.zeros((6, 1)), np.zeros(6, np.int64), np.zeros(1))
+
+
+@variant(factor, Shooting)
+@kernel
+def shoot(linear: Shooting, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, section: Section,
+          system: System) -> int:  # fmt: skip
+    """March the seven solutions for the system's own residuals, and find their coefficients."""
+    linear.growth[0] = _march(linear, Y, c0, h, nodes, section, system)
+    return CONVERGED if linear.growth[0] < LARGEST_GROWTH else LOST_DIGITS
+
+
+@variant(solve, Shooting)
+@kernel
+def combine_marched(linear: Shooting, system: System, scale: float, b: Array, x: Array) -> None:
+    """Write the solution for the system's own residuals into `x`, whatever `b` and `scale`."""
+    marched, c = linear.marched, linear.coefficients
+    for j in range(len(x)):
+        for k in range(12):
+            x[j, k] = marched[j, k, 6]
+            for m in range(6):
+                x[j, k] += marched[j, k, m] * c[m, 0]
+
+
+@variant(solves_again, Shooting)
+@kernel
+def _only_once(linear: Shooting) -> bool:
+    """So the tangents of contact are left out."""
+    return False
+
+
+@kernel
+def _march(linear: Shooting, Y: Array, c0: float, h: float, nodes: Nodes, section: Section,
+           system: System) -> float:  # fmt: skip
+    """Write the marched solutions and their coefficients; return the growth (inf if a block is singular)."""
+    marched, c, N = linear.marched, linear.coefficients, len(linear.marched) - 1
+    if not _start(system.start, system.b_start, marched[0], linear.pivots):
         return np.inf
     A, panel, mean = scratch((12, 12)), scratch((18, 24)), scratch((MEANS, 3))
     for j in range(N):
@@ -46,7 +91,7 @@ def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system:
         if not _solve_dense(A, marched[j + 1]):
             return np.inf
     growth = _largest(marched[N]) / _largest(marched[0])
-    A_end, c = scratch((6, 6)), scratch((6, 1))
+    A_end = scratch((6, 6))
     for i in range(6):
         c[i, 0] = system.b_end[i]
         for k in range(12):
@@ -55,11 +100,6 @@ def shoot(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system:
                 A_end[i, m] += system.end[i, k] * marched[N, k, m]
     if not _solve_dense(A_end, c):
         return np.inf
-    for j in range(N + 1):
-        for k in range(12):
-            x[j, k] = marched[j, k, 6]
-            for m in range(6):
-                x[j, k] += marched[j, k, m] * c[m, 0]
     return float(growth)
 
 

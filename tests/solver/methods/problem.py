@@ -10,8 +10,9 @@ from solver import Contact, Fluid, Initial, Numerics, Rod, Scene, UserLoad
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.methods.box import _initial_state
-from solver.methods.linear.augmented import wide_panel, wide_start
+from solver.methods.linear.augmented import Augmented, wide_panel, wide_residuals, wide_start
 from solver.methods.linear.box_contact import _move, add_contact
+from solver.methods.linear.registry import linear_solver_of
 from solver.methods.schemes import Scheme, c0_of
 from solver.methods.space.box.fields import State
 from solver.methods.space.box.intervals import MEANS, interval_panel
@@ -84,7 +85,7 @@ class Problem:
 
     @property
     def wide(self) -> bool:
-        return len(self.work.system.wide.A) > 0
+        return isinstance(self.work.linear, Augmented)
 
     def residual(self) -> Array:
         """All residuals in the order of the system's rows."""
@@ -94,20 +95,22 @@ class Problem:
         if touching(self.contact.touch):
             add_contact(self.new, work.nodes, self.h, self.contact.touch)
         form_residuals(self.new, work.past, self.c0, self.h, self.section, self.ends, work.nodes, work.feedback, system)
-        if self.wide:
-            parts = [system.wide.b_start, system.wide.b.ravel(), system.b_end]
+        wide = self.work.linear
+        if isinstance(wide, Augmented):
+            wide_residuals(wide, self.new.Y, work.past, self.c0, self.h, work.nodes, system)
+            parts = [wide.b_start, wide.b.ravel(), system.b_end]
         else:
             parts = [system.b_start, system.b.ravel(), system.b_end]
         return np.concatenate(parts).copy()
 
     def unknowns(self) -> list[tuple[Array, int, int, float]]:
         """Each unknown as (array, row, column, scale), in the order of the system's columns."""
-        system = self.work.system
+        system, wide = self.work.system, self.work.linear
         listed = []
         for j in range(len(self.new.Y)):
             listed += [(self.new.Y, j, k, float(system.columns[k])) for k in range(12)]
-            if self.wide:
-                listed += [(system.wide.A, j, k, 1.0 / float(system.rows[k] * self.h)) for k in range(12)]
+            if isinstance(wide, Augmented):
+                listed += [(wide.A, j, k, 1.0 / float(system.rows[k] * self.h)) for k in range(12)]
         return listed
 
     def differences(self, step: float = 1e-6) -> Array:
@@ -127,7 +130,7 @@ class Problem:
         """The tangents as the solver writes them, contact included."""
         self.residual()
         system, nodes, Y = self.work.system, self.work.nodes, self.new.Y
-        N, mean = len(system.lower), np.zeros((MEANS, 3))
+        N, mean = len(system.b), np.zeros((MEANS, 3))
         size, left = (24, 18) if self.wide else (12, 6)
         A, W = np.zeros((size * (N + 1), size * (N + 1))), np.zeros((left + size, 2 * size))
         A[:6, :12] = system.start
@@ -159,8 +162,8 @@ class Problem:
             for m in range(near.counts[1]):
                 node = near.nodes[m]
                 for j in (node - 1, node):
-                    if 0 <= j < len(system.lower):
-                        rows, share = left + size * j + 6, 1.0 if node in (0, len(system.lower)) else 0.5
+                    if 0 <= j < len(system.b):
+                        rows, share = left + size * j + 6, 1.0 if node in (0, len(system.b)) else 0.5
                         A[rows : rows + 3, at] += share * system.rows[6:9] * y[3 * m : 3 * m + 3]
         return A
 
@@ -200,9 +203,11 @@ def problem(
     dead = [1e-4 * random.normal(size=6), 1e-4 * random.normal(size=6)]
     ends = EndValues(kinds[0], values[0], dead[0], kinds[1], values[1], dead[1])
     scheme = Scheme.of(numerics.rho_inf)
-    work = Work.empty(intervals, False, SpaceScheme.of(rho_inf_space), contact is not None)
-    work.system.wide.A[:] = 0.1 * random.normal(size=work.system.wide.A.shape)
-    set_scales(Scales(LENGTH, float(section.elastic.K[:, 0, 0].mean()), False), c0_of(scheme, dt), work.system)
+    linear = linear_solver_of(numerics)
+    work = Work.empty(intervals, SpaceScheme.of(rho_inf_space), linear, contact is not None)
+    if isinstance(linear, Augmented):
+        linear.A[:] = 0.1 * random.normal(size=linear.A.shape)
+    set_scales(Scales(LENGTH, float(section.elastic.K[:, 0, 0].mean())), c0_of(scheme, dt), work.system)
     history(old, scheme, dt, work.past)
     work.feedback[:] = 1e-4 * random.normal(size=work.feedback.shape)
     touching = SelfContact(contact, scene.rod, s, stages=1)

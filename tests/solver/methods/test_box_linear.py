@@ -8,17 +8,24 @@ import pytest
 from solver import Contact
 from solver.arrays import Array
 from solver.methods.linear.box_contact import solve_with_contact
-from solver.methods.linear.elimination import factor, solve
-from solver.methods.linear.shooting import LARGEST_GROWTH, shoot
+from solver.methods.linear.shooting import LARGEST_GROWTH, Shooting
+from solver.methods.linear.system import LinearSolver, factor, solve
+from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from tests.solver.methods.problem import Problem, problem
+
+
+def factored(case: Problem, linear: LinearSolver) -> int:
+    """How factoring the assembled system ended."""
+    work = case.work
+    return factor(linear, case.new.Y, work.past, case.c0, case.h, work.nodes, case.section, work.system)
 
 
 def eliminate(case: Problem) -> Array:
     """The increment by block elimination."""
     case.residual()
-    system = case.work.system
-    assert factor(case.new.Y, case.c0, case.h, case.work.nodes, case.section, system)
-    solve(system, 1.0, system.b, system.x)
+    system, linear = case.work.system, case.work.linear
+    assert factored(case, linear) == CONVERGED
+    solve(linear, system, 1.0, system.b, system.x)
     return system.x.copy()
 
 
@@ -47,9 +54,10 @@ def test_shooting_agrees_with_elimination_while_little_is_lost(diameter: float, 
     case = problem(60, diameter=diameter, dt=dt)
     x = eliminate(case)
     case.residual()
-    shot = np.zeros_like(x)
-    growth = shoot(case.new.Y, case.c0, case.h, case.work.nodes, case.section, case.work.system,
-                   np.zeros((61, 12, 7)), shot)  # fmt: skip
+    shooting, shot, system = Shooting.empty(60), np.zeros_like(x), case.work.system
+    assert factored(case, shooting) == CONVERGED
+    solve(shooting, system, 1.0, system.b, shot)
+    growth = float(shooting.growth[0])
     assert growth < 1e8
     # both err by rounding times the condition of the system; shooting by its growth besides
     bound = max(growth, np.linalg.cond(case.matrix())) * np.finfo(float).eps
@@ -59,9 +67,9 @@ def test_shooting_agrees_with_elimination_while_little_is_lost(diameter: float, 
 def test_shooting_tells_how_much_it_has_lost() -> None:
     case = problem(60, diameter=0.0005, dt=1e-4)
     case.residual()
-    growth = shoot(case.new.Y, case.c0, case.h, case.work.nodes, case.section, case.work.system,
-                   np.zeros((61, 12, 7)), np.zeros((61, 12)))  # fmt: skip
-    assert growth > LARGEST_GROWTH
+    shooting = Shooting.empty(60)
+    assert factored(case, shooting) == LOST_DIGITS
+    assert shooting.growth[0] > LARGEST_GROWTH
 
 
 def test_the_solve_with_contact_solves_the_whole_system() -> None:
@@ -70,7 +78,8 @@ def test_the_solve_with_contact_solves_the_whole_system() -> None:
     case = problem(24, contact=contact)
     expected = np.linalg.solve(case.matrix(), case.residual()).reshape(-1, 12)
     eliminate(case)
-    iterations = solve_with_contact(case.c0, case.h, case.work.system, case.contact.touch, case.work.coupling)
+    work = case.work
+    iterations = solve_with_contact(work.linear, case.c0, case.h, work.system, case.contact.touch, work.coupling)
     # the solve stops at a relative residual of 1e-6 in the contact forces
     assert np.abs(case.work.system.x - expected).max() <= 1e-4 * np.abs(expected).max()
     assert 0 < iterations <= 40
@@ -81,4 +90,4 @@ def test_a_system_that_leaves_a_motion_free_is_found_singular() -> None:
     case = problem(10, kinds=(nothing_held, nothing_held))
     case.residual()
     case.work.system.start[:, :] = 0.0
-    assert not factor(case.new.Y, case.c0, case.h, case.work.nodes, case.section, case.work.system)
+    assert factored(case, case.work.linear) == SINGULAR

@@ -9,17 +9,15 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import kernel
-from solver.methods.linear.augmented import take_auxiliary, wide_residuals
 from solver.methods.linear.box_contact import Coupling, add_contact, contact_fraction, solve_with_contact
-from solver.methods.linear.elimination import factor, solve
-from solver.methods.linear.shooting import LARGEST_GROWTH, shoot
+from solver.methods.linear.system import LinearSolver, System, factor, solve, solves_again, take_own_unknowns
 from solver.methods.schemes import Scheme, c0_of
 from solver.methods.space.box.ends import end_conditions
-from solver.methods.space.box.fields import KAPPA, F, Linear, Nodes, State
+from solver.methods.space.box.fields import KAPPA, F, Nodes, State
 from solver.methods.space.box.intervals import interval_residuals
 from solver.methods.space.box.nodes import balance_rotation, balance_translation, load_nodes, place_nodes
 from solver.methods.space.box.schemes import SpaceScheme
-from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR, STALLED
+from solver.methods.status import CONVERGED, STALLED
 from solver.methods.time.generalized_alpha.history import finish, history
 from solver.physics.contact.forces import touching
 from solver.physics.ends import Kinds
@@ -45,15 +43,14 @@ class EndValues(NamedTuple):
 
 
 class Scales(NamedTuple):
-    """Natural units: length L (m), stiffness EJ (N m^2); and whether the linear system is solved by shooting."""
+    """Natural units: length L (m), stiffness EJ (N m^2)."""
 
     length: float
     stiffness: float
-    shooting: bool
 
 
 @kernel
-def set_scales(scales: Scales, c0: float, system: Linear) -> None:
+def set_scales(scales: Scales, c0: float, system: System) -> None:
     """Scale unknowns to displacements / L, rotations, L kappa and F L^2/EJ, and the equations to match."""
     force = scales.stiffness / scales.length**2
     for i in range(3):
@@ -78,19 +75,17 @@ def balance_nodes(old: State, new: State, past: Array, c0: float, section: Secti
 
 @kernel
 def form_residuals(new: State, past: Array, c0: float, h: float, section: Section, ends: EndValues, nodes: Nodes,
-                   feedback: Array, system: Linear) -> None:  # fmt: skip
+                   feedback: Array, system: System) -> None:  # fmt: skip
     """Residuals of every equation at the iterate `new`, and the tangents of those of the ends."""
     interval_residuals(new.Y, past, c0, h, system.space, nodes, feedback, system.rows, system.b)
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
                    nodes, section, system.b_start, system.start)  # fmt: skip
     end_conditions(new.Y, len(new.Y) - 1, ends.end_kinds, ends.end, ends.end_dead, system.rows, system.columns,
                    nodes, section, system.b_end, system.end)  # fmt: skip
-    if len(system.wide.A) > 0:
-        wide_residuals(new.Y, past, c0, h, nodes, system)
 
 
 @kernel
-def increment_size(new: State, system: Linear, scales: Scales) -> float:
+def increment_size(new: State, system: System, scales: Scales) -> float:
     """The largest scaled increment, kappa and F relative to their own size where that exceeds 1."""
     kappa, force, size = 1.0, 1.0, 0.0
     for j in range(len(new.Y)):
@@ -112,32 +107,16 @@ class Work(NamedTuple):
     past: Array
     feedback: Array
     nodes: Nodes
-    system: Linear
-    marched: Array
+    system: System
+    linear: LinearSolver
     coupling: Coupling
 
     @classmethod
-    def empty(cls, intervals: int, shooting: bool, space: SpaceScheme, touching: bool) -> Work:
+    def empty(cls, intervals: int, space: SpaceScheme, linear: LinearSolver, touching: bool) -> Work:
         """Zeros for a rod of `intervals` intervals."""
         n = intervals + 1
-        marched = np.zeros((n if shooting else 1, 12, 7))
-        return cls(np.zeros((n, 15)), np.zeros((intervals, 3)), Nodes.empty(n), Linear.empty(intervals, space), marched,
+        return cls(np.zeros((n, 15)), np.zeros((intervals, 3)), Nodes.empty(n), System.empty(intervals, space), linear,
                    Coupling.empty(intervals if touching else 0))  # fmt: skip
-
-
-@kernel
-def solve_linear(Y: Array, c0: float, h: float, section: Section, scales: Scales, nodes: Nodes, system: Linear,
-                 marched: Array, contact: bool) -> int:  # fmt: skip
-    """Solve for Newton's increment of the iterate `Y` into the system's x, or, in contact, factor alone; returns how
-    that ended. Shooting leaves the tangents of contact out."""
-    if scales.shooting:
-        growth = shoot(Y, c0, h, nodes, section, system, marched, system.x)
-        return CONVERGED if growth < LARGEST_GROWTH else LOST_DIGITS
-    if not factor(Y, c0, h, nodes, section, system):
-        return SINGULAR
-    if not contact:
-        solve(system, 1.0, system.b, system.x)
-    return CONVERGED
 
 
 @kernel
@@ -161,11 +140,13 @@ def step(given: Reference, old: State, new: State, scheme: Scheme, dt: float, h:
         if contact:
             add_contact(new, nodes, h, touch)
         form_residuals(new, past, c0, h, section, ends, nodes, work.feedback, system)
-        status = solve_linear(new.Y, c0, h, section, scales, nodes, system, work.marched, contact)
+        status = factor(work.linear, new.Y, past, c0, h, nodes, section, system)
         if status != CONVERGED:
             return status, iteration
-        if contact and not scales.shooting:
-            solve_with_contact(c0, h, system, touch, work.coupling)
+        if contact and solves_again(work.linear):
+            solve_with_contact(work.linear, c0, h, system, touch, work.coupling)
+        else:
+            solve(work.linear, system, 1.0, system.b, system.x)
         size = increment_size(new, system, scales)
         if not size < LARGEST_INCREMENT:
             return STALLED, iteration
@@ -173,8 +154,7 @@ def step(given: Reference, old: State, new: State, scheme: Scheme, dt: float, h:
         for j in range(len(new.Y)):
             for k in range(12):
                 new.Y[j, k] -= fraction * system.columns[k] * system.x[j, k]
-        if len(system.wide.A) > 0:
-            take_auxiliary(fraction, h, system)
+        take_own_unknowns(work.linear, fraction, h, system)
         if size < TOLERANCE or (before > 0.0 and size < 1e-4 and size * size / before < TOLERANCE):
             place_nodes(old, new, past, c0, nodes)
             finish(old, new, scheme, dt, past)

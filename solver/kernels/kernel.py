@@ -89,7 +89,7 @@ def kernel(function: Function) -> Function:
 
 def inner(function: Function) -> Function:
     """Compile a function that only kernels call: without what Python would need to call it, which takes long."""
-    options = _OPTIONS | {"no_cpython_wrapper": True}
+    options = OPTIONS | {"no_cpython_wrapper": True}
     return numba.njit(**options)(function)  # type: ignore[no-any-return]
 
 

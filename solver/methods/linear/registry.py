@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from solver.methods.linear.augmented import Augmented
+from solver.methods.linear.banded import Banded
 from solver.methods.linear.elimination import Elimination
 from solver.methods.linear.shooting import Shooting
 from solver.methods.linear.system import LinearSolver
@@ -11,6 +12,7 @@ from solver.scene.numerics import Numerics
 LINEAR_SOLVERS: dict[str, type[LinearSolver]] = {
     "block_elimination": Elimination,
     "shooting": Shooting,
+    "banded": Banded,
 }
 
 

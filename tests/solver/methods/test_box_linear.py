@@ -7,7 +7,9 @@ import pytest
 
 from solver import Contact
 from solver.arrays import Array
+from solver.methods.linear.banded import Banded
 from solver.methods.linear.box_contact import solve_with_contact
+from solver.methods.linear.registry import LINEAR_SOLVERS
 from solver.methods.linear.shooting import LARGEST_GROWTH, Shooting
 from solver.methods.linear.system import LinearSolver, factor, solve
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
@@ -20,10 +22,10 @@ def factored(case: Problem, linear: LinearSolver) -> int:
     return factor(linear, case.new.Y, work.past, case.c0, case.h, work.nodes, case.section, work.system)
 
 
-def eliminate(case: Problem) -> Array:
-    """The increment by block elimination."""
+def eliminate(case: Problem, linear: LinearSolver | None = None) -> Array:
+    """The increment by block elimination, or another linear solver."""
     case.residual()
-    system, linear = case.work.system, case.work.linear
+    system, linear = case.work.system, linear or case.work.linear
     assert factored(case, linear) == CONVERGED
     solve(linear, system, 1.0, system.b, system.x)
     return system.x.copy()
@@ -40,6 +42,13 @@ def banded_error(case: Problem, x: Array) -> float:
 def test_block_elimination_is_backward_stable(diameter: float, dt: float) -> None:
     case = problem(60, diameter=diameter, dt=dt, damping=0.5)
     assert banded_error(case, eliminate(case)) <= 1e-14
+
+
+@pytest.mark.parametrize("diameter", [0.0005, 0.002, 0.01])
+@pytest.mark.parametrize("dt", [1e-4, 1e-2, 1e-1])
+def test_elimination_within_the_band_is_backward_stable(diameter: float, dt: float) -> None:
+    case = problem(60, diameter=diameter, dt=dt, damping=0.5)
+    assert banded_error(case, eliminate(case, Banded.empty(60))) <= 1e-14
 
 
 def test_generalized_alpha_in_space_is_solved_by_the_same_elimination() -> None:
@@ -72,14 +81,15 @@ def test_shooting_tells_how_much_it_has_lost() -> None:
     assert shooting.growth[0] > LARGEST_GROWTH
 
 
-def test_the_solve_with_contact_solves_the_whole_system() -> None:
+@pytest.mark.parametrize("solver", ["block_elimination", "banded"])
+def test_the_solve_with_contact_solves_the_whole_system(solver: str) -> None:
     contact = Contact(k1=1e-7, k2=3.0, k3=0.0, k4=1.0, aperture=np.radians(100), cutoff=0.013, skip=0.06,
                       spacing=0.004)  # fmt: skip
     case = problem(24, contact=contact)
     expected = np.linalg.solve(case.matrix(), case.residual()).reshape(-1, 12)
-    eliminate(case)
-    work = case.work
-    iterations = solve_with_contact(work.linear, case.c0, case.h, work.system, case.contact.touch, work.coupling)
+    work, linear = case.work, LINEAR_SOLVERS[solver].empty(24)
+    eliminate(case, linear)
+    iterations = solve_with_contact(linear, case.c0, case.h, work.system, case.contact.touch, work.coupling)
     # the solve stops at a relative residual of 1e-6 in the contact forces
     assert np.abs(case.work.system.x - expected).max() <= 1e-4 * np.abs(expected).max()
     assert 0 < iterations <= 40

@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
-from solver.kernels.lanes import LANES
+from solver.kernels.lanes import series
 from solver.kernels.scratch import scratch
 
 Quaternion = tuple[float, float, float, float]
@@ -22,6 +22,12 @@ Entries = tuple[float, float, float, float, float, float, float, float, float]
 def cross(x: float, y: float, z: float, u: float, v: float, w: float) -> tuple[float, float, float]:
     """The cross product of two vectors."""
     return y * w - z * v, z * u - x * w, x * v - y * u
+
+
+@inlined
+def dot(x: float, y: float, z: float, u: float, v: float, w: float) -> float:
+    """The scalar product of two vectors."""
+    return x * u + y * v + z * w
 
 
 @inlined
@@ -37,6 +43,13 @@ def entries(w: float, x: float, y: float, z: float) -> Entries:
     return (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),
             2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x),
             2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))  # fmt: skip
+
+
+@inlined
+def turned_back(R00: float, R01: float, R02: float, R10: float, R11: float, R12: float, R20: float, R21: float,
+                R22: float, x: float, y: float, z: float) -> tuple[float, float, float]:  # fmt: skip
+    """R^t times a vector, from the entries of R row by row."""
+    return R00 * x + R10 * y + R20 * z, R01 * x + R11 * y + R21 * z, R02 * x + R12 * y + R22 * z
 
 
 @inlined
@@ -57,15 +70,12 @@ def any_cosine_and_sinc(square: float) -> tuple[float, float]:
 
 
 @inlined
-def cosines_and_sincs(rows: Array, at: int) -> None:
-    """Of eight rotation vectors in rows (., 8) from `at` on: write cos(a/2), sin(a/2)/a and a^2 into the next three."""
-    for m in range(LANES):
-        square = rows[at, m] * rows[at, m] + rows[at + 1, m] * rows[at + 1, m] + rows[at + 2, m] * rows[at + 2, m]
-        rows[at + 3, m], rows[at + 4, m] = cosine_and_sinc(square)
-        rows[at + 5, m] = square
-    for m in range(LANES):
-        if rows[at + 5, m] >= 1.0:
-            rows[at + 3, m], rows[at + 4, m] = any_cosine_and_sinc(rows[at + 5, m])
+def is_beyond_a_radian(square: float) -> bool:
+    """Whether the series of a rotation by a, a^2 = `square`, are not exact."""
+    return square >= 1.0
+
+
+series(cosine_and_sinc, is_beyond_a_radian, any_cosine_and_sinc)
 
 
 @inlined
@@ -141,6 +151,9 @@ def any_jacobian(square: float) -> tuple[float, float]:
     return (1.0 - np.cos(angle)) / square, (angle - np.sin(angle)) / (square * angle)
 
 
+series(jacobian_series, is_beyond_a_radian, any_jacobian)
+
+
 @inlined
 def right_jacobian(x: float, y: float, z: float, first: float, second: float) -> Entries:
     """The entries of J_r, row by row: delta psi = J_r(theta) delta theta for theta = (x, y, z).
@@ -173,6 +186,15 @@ def any_angle_by_sine(square: float, cosine: float) -> float:
     sine = np.sqrt(square)
     scale: float = 2.0 * np.arctan2(sine, abs(cosine)) / sine
     return -scale if cosine < 0.0 else scale
+
+
+@inlined
+def is_large(square: float, cosine: float) -> bool:
+    """Whether `angle_by_sine` is not exact."""
+    return not is_small(square, cosine)
+
+
+series(angle_by_sine, is_large, any_angle_by_sine)
 
 
 @kernel

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any, no_type_check
+
 import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
 from solver import End, Numerics, Scene
 from solver.arrays import Array
-from solver.kernels.rotation import matrix_of, relative_rotation, turn
+from solver.kernels.lanes import abreast
+from solver.kernels.rotation import cross, matrix_of, relative_rotation, turn
 from solver.methods.box import BoxMethod
 from solver.methods.space.box.nodes import place_nodes
 from solver.methods.space.segments.joints import bend_joints
@@ -96,3 +99,48 @@ def test_a_steady_spin_is_guessed_to_go_on(intervals: int) -> None:
     state.quaternion[:] = turned(before.quaternion, before.omega)
     extrapolate(before, np.zeros((3, n, 3)), 1.0, state, SCHEME.nodes, np.eye(3), 0.5, method.stages.theta)
     assert method.stages.theta == pytest.approx(np.zeros((3, n, 3)), abs=1e-14)
+
+
+@abreast("a: 3, b: 3, weight: 1 -> moment: 3, swapped: 2x2, largest: max")
+@no_type_check
+def moment_of(a, b, weight, factor):
+    """Vectors number by number, by index, and by a star."""
+    sum_of_both = a + factor * b
+    lever = cross(*a, *sum_of_both)
+    return weight * lever, (b[1], b[0], a[1], a[0]), weight
+
+
+def test_a_function_of_one_line_becomes_a_kernel_of_all_lines() -> None:
+    rng = np.random.default_rng(1)
+    a, b, weight = rng.normal(size=(13, 3)), rng.normal(size=(13, 5)), rng.normal(size=13)
+    moment, swapped = np.empty((13, 3)), np.empty((13, 2, 2))
+    largest = moment_of(a, b, weight, 2.0, moment, swapped)
+    assert moment == pytest.approx(weight[:, None] * np.cross(a, 2.0 * b[:, :3]), abs=1e-14)
+    assert_array_equal(swapped, np.stack([b[:, 1::-1], a[:, 1::-1]], axis=1))
+    assert largest == max(weight.max(), 0.0)
+
+
+def test_a_generated_kernel_has_the_place_of_its_function_for_the_cache_on_disk() -> None:
+    loop = moment_of.py_func
+    assert (loop.__module__, loop.__qualname__, loop.__code__.co_filename) == (__name__, "moment_of", __file__)
+
+
+def looping(a: Any) -> Any:
+    for k in range(3):
+        a = a + k
+    return a
+
+
+def clashing(a: Any) -> Any:
+    a = a + 1.0
+    return a + a
+
+
+def uneven(a: Any, b: Any) -> Any:
+    return a + b
+
+
+@pytest.mark.parametrize("function", [looping, clashing, uneven])
+def test_what_cannot_be_written_eight_abreast_is_refused(function: Any) -> None:
+    with pytest.raises(SyntaxError, match="eight abreast"):
+        abreast("a: 3, b: 2 -> c: 3")(function)

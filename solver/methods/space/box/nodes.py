@@ -6,22 +6,13 @@ load's tangents become derivatives by the unknowns V and omega is said in `_take
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, no_type_check
 
 from solver.arrays import Array
 from solver.kernels.forms import forms_of
 from solver.kernels.kernel import inner, kernel
-from solver.kernels.lanes import LANES, gather, scatter
-from solver.kernels.rotation import (
-    any_jacobian,
-    cosines_and_sincs,
-    entries,
-    jacobian_series,
-    product,
-    right_jacobian,
-    unit,
-)
-from solver.kernels.scratch import scratch
+from solver.kernels.lanes import abreast
+from solver.kernels.rotation import cosine_and_sinc, dot, entries, jacobian_series, product, right_jacobian, unit
 from solver.kernels.vectors import add_matrix, add_product, add_vector, matrix, tangent_by_rotation, vector
 from solver.methods.space.box.fields import KAPPA, OMEGA, Nodes, State, V
 from solver.physics.elasticity import moment
@@ -31,45 +22,25 @@ from solver.physics.section import Section
 
 
 @kernel
-def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) -> None:
-    """Write positions and orientations of `new` and the nodes' R and J.
+@abreast("past: 6, Y: 6, start: 4 -> r: 3, quaternion: 4, R: 3x3, J: 3x3")
+@no_type_check
+def _place(past, Y, start, c0, rate):
+    """Position and orientation of a node, its R and J; `rate`: 1 / c0."""
+    moved = past + Y / c0
+    theta = moved[3], moved[4], moved[5]
+    square = dot(*theta, *theta)
+    cosine, sinc = cosine_and_sinc(square)
+    first, second = jacobian_series(square)
+    turned = product(*start, cosine, *(sinc * theta))
+    turned = unit(*turned)
+    J = right_jacobian(*theta, first, second)
+    return (moved[0], moved[1], moved[2]), turned, entries(*turned), rate * J
 
-    Eight abreast (see `lanes`), in rows from 0: r; 3: theta, cos, sinc, |theta|^2; 9: what J is of; 11: quaternion;
-    15: R; 24: J.
-    """
-    n, scale, rows = len(past), 1.0 / c0, scratch((33, LANES))
-    for first in range(0, n, LANES):
-        gather(past, 6, first, rows, 0)
-        gather(new.Y, 6, first, rows, 6)  # V and omega
-        for m in range(LANES):
-            for k in range(6):
-                rows[k, m] += rows[6 + k, m] / c0
-        cosines_and_sincs(rows, 3)
-        for m in range(LANES):
-            rows[9, m], rows[10, m] = jacobian_series(rows[8, m])
-        for m in range(LANES):
-            if rows[8, m] >= 1.0:
-                rows[9, m], rows[10, m] = any_jacobian(rows[8, m])
-        gather(old.quaternion, 4, first, rows, 11)
-        for m in range(LANES):
-            x, y, z, cosine, sinc = rows[3, m], rows[4, m], rows[5, m], rows[6, m], rows[7, m]
-            a, b, c, d = product(rows[11, m], rows[12, m], rows[13, m], rows[14, m],
-                                 cosine, sinc * x, sinc * y, sinc * z)  # fmt: skip
-            a, b, c, d = unit(a, b, c, d)
-            rows[11, m], rows[12, m], rows[13, m], rows[14, m] = a, b, c, d
-            R00, R01, R02, R10, R11, R12, R20, R21, R22 = entries(a, b, c, d)
-            J00, J01, J02, J10, J11, J12, J20, J21, J22 = right_jacobian(x, y, z, rows[9, m], rows[10, m])
-            rows[15, m], rows[16, m], rows[17, m] = R00, R01, R02
-            rows[18, m], rows[19, m], rows[20, m] = R10, R11, R12
-            rows[21, m], rows[22, m], rows[23, m] = R20, R21, R22
-            J00, J01, J02, J10, J11, J12 = scale * J00, scale * J01, scale * J02, scale * J10, scale * J11, scale * J12
-            rows[24, m], rows[25, m], rows[26, m] = J00, J01, J02
-            rows[27, m], rows[28, m], rows[29, m] = J10, J11, J12
-            rows[30, m], rows[31, m], rows[32, m] = scale * J20, scale * J21, scale * J22
-        scatter(rows, 0, 3, first, new.r)
-        scatter(rows, 11, 4, first, new.quaternion)
-        scatter(rows, 15, 9, first, nodes.R.reshape(n, 9))
-        scatter(rows, 24, 9, first, nodes.J.reshape(n, 9))
+
+@kernel
+def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) -> None:
+    """Write positions and orientations of `new` and the nodes' R and J."""
+    _place(past, new.Y, old.quaternion, c0, 1.0 / c0, new.r, new.quaternion, nodes.R, nodes.J)
 
 
 @kernel

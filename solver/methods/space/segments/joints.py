@@ -10,16 +10,18 @@ so the elastic energy turns the left neighbour by B q and the right one by -B^t 
 
 from __future__ import annotations
 
+from typing import no_type_check
+
 import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
-from solver.kernels.lanes import LANES, gather, scatter
-from solver.kernels.rotation import angle_by_sine, any_angle_by_sine, cross, is_small, product
+from solver.kernels.lanes import abreast, series
+from solver.kernels.rotation import angle_by_sine, cross, dot, product
 from solver.kernels.scratch import scratch
 from solver.kernels.vectors import scale
 from solver.methods.space.segments.chain import Chain
-from solver.physics.elasticity import tangent
+from solver.physics.elasticity import moment_of, tangent
 
 SMALL = 0.25
 """Square of the angle (rad) of a joint below which the series of b is exact to rounding."""
@@ -43,52 +45,45 @@ def _coefficient(square: float) -> tuple[float, float]:
     return b, slope
 
 
+@inlined
+def _beyond_series(square: float) -> bool:
+    """Whether the series of b is not exact."""
+    return square >= SMALL
+
+
+@kernel
+def _any_series(square: float) -> float:
+    """b of any joint but a straight one."""
+    b, _ = _coefficient(square)
+    return b
+
+
+series(_series, _beyond_series, _any_series)
+
+
+@abreast("left: 4, right: 4, K: 3x3, kappa0: 3, span: 1 -> bend: 3, moment: 3, on_left: 3, on_right: 3")
+@no_type_check
+def _bend(left, right, K, kappa0, span):
+    """Theta, q, B q and B^t q of a joint between two segments' orientations."""
+    cosine, x, y, z = product(left[0], -left[1], -left[2], -left[3], *right)
+    sine_square = x * x + y * y + z * z
+    scale = angle_by_sine(sine_square, cosine)
+    theta = scale * x, scale * y, scale * z
+    square = dot(*theta, *theta)
+    b = _series(square)
+    strain = theta / span - kappa0
+    q = moment_of(*K, *strain)
+    c = cross(*theta, *q)
+    d = cross(*theta, *c)
+    e = q + b * d
+    return theta, q, e + 0.5 * c, e - 0.5 * c
+
+
 @kernel
 def bend_joints(chain: Chain, quaternion: Array, bend: Array, moment: Array, left: Array, right: Array) -> None:
-    """Write Theta, q, B q and B^t q of all joints (N + 1, 3 each) for orientations `quaternion` (N + 2, 4).
-
-    Eight abreast (see `lanes`), in rows from 0: the two quaternions, then sin(a/2), cos(a/2), sin(a/2)^2, a / sin(a/2),
-    then Theta, its square and b; 5: K; 14: kappa0; 17: span; 18: q; 21, 24: B q and B^t q.
-    """
-    rows, span = scratch((27, LANES)), chain.span.reshape(-1, 1)
-    for first in range(0, len(bend), LANES):
-        gather(quaternion[:-1], 4, first, rows, 0)
-        gather(quaternion[1:], 4, first, rows, 4)
-        for m in range(LANES):
-            cosine, x, y, z = product(rows[0, m], -rows[1, m], -rows[2, m], -rows[3, m],
-                                      rows[4, m], rows[5, m], rows[6, m], rows[7, m])  # fmt: skip
-            square = x * x + y * y + z * z
-            rows[0, m], rows[1, m], rows[2, m], rows[3, m], rows[4, m] = x, y, z, cosine, square
-            rows[5, m] = angle_by_sine(square, cosine)
-        for m in range(LANES):
-            if not is_small(rows[4, m], rows[3, m]):
-                rows[5, m] = any_angle_by_sine(rows[4, m], rows[3, m])
-        for m in range(LANES):
-            x, y, z = rows[5, m] * rows[0, m], rows[5, m] * rows[1, m], rows[5, m] * rows[2, m]
-            square = x * x + y * y + z * z
-            rows[0, m], rows[1, m], rows[2, m], rows[3, m], rows[4, m] = x, y, z, square, _series(square)
-        for m in range(LANES):
-            if rows[3, m] >= SMALL:
-                rows[4, m], _ = _coefficient(rows[3, m])
-        gather(chain.elastic.K.reshape(len(bend), 9), 9, first, rows, 5)
-        gather(chain.elastic.kappa0, 3, first, rows, 14)
-        gather(span, 1, first, rows, 17)
-        for m in range(LANES):
-            x, y, z, b, per = rows[0, m], rows[1, m], rows[2, m], rows[4, m], rows[17, m]
-            u, v, w = x / per - rows[14, m], y / per - rows[15, m], z / per - rows[16, m]
-            q0, q1, q2 = (rows[5, m] * u + rows[6, m] * v + rows[7, m] * w,
-                          rows[8, m] * u + rows[9, m] * v + rows[10, m] * w,
-                          rows[11, m] * u + rows[12, m] * v + rows[13, m] * w)  # fmt: skip
-            c0, c1, c2 = cross(x, y, z, q0, q1, q2)
-            d0, d1, d2 = cross(x, y, z, c0, c1, c2)
-            e0, e1, e2 = q0 + b * d0, q1 + b * d1, q2 + b * d2
-            rows[18, m], rows[19, m], rows[20, m] = q0, q1, q2
-            rows[21, m], rows[22, m], rows[23, m] = e0 + 0.5 * c0, e1 + 0.5 * c1, e2 + 0.5 * c2
-            rows[24, m], rows[25, m], rows[26, m] = e0 - 0.5 * c0, e1 - 0.5 * c1, e2 - 0.5 * c2
-        scatter(rows, 0, 3, first, bend)
-        scatter(rows, 18, 3, first, moment)
-        scatter(rows, 21, 3, first, left)
-        scatter(rows, 24, 3, first, right)
+    """Write Theta, q, B q and B^t q of all joints (N + 1, 3 each) for orientations `quaternion` (N + 2, 4)."""
+    elastic = chain.elastic
+    _bend(quaternion[:-1], quaternion[1:], elastic.K, elastic.kappa0, chain.span, bend, moment, left, right)
 
 
 @kernel

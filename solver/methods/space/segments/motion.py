@@ -15,22 +15,14 @@ Positions follow from the tangents: each segment begins where the last one ends.
 
 from __future__ import annotations
 
+from typing import no_type_check
+
 import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
-from solver.kernels.lanes import LANES, gather, scatter
-from solver.kernels.rotation import (
-    angle_by_sine,
-    any_angle_by_sine,
-    cosines_and_sincs,
-    cross,
-    entries,
-    is_small,
-    product,
-    unit,
-)
-from solver.kernels.scratch import scratch
+from solver.kernels.lanes import abreast
+from solver.kernels.rotation import angle_by_sine, cosine_and_sinc, cross, dot, entries, product, turned_back, unit
 from solver.methods.space.segments.chain import STAGES, Stages, State
 
 LARGEST_TURN = 2.0
@@ -48,91 +40,65 @@ def _series(square: float) -> tuple[float, float, float, float]:
     return 0.5 * a, (1 / 6) * b, 0.5 * da, (1 / 6) * db
 
 
+@abreast("quaternion: 4 -> R: 3x3")
+@no_type_check
+def _matrices(quaternion):
+    """The rotation matrix of a segment."""
+    return entries(*quaternion)
+
+
+@abreast("omega: 3 -> quaternion: 4, R: 3x3")
+@no_type_check
+def _spin(omega, node, dt):
+    """exp([omega_n tau]) of a segment, tau = node dt."""
+    theta = omega * node * dt
+    square = dot(*theta, *theta)
+    cosine, sinc = cosine_and_sinc(square)
+    steady = unit(cosine, *(sinc * theta))
+    return steady, entries(*steady)
+
+
 @kernel
 def spin_steadily(state: State, nodes: Array, dt: float, stages: Stages) -> None:
-    """Write R_n, and exp([omega_n tau]) as quaternions and matrices at the stages, tau = nodes[i] dt.
+    """Write R_n, and exp([omega_n tau]) as quaternions and matrices at the stages, tau = nodes[i] dt."""
+    _matrices(state.quaternion, stages.start)
+    for i in range(STAGES):
+        _spin(state.omega, nodes[i], dt, stages.steady[i], stages.S[i])
 
-    Eight abreast (see `lanes`), in rows from 0: quaternion; 4: omega_n; 7: omega_n tau, cos, sinc, square; 10: matrix.
-    """
-    n, rows = len(state.omega), scratch((19, LANES))
-    for first in range(0, n, LANES):
-        gather(state.quaternion, 4, first, rows, 0)
-        gather(state.omega, 3, first, rows, 4)
-        for m in range(LANES):
-            (rows[10, m], rows[11, m], rows[12, m], rows[13, m], rows[14, m], rows[15, m], rows[16, m], rows[17, m],
-             rows[18, m]) = entries(rows[0, m], rows[1, m], rows[2, m], rows[3, m])  # fmt: skip
-        scatter(rows, 10, 9, first, stages.start.reshape(n, 9))
-        for i in range(STAGES):
-            for m in range(LANES):
-                rows[7, m], rows[8, m], rows[9, m] = (rows[4, m] * nodes[i] * dt, rows[5, m] * nodes[i] * dt,
-                                                      rows[6, m] * nodes[i] * dt)  # fmt: skip
-            cosines_and_sincs(rows, 7)
-            for m in range(LANES):
-                sinc = rows[11, m]
-                a, b, c, d = unit(rows[10, m], sinc * rows[7, m], sinc * rows[8, m], sinc * rows[9, m])
-                rows[0, m], rows[1, m], rows[2, m], rows[3, m] = a, b, c, d
-                (rows[10, m], rows[11, m], rows[12, m], rows[13, m], rows[14, m], rows[15, m], rows[16, m],
-                 rows[17, m], rows[18, m]) = entries(a, b, c, d)  # fmt: skip
-            scatter(rows, 0, 4, first, stages.steady[i])
-            scatter(rows, 10, 9, first, stages.S[i].reshape(n, 9))
+
+@abreast("theta: 3, theta_t: 3, theta_tt: 3, omega_n: 3, start: 4, steady: 4, S: 3x3"
+         " -> quaternion: 4, R: 3x3, omega: 3, alpha: 3, largest: max")  # fmt: skip
+@no_type_check
+def _turn(theta, theta_t, theta_tt, omega_n, start, steady, S):
+    """Orientation, omega and alpha of a segment, and |theta|^2."""
+    square = dot(*theta, *theta)
+    cosine, sinc = cosine_and_sinc(square)
+    turned = product(*start, cosine, *(sinc * theta))
+    turned = unit(*turned)
+    turned = product(*turned, *steady)
+    a, b, da, db = _series(square)
+    growth = 2.0 * dot(*theta, *theta_t)
+    a_t, b_t = growth * da, growth * db
+    # [theta] and [theta]^2 times the rates of theta, and [theta_t] [theta] theta_t
+    p = cross(*theta, *theta_t)
+    pp = cross(*theta, *p)
+    tp = cross(*theta_t, *p)
+    s = cross(*theta, *theta_tt)
+    ss = cross(*theta, *s)
+    f = theta_t - a * p + b * pp
+    g = theta_tt - a * s + b * ss - a_t * p + b_t * pp + b * tp
+    gained = turned_back(*S, *f)
+    rate = turned_back(*S, *g)
+    gyration = cross(*omega_n, *gained)
+    return turned, entries(*turned), gained + omega_n, rate - gyration, square
 
 
 @kernel
 def turn_segments(state: State, stages: Stages, i: int) -> float:
-    """Write quaternion, R, omega and alpha of stage i; return the largest |theta|^2.
-
-    Eight abreast (see `lanes`), in rows from 0: theta, cos, sinc, |theta|^2; 6: theta_t; 9: theta_tt; 12: omega_n;
-    15: the quaternion of R_n; 19, 23: the steady rotation's, and S; and what comes of them from 32 on.
-    """
-    n, largest, rows = stages.theta.shape[1], 0.0, scratch((51, LANES))
-    for first in range(0, n, LANES):
-        gather(stages.theta[i], 3, first, rows, 0)
-        gather(stages.theta_t[i], 3, first, rows, 6)
-        gather(stages.theta_tt[i], 3, first, rows, 9)
-        gather(state.omega, 3, first, rows, 12)
-        gather(state.quaternion, 4, first, rows, 15)
-        gather(stages.steady[i], 4, first, rows, 19)
-        gather(stages.S[i].reshape(n, 9), 9, first, rows, 23)
-        cosines_and_sincs(rows, 0)
-        for m in range(LANES):
-            x, y, z, cosine, sinc, square = rows[0, m], rows[1, m], rows[2, m], rows[3, m], rows[4, m], rows[5, m]
-            p, q, r, s = product(rows[15, m], rows[16, m], rows[17, m], rows[18, m],
-                                 cosine, sinc * x, sinc * y, sinc * z)  # fmt: skip
-            p, q, r, s = unit(p, q, r, s)
-            p, q, r, s = product(p, q, r, s, rows[19, m], rows[20, m], rows[21, m], rows[22, m])
-            rows[32, m], rows[33, m], rows[34, m], rows[35, m] = p, q, r, s
-            (rows[36, m], rows[37, m], rows[38, m], rows[39, m], rows[40, m], rows[41, m], rows[42, m], rows[43, m],
-             rows[44, m]) = entries(p, q, r, s)  # fmt: skip
-            a, b, da, db = _series(square)
-            v0, v1, v2 = rows[6, m], rows[7, m], rows[8, m]
-            w0, w1, w2 = rows[9, m], rows[10, m], rows[11, m]
-            growth = 2.0 * (x * v0 + y * v1 + z * v2)
-            da, db = growth * da, growth * db
-            p0, p1, p2 = cross(x, y, z, v0, v1, v2)
-            s0, s1, s2 = cross(x, y, z, w0, w1, w2)
-            m0, m1, m2 = cross(x, y, z, p0, p1, p2)
-            n0, n1, n2 = cross(v0, v1, v2, p0, p1, p2)
-            u0, u1, u2 = cross(x, y, z, s0, s1, s2)
-            f0, f1, f2 = v0 - a * p0 + b * m0, v1 - a * p1 + b * m1, v2 - a * p2 + b * m2
-            g0 = w0 - a * s0 + b * u0 - da * p0 + db * m0 + b * n0
-            g1 = w1 - a * s1 + b * u1 - da * p1 + db * m1 + b * n1
-            g2 = w2 - a * s2 + b * u2 - da * p2 + db * m2 + b * n2
-            o0, o1, o2 = rows[12, m], rows[13, m], rows[14, m]
-            d0 = rows[23, m] * f0 + rows[26, m] * f1 + rows[29, m] * f2
-            d1 = rows[24, m] * f0 + rows[27, m] * f1 + rows[30, m] * f2
-            d2 = rows[25, m] * f0 + rows[28, m] * f1 + rows[31, m] * f2
-            c0, c1, c2 = cross(o0, o1, o2, d0, d1, d2)
-            rows[45, m], rows[46, m], rows[47, m] = d0 + o0, d1 + o1, d2 + o2
-            rows[48, m] = rows[23, m] * g0 + rows[26, m] * g1 + rows[29, m] * g2 - c0
-            rows[49, m] = rows[24, m] * g0 + rows[27, m] * g1 + rows[30, m] * g2 - c1
-            rows[50, m] = rows[25, m] * g0 + rows[28, m] * g1 + rows[31, m] * g2 - c2
-        for m in range(LANES):
-            largest = max(largest, rows[5, m])
-        scatter(rows, 32, 4, first, stages.quaternion[i])
-        scatter(rows, 36, 9, first, stages.R[i].reshape(n, 9))
-        scatter(rows, 45, 3, first, stages.omega[i])
-        scatter(rows, 48, 3, first, stages.alpha[i])
-    return largest
+    """Write quaternion, R, omega and alpha of stage i; return the largest |theta|^2."""
+    return float(_turn(stages.theta[i], stages.theta_t[i], stages.theta_tt[i], state.omega, state.quaternion,
+                       stages.steady[i], stages.S[i], stages.quaternion[i], stages.R[i], stages.omega[i],
+                       stages.alpha[i]))  # fmt: skip
 
 
 @kernel
@@ -198,48 +164,37 @@ def differentiate(inverse: Array, dt: float, values: Array, rates: Array) -> Non
             out[m] = a * first[m] + b * second[m] + c * third[m]
 
 
+@abreast("start: 4, omega_before: 3, quaternion: 4, omega: 3, first: 3, second: 3, third: 3 -> ahead: 3")
+@no_type_check
+def _extrapolate(start, omega_before, quaternion, omega, first, second, third, u, v, w, on, back):
+    """theta of a segment: the departure that goes on, between the steady rotations of the last step and of the next."""
+    departed = u * first + v * second + w * third
+    square = dot(*departed, *departed)
+    cosine, sinc = cosine_and_sinc(square)
+    spun = on * omega_before
+    spun_square = dot(*spun, *spun)
+    spun_cosine, spun_sinc = cosine_and_sinc(spun_square)
+    unspun = -back * omega
+    unspun_square = dot(*unspun, *unspun)
+    unspun_cosine, unspun_sinc = cosine_and_sinc(unspun_square)
+    turned = product(*start, cosine, *(sinc * departed))
+    turned = unit(*turned)
+    turned = product(*turned, spun_cosine, *(spun_sinc * spun))
+    turned = unit(*turned)
+    turned = product(*turned, unspun_cosine, *(unspun_sinc * unspun))
+    turned = unit(*turned)
+    half_cosine, x, y, z = product(quaternion[0], -quaternion[1], -quaternion[2], -quaternion[3], *turned)
+    sine_square = x * x + y * y + z * z
+    scale = angle_by_sine(sine_square, half_cosine)
+    return x * scale, y * scale, z * scale
+
+
 @kernel
 def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Array, weights: Array, ratio: float,
                 ahead: Array) -> None:  # fmt: skip
     """Guess theta of a step of ratio dt into `ahead`: the last step's motion, `theta` from the state `before`, goes on.
-
-    Eight abreast (see `lanes`), in rows from 0: quaternion and omega before; 7: those of `state`; 15: theta ahead, then
-    departed; 24, 30: the steady rotations ahead, and back; 36: cos(a/2) of the departure, sin(a/2)^2, a / sin(a/2).
     """
-    n, rows = len(state.omega), scratch((39, LANES))
-    for first in range(0, n, LANES):
-        gather(before.quaternion, 4, first, rows, 0)
-        gather(before.omega, 3, first, rows, 4)
-        gather(state.quaternion, 4, first, rows, 7)
-        gather(state.omega, 3, first, rows, 11)
-        for i in range(STAGES):
-            gather(theta[0], 3, first, rows, 15)
-            gather(theta[1], 3, first, rows, 18)
-            gather(theta[2], 3, first, rows, 21)
-            back, on = dt * ratio * nodes[i], dt * (1.0 + ratio * nodes[i])
-            for m in range(LANES):
-                for k in range(3):
-                    x = weights[i, 0] * rows[15 + k, m] + weights[i, 1] * rows[18 + k, m]
-                    rows[15 + k, m] = x + weights[i, 2] * rows[21 + k, m]
-                    rows[24 + k, m] = on * rows[4 + k, m]
-                    rows[30 + k, m] = -back * rows[11 + k, m]
-            cosines_and_sincs(rows, 15)
-            cosines_and_sincs(rows, 24)
-            cosines_and_sincs(rows, 30)
-            for m in range(LANES):
-                a, b, c, d = rows[0, m], rows[1, m], rows[2, m], rows[3, m]
-                for at in (15, 24, 30):
-                    sinc = rows[at + 4, m]
-                    x, y, z = sinc * rows[at, m], sinc * rows[at + 1, m], sinc * rows[at + 2, m]
-                    a, b, c, d = product(a, b, c, d, rows[at + 3, m], x, y, z)
-                    a, b, c, d = unit(a, b, c, d)
-                rows[36, m], x, y, z = product(rows[7, m], -rows[8, m], -rows[9, m], -rows[10, m], a, b, c, d)
-                rows[15, m], rows[16, m], rows[17, m], rows[37, m] = x, y, z, x * x + y * y + z * z
-                rows[38, m] = angle_by_sine(rows[37, m], rows[36, m])
-            for m in range(LANES):
-                if not is_small(rows[37, m], rows[36, m]):
-                    rows[38, m] = any_angle_by_sine(rows[37, m], rows[36, m])
-            for m in range(LANES):
-                for k in range(3):
-                    rows[15 + k, m] *= rows[38, m]
-            scatter(rows, 15, 3, first, ahead[i])
+    for i in range(STAGES):
+        back, on = dt * ratio * nodes[i], dt * (1.0 + ratio * nodes[i])
+        _extrapolate(before.quaternion, before.omega, state.quaternion, state.omega, theta[0], theta[1], theta[2],
+                     weights[i, 0], weights[i, 1], weights[i, 2], on, back, ahead[i])  # fmt: skip

@@ -61,7 +61,7 @@ def moment(elastic: Elasticity, j: int, kappa: Any) -> Any:
 @inlined
 def moment_of(a: float, b: float, c: float, d: float, e: float, f: float, g: float, h: float, i: float,
               x: float, y: float, z: float) -> tuple[float, float, float]:  # fmt: skip
-    """The same of the entries of K, row by row, and of the strain kappa - kappa0: for what is computed eight abreast."""
+    """K strain, of the entries of K row by row: for what is computed eight abreast."""
     return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
 

@@ -8,19 +8,20 @@
     def square_area(shape: Square) -> float: ...
 
 The choice is made while the caller is compiled, by the type of its argument: it costs nothing, only what is chosen is
-compiled, and the caller is cached on disk as ever. (Kernels that are handed to kernels are not: numba gives each a name
-that no other process knows.)
+compiled, and the caller is cached on disk as ever. (Kernels that are handed to kernels, or stand in a closure, are not:
+numba gives each a name that no other process knows.)
 """
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from functools import wraps
 from typing import Any
 
 from numba.extending import overload
 
-from solver.kernels.kernel import OPTIONS, Function
+from solver.kernels.kernel import Function
 
 _VARIANTS: dict[Any, dict[type, Any]] = {}
 """By the general function: the kernel of each class of records."""
@@ -33,14 +34,16 @@ def dispatched(general: Function) -> Function:
     def call(record: Any, *arguments: Any) -> Any:
         return _VARIANTS[call].get(type(record), general)(record, *arguments)
 
-    def chosen(record: Any, *_: Any) -> Callable[..., Any]:
-        kernel = _VARIANTS[call].get(record.instance_class)
-        return general if kernel is None else kernel.py_func
-
-    _VARIANTS[call] = {}
-    # with a wrapper for Python: the variant itself is loaded from the same file of the cache
-    options = OPTIONS | {"no_cpython_wrapper": False}
-    overload(call, jit_options=options, strict=False)(chosen)  # type: ignore[arg-type]
+    parameters = ", ".join(inspect.signature(general).parameters)
+    first = parameters.split(",")[0]
+    source = (f"def choose({parameters}):\n"
+              f"    kernel = variants.get({first}.instance_class)\n"
+              f"    def forward({parameters}):\n"
+              f"        return kernel({parameters})\n"
+              f"    return forward if kernel else general\n")  # fmt: skip
+    names: dict[str, Any] = {"variants": _VARIANTS.setdefault(call, {}), "general": general}
+    exec(source, names)  # noqa: S102  # numba wants the parameters of an overload to be those of its function
+    overload(call, strict=False, inline="always")(names["choose"])
     return call  # type: ignore[return-value]
 
 
@@ -52,3 +55,29 @@ def variant(general: Callable[..., Any], record: type) -> Callable[[Function], F
         return kernel
 
     return enter
+
+
+def has_variant(general: Callable[..., Any], record: type) -> bool:
+    """Whether there is a kernel of its own for a class of records."""
+    return record in _VARIANTS[general]
+
+
+def for_each(general: Callable[..., Any], call: Callable[..., Any], having: Callable[[type], bool]) -> None:
+    """Let `general`(records, ...) call `call`(record, ...) for each record that is present in a NamedTuple of records.
+
+    A record has `present`; what is absent costs this one test, and a class that is not `having` nothing.
+    """
+    parameters = list(inspect.signature(general).parameters)
+    records, others = parameters[0], ", ".join(parameters[1:])
+
+    def each(record_type: Any) -> Any:
+        fields = zip(record_type.fields, record_type.types, strict=True)
+        body = [f"    if {records}.{name}.present:\n        call({records}.{name}, {others})\n"
+                for name, field in fields if having(field.instance_class)]  # fmt: skip
+        names: dict[str, Any] = {"call": call}
+        exec(f"def each({', '.join(parameters)}):\n{''.join(body) or '    pass'}", names)  # noqa: S102
+        return names["each"]
+
+    names: dict[str, Any] = {"each": each}
+    exec(f"def choose({', '.join(parameters)}):\n    return each({records})\n", names)  # noqa: S102
+    overload(general, strict=False)(names["choose"])

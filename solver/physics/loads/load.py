@@ -24,7 +24,7 @@ from numba import types
 from numba.extending import overload
 
 from solver.arrays import Array
-from solver.kernels.forms import for_each, forms_of, of_many_forms
+from solver.kernels.dispatch import dispatched, for_each, has_variant
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import dot
 from solver.physics.section import Section
@@ -103,60 +103,60 @@ class Samples:
     times: int
 
 
-@of_many_forms
+@dispatched
 def force(load: Any, i: int, j: int, at: Point) -> Any:
     """Force and moment per length at point j; None for a moment that the load never has."""
 
 
-@of_many_forms
+@dispatched
 def tangents(load: Any, i: int, j: int, at: Point) -> Any:
     """Their `Tangents`."""
 
 
-@of_many_forms
+@dispatched
 def prepare(load: Any, i: int, motion: Any, linearise: bool) -> Any:
     """What a load does once for all points, before it is asked for each."""
 
 
-@of_many_forms
+@dispatched
 def energy(load: Any, i: int, j: int, at: Point) -> float:
     """Potential energy per length at point j."""
     return 0.0
 
 
-@of_many_forms
+@dispatched
 def carrier(load: Any) -> Any:
     """The velocity of what the load's source moves with, None if it rests."""
 
 
-@of_many_forms
+@dispatched
 def entrained(load: Any, j: int, at: Point) -> Any:
     """The mass per length that the rod takes along at point j, its velocity, and the rate of that; None if there is
     none. Its kinetic energy is that of the added mass."""
 
 
-@of_many_forms
+@dispatched
 def conservative(load: Any, i: int, j: int, at: Point) -> Any:
     """The part of the force whose power is the fall of the load's `energy`; None if it has none beside another part."""
 
 
-@of_many_forms
+@dispatched
 def account(load: Any) -> int:
     """The load's `Account`."""
     return 0
 
 
-@of_many_forms
+@dispatched
 def point(motion: Any, j: int) -> Any:
     """Of a method's motion: its point j."""
 
 
-@of_many_forms
+@dispatched
 def take_force(balance: Any, j: int, at: Any, force: Any, moment: Any) -> None:
     """Of a method's balance: subtract force and moment per length at point j."""
 
 
-@of_many_forms
+@dispatched
 def take_tangents(balance: Any, j: int, at: Any, tangents: Any) -> None:
     """Of a method's balance: subtract their tangents, as derivatives by its own unknowns."""
 
@@ -267,17 +267,17 @@ def entrained_energy(taken: Any) -> float:
 
 def has_tangents(record: type) -> bool:
     """Whether a load's force depends on how the rod lies and moves."""
-    return record in forms_of(tangents)
+    return has_variant(tangents, record)
 
 
 def has_power(record: type) -> bool:
     """Whether the power of a load is anything but a change of its potential energy."""
-    return record in forms_of(account)
+    return has_variant(account, record)
 
 
 def has_energy(record: type) -> bool:
     """Whether a load stores energy, or entrains mass."""
-    return record in forms_of(energy) or record in forms_of(entrained)
+    return has_variant(energy, record) or has_variant(entrained, record)
 
 
 def _always(_record: type) -> bool:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.forms import for_each
+from solver.kernels.dispatch import for_each
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import matrices_of
 from solver.kernels.vectors import add, dot, plus

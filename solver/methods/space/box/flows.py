@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.forms import for_each
+from solver.kernels.dispatch import for_each
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.vectors import add_vector, dot, middle, plus, times, without

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple, no_type_check
 
 from solver.arrays import Array
-from solver.kernels.forms import forms_of
+from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import cosine_and_sinc, dot, entries, jacobian_series, product, right_jacobian, unit
@@ -105,6 +105,7 @@ class Unknowns(NamedTuple):
     c0: float
 
 
+@variant(point, Motion)
 @inner
 def _point(motion: Motion, j: int) -> Point:
     Y, past, c0, R = motion.Y, motion.past, motion.c0, matrix(motion.R, j)
@@ -114,12 +115,14 @@ def _point(motion: Motion, j: int) -> Point:
     return Point(vector(motion.r, j), velocity, acceleration, (R[0][2], R[1][2], R[2][2]), R, omega)
 
 
+@variant(take_force, Nodes)
 @inner
 def _take_force(nodes: Nodes, j: int, at: Point, lab: Any, material: Any) -> None:
     add_vector(-1.0, lab, nodes.P[j])
     add_vector(-1.0, material, nodes.W[j])
 
 
+@variant(take_tangents, Unknowns)
 @inner
 def _take_tangents(unknowns: Unknowns, j: int, at: Point, tangents: Tangents) -> None:
     """P_V = M c0 + C + K / c0 and P_w = E J, each with the sign of a load."""
@@ -132,6 +135,3 @@ def _take_tangents(unknowns: Unknowns, j: int, at: Point, tangents: Tangents) ->
     add_matrix(-1.0, tangents.moment_omega, unknowns.W_w[j])
 
 
-forms_of(point)[Motion] = _point
-forms_of(take_force)[Nodes] = _take_force
-forms_of(take_tangents)[Unknowns] = _take_tangents

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.forms import forms_of
+from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.vectors import tangent_by_rotation, vector
 from solver.methods.space.one_axis.axis import Plane
@@ -101,6 +101,7 @@ class LoadTangents(NamedTuple):
     h: float
 
 
+@variant(point, Motion)
 @inner
 def _point(motion: Motion, j: int) -> Point:
     T = vector(motion.T, j + 1)
@@ -108,6 +109,7 @@ def _point(motion: Motion, j: int) -> Point:
                  motion.omega[j + 1])  # fmt: skip
 
 
+@variant(take_force, Balance)
 @inner
 def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) -> None:
     balance.translation[j, 0] -= balance.h * force[0]
@@ -116,6 +118,7 @@ def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) ->
         balance.rotation[j + 1] -= balance.h * moment
 
 
+@variant(take_tangents, LoadTangents)
 @inner
 def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> None:
     """As in `space.segments.balances`."""
@@ -149,9 +152,6 @@ def _add_number(factor: float, x: Any, out: Array, j: int) -> None:
         out[j] += factor * x
 
 
-forms_of(point)[Motion] = _point
-forms_of(take_force)[Balance] = _take_force
-forms_of(take_tangents)[LoadTangents] = _take_tangents
 
 
 @inlined

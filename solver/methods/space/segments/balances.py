@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.forms import forms_of
+from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch
 from solver.kernels.vectors import add_matrix, add_vector, matrix, tangent_by_rotation, vector
@@ -108,6 +108,7 @@ class LoadTangents(NamedTuple):
     h: float
 
 
+@variant(point, Motion)
 @inner
 def _point(motion: Motion, j: int) -> Point:
     R = matrix(motion.R, j + 1)
@@ -115,12 +116,14 @@ def _point(motion: Motion, j: int) -> Point:
                  vector(motion.omega, j + 1))  # fmt: skip
 
 
+@variant(take_force, Balance)
 @inner
 def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) -> None:
     add_vector(-balance.h, force, balance.translation[j])
     add_vector(-balance.h, moment, balance.rotation[j + 1])
 
 
+@variant(take_tangents, LoadTangents)
 @inner
 def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> None:
     """M, C, K and spin of the balances, and E and stiff by rotation: the unknowns are r, whose rates are multiples of
@@ -135,9 +138,6 @@ def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> No
     add_matrix(-h, by.moment_omega, tangents.spin[j])
 
 
-forms_of(point)[Motion] = _point
-forms_of(take_force)[Balance] = _take_force
-forms_of(take_tangents)[LoadTangents] = _take_tangents
 
 
 @inlined

@@ -92,9 +92,14 @@ class RodSpec(Spec):
             direct["mass"] = curve(self.mass_per_length)
         if self.inertia_per_length is not None:
             direct["inertia"] = curves(self.inertia_per_length)
+        direct["laws"] = self._laws()
         if self.kappa0 != "initial":
             direct["kappa0"] = curves(self.kappa0)
         return replace(solid, **direct)
+
+    def _laws(self) -> tuple[object, ...]:
+        """Other laws of elasticity."""
+        return ()
 
     def _stiffness(self, solid: Rod) -> Profiles:
         """EJ1, EJ2, GJ3: those given directly, else those of the solid section."""

@@ -25,10 +25,12 @@ class Elasticity(NamedTuple):
 
 
 def elasticity_of(rod: Rod, s: Array) -> Elasticity:
-    """That of a rod at arclengths s (n,)."""
+    """That of a rod at arclengths s (n,). Raises TypeError for a law that is not known here."""
     K = np.zeros((len(s), 3, 3))
     for i, profile in enumerate(rod.stiffness):
         K[:, i, i] = profile(s)
+    for law in rod.laws:
+        raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
     return Elasticity(K, np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1)))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.scene.curve import Curve
-from solver.scene.view import NONE, View
+from solver.scene.view import NONE, View, answer
 
 Profile = Callable[[Array], Array]
 """A property along the rod: maps arclengths s (n,) in m to values (n,). A `Curve` is one."""
@@ -35,6 +35,8 @@ class Rod:
     inertia: Profiles
     diameter: Profile
     kappa0: Profiles = NO_CURVATURE
+    laws: tuple[object, ...] = ()
+    """Other laws of elasticity, of the kinds that `physics.elasticity` knows."""
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.length) and self.length > 0):
@@ -56,7 +58,7 @@ class Rod:
     def keeps(self, view: View) -> bool:
         """Whether the rod is free of stress along the motion about an axis."""
         kappa0 = np.stack([p(view.s) for p in self.kappa0], axis=1)
-        return bool(np.abs(kappa0[:, ~view.turns]).max() * self.length <= NONE)
+        return bool(np.abs(kappa0[:, ~view.turns]).max() * self.length <= NONE) and answer(self.laws, view)
 
     @classmethod
     def circular(

@@ -54,7 +54,7 @@ PAIRS = (
          ("schema_version", "name", "title", "description", "ends", "output", "fields")),
     Pair(Rod, (RodSpec,),
          {"stiffness": ("bending_stiffness", "torsional_stiffness", "youngs_modulus", "shear_modulus"),
-          "mass": ("mass_per_length", "density"), "inertia": ("inertia_per_length", "density")},
+          "mass": ("mass_per_length", "density"), "inertia": ("inertia_per_length", "density"), "laws": ()},
          (), "rod.", lambda scene: scene.rod, lambda scene, part: replace(scene, rod=part)),
     Pair(Initial, (Straight, Centreline), {"centreline": ("shape", "origin", "direction", "points")},
          (), "initial.", lambda scene: scene.initial, lambda scene, part: replace(scene, initial=part)),

@@ -21,7 +21,6 @@ from solver.physics.loads.registry import Loads
 from solver.physics.section import Section
 
 
-@kernel
 @abreast("past: 6, Y: 6, start: 4 -> r: 3, quaternion: 4, R: 3x3, J: 3x3")
 @no_type_check
 def _place(past, Y, start, c0, rate):

@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
+import numpy as np
 from pydantic import Discriminator, Tag, model_validator
 
 from service.cases.errors import refusal
 from service.cases.quantities import Positive, PositiveProfile, ProfileTriple, Spec, curve, curves
 from service.meaning import means
 from solver import Rod
+from solver.physics.elasticity import Coupling, elasticity_of
 from solver.scene.rod import Profiles
 
 
@@ -33,6 +35,9 @@ StressFree = Annotated[
 ]
 
 
+NO_COUPLING = (0.0, 0.0, 0.0)
+
+
 class RodSpec(Spec):
     """An inextensible rod of solid circular section, or with section properties given directly.
 
@@ -49,6 +54,11 @@ class RodSpec(Spec):
     ] = None
     bending_stiffness: Annotated[Bending | None, means("EJ: one profile, or the two EJ1 and EJ2", "N m²")] = None
     torsional_stiffness: Annotated[PositiveProfile | None, means("GJ: profile", "N m²")] = None
+    coupling: Annotated[
+        ProfileTriple,
+        means("K23, K13, K12: three profiles, what couples torsion with bending about a2 and about a1, and these two",
+              "N m²"),
+    ] = NO_COUPLING  # fmt: skip
     mass_per_length: Annotated[PositiveProfile | None, means("profile", "kg/m")] = None
     inertia_per_length: Annotated[
         tuple[PositiveProfile, PositiveProfile, PositiveProfile] | None,
@@ -78,7 +88,7 @@ class RodSpec(Spec):
     def build(self) -> Rod:
         """The solver's rod; `kappa0` "initial" is left to the scene, which knows the initial shape.
 
-        Raises ValueError where a property is not > 0.
+        Raises ValueError where a property is not > 0, or the stiffness is not positive definite.
         """
         solid = Rod.circular(
             self.length,
@@ -95,11 +105,16 @@ class RodSpec(Spec):
         direct["laws"] = self._laws()
         if self.kappa0 != "initial":
             direct["kappa0"] = curves(self.kappa0)
-        return replace(solid, **direct)
+        rod = replace(solid, **direct)
+        elasticity_of(rod, np.linspace(0.0, self.length, 201))
+        return rod
 
     def _laws(self) -> tuple[object, ...]:
         """Other laws of elasticity."""
-        return ()
+        if self.coupling == NO_COUPLING:
+            return ()
+        first, second, third = curves(self.coupling)
+        return (Coupling(first, second, third),)
 
     def _stiffness(self, solid: Rod) -> Profiles:
         """EJ1, EJ2, GJ3: those given directly, else those of the solid section."""

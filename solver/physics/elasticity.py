@@ -6,6 +6,7 @@ conserves. About one axis K and kappa0 are numbers.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +15,20 @@ from solver.arrays import Array
 from solver.kernels.kernel import inlined, inner
 from solver.kernels.vectors import minus, stiffness, transform
 from solver.kernels.vectors import vector as line
-from solver.scene.rod import Rod
+from solver.scene.curve import Curve
+from solver.scene.rod import Profile, Rod
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Bending coupled with torsion and with bending about the other axis: K23, K13, K12 (N m^2) along s.
+
+    DNA couples twist with its roll: K23 of Marko & Siggia, Macromolecules 27 (1994) 981, eq. (1).
+    """
+
+    K23: Profile = field(default_factory=lambda: Curve.constant(0.0))
+    K13: Profile = field(default_factory=lambda: Curve.constant(0.0))
+    K12: Profile = field(default_factory=lambda: Curve.constant(0.0))
 
 
 class Elasticity(NamedTuple):
@@ -30,7 +44,12 @@ def elasticity_of(rod: Rod, s: Array) -> Elasticity:
     for i, profile in enumerate(rod.stiffness):
         K[:, i, i] = profile(s)
     for law in rod.laws:
-        raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
+        if not isinstance(law, Coupling):
+            raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
+        for (i, j), profile in zip(((1, 2), (0, 2), (0, 1)), (law.K23, law.K13, law.K12), strict=True):
+            K[:, i, j] = K[:, j, i] = K[:, i, j] + profile(s)
+    if rod.laws and not np.linalg.eigvalsh(K).min() > 0.0:
+        raise ValueError("stiffness must be positive definite along the rod: the coupling must be smaller")
     return Elasticity(K, np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1)))
 
 

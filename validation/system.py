@@ -11,17 +11,20 @@ from scipy.sparse import coo_array, csr_array
 from solver.arrays import Array
 from solver.methods.box import BoxMethod
 from solver.methods.linear.shooting import Shooting
+from solver.methods.linear.stages import solve_stages
 from solver.methods.linear.system import LinearSolver, factor, solve
-from solver.methods.linear.tridiagonal import solve_stages
+from solver.methods.linear.tridiagonal import update
 from solver.methods.schemes import Scheme, c0_of
 from solver.methods.space.box.intervals import MEANS, interval_panel
 from solver.methods.space.box.schemes import BOX
 from solver.methods.space.segments.motion import move, spin_steadily
-from solver.methods.staggered import SCHEME, StaggeredMethod
+from solver.methods.space.segments.stages import evaluate
+from solver.methods.staggered import StaggeredMethod
 from solver.methods.status import CONVERGED
 from solver.methods.time.generalized_alpha.history import history
 from solver.methods.time.generalized_alpha.newton import balance_nodes, form_residuals, set_scales
-from solver.methods.time.radau.newton import evaluate, factor_both, transform_residuals, update
+from solver.methods.time.radau.method import SCHEME
+from solver.methods.time.radau.newton import factor_both, transform_residuals
 
 
 class NewtonSystem:
@@ -107,10 +110,10 @@ class StagesSystem:
     def move(self) -> None:
         """All that follows from the unknown rotations."""
         method = self._method
-        move(method.state, method.stages, SCHEME.inverse, self._dt, method.chain.h)
+        move(method.chain, method.state, method.stages, SCHEME.nodes, SCHEME.inverse, self._dt)
 
     def evaluate(self) -> None:
-        """Residuals."""
+        """Moments and residuals."""
         method = self._method
         evaluate(method.chain, method.applied.records, method.driven, method.stages, method.work.residuals)
 
@@ -123,11 +126,12 @@ class StagesSystem:
     def solve(self) -> None:
         """Both systems solved for the residuals."""
         method, work = self._method, self._method.work
-        transform_residuals(method.driven, SCHEME, method.stages, work.tangents.R, work.residuals, work.transformed)
+        transform_residuals(method.driven, SCHEME, method.stages, work.tangents, work.residuals,
+                            work.transformed)  # fmt: skip
         solve_stages(method.chain, method.driven, work.tangents, SCHEME.gamma / self._dt, SCHEME.pair / self._dt,
                      work.transformed, work.real, work.pair)  # fmt: skip
 
     def update(self) -> None:
         """A vanishing part of the increments added to the stages, at the cost of all."""
         method, work = self._method, self._method.work
-        update(method.chain, SCHEME, 1.0, 1e-30, method.stages, work.tangents, work.real, work.pair)
+        update(method.chain, SCHEME.transform, 1.0, 1e-30, method.stages, work.tangents, work.real, work.pair)

@@ -17,6 +17,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from functools import wraps
+from types import ModuleType
 from typing import Any
 
 from numba.extending import overload
@@ -28,7 +29,10 @@ _VARIANTS: dict[Any, dict[type, Any]] = {}
 
 
 def dispatched(general: Function) -> Function:
-    """Make `general` a function that calls the variant for its first argument, a NamedTuple; without one, itself."""
+    """Make `general` a function that calls the variant for its first argument, a NamedTuple or None; else itself.
+
+    One that raises NotImplementedError must have a variant: else the kernel that calls it is not compiled.
+    """
 
     @wraps(general)
     def call(record: Any, *arguments: Any) -> Any:
@@ -37,11 +41,13 @@ def dispatched(general: Function) -> Function:
     parameters = ", ".join(inspect.signature(general).parameters)
     first = parameters.split(",")[0]
     source = (f"def choose({parameters}):\n"
-              f"    kernel = variants.get({first}.instance_class)\n"
+              f"    kernel = variants.get(getattr({first}, 'instance_class', NoneType))\n"
               f"    def forward({parameters}):\n"
               f"        return kernel({parameters})\n"
               f"    return forward if kernel else general\n")  # fmt: skip
-    names: dict[str, Any] = {"variants": _VARIANTS.setdefault(call, {}), "general": general}
+    must_be_given = "NotImplementedError" in general.__code__.co_names
+    names: dict[str, Any] = {"variants": _VARIANTS.setdefault(call, {}), "NoneType": type(None),
+                             "general": None if must_be_given else general}  # fmt: skip
     exec(source, names)  # noqa: S102  # numba wants the parameters of an overload to be those of its function
     overload(call, strict=False, inline="always")(names["choose"])
     return call  # type: ignore[return-value]
@@ -55,6 +61,15 @@ def variant(general: Callable[..., Any], record: type) -> Callable[[Function], F
         return kernel
 
     return enter
+
+
+def enter(functions: ModuleType, records: tuple[type, ...], *modules: Any) -> None:
+    """Let the kernels in `modules` be the variants of the general functions of the same names, for all `records`."""
+    for name, general in vars(functions).items():
+        for module in modules:
+            if getattr(general, "__wrapped__", None) is not None and hasattr(module, name):
+                for record in records:
+                    variant(general, record)(getattr(module, name))
 
 
 def has_variant(general: Callable[..., Any], record: type) -> bool:

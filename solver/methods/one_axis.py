@@ -2,83 +2,56 @@
 
 from __future__ import annotations
 
-from math import inf, nan
-
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.handed import Handed
+from solver.kernels.dispatch import enter
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
-from solver.methods.space.one_axis.axis import Axis, Plane, directions
-from solver.methods.space.one_axis.balances import Driven, Motion
-from solver.methods.space.one_axis.chain import Chain, Stages, State, about_axis
+from solver.methods.linear import one_axis
+from solver.methods.linear import stages as linear
+from solver.methods.linear.one_axis import Factors
+from solver.methods.space import stages as space
+from solver.methods.space.one_axis import balances, motion, stages
+from solver.methods.space.one_axis.axis import Axis, Plane, axis_of, directions
+from solver.methods.space.one_axis.balances import Driven, Motion, Tangents
+from solver.methods.space.one_axis.chain import Chain, Residuals, Stages, State, about_axis
 from solver.methods.space.one_axis.energies import energies, stage_powers
 from solver.methods.space.one_axis.motion import extrapolate, follow_segments, largest_turn
 from solver.methods.space.segments.chain import STAGES
 from solver.methods.time.radau import tableau
-from solver.methods.time.radau.method import SCHEME, RadauMethod
-from solver.methods.time.radau.newton import Scheme
-from solver.methods.time.radau.one_axis import Work, estimate_error, step
+from solver.methods.time.radau.method import RadauMethod
 from solver.physics.ends import LOAD, DrivenEnd
-from solver.physics.loads.registry import LoadsAbout
 from solver.scene.scene import Scene
+
+for asked in (space, linear):
+    enter(asked, (Chain, State, Driven, Factors, type(None)), motion, balances, stages, one_axis)
 
 
 class OneAxisMethod(RadauMethod):
     """The rigid segments and the steps of `StaggeredMethod` for a scene that turns about `axis`: the same solution."""
 
+    touches = False
+    chain: Chain
+    state: State
+    stages: Stages
+    driven: Driven
+
     def __init__(self, scene: Scene, axis: Axis) -> None:
         super().__init__(scene, axis)
-        N = scene.numerics.intervals
         chain, state, offset = self._lay_out(scene)
         self._axis, self._offset = axis, offset[:, axis.index].copy()
-        self.chain, self.state = about_axis(axis, chain, state)
+        self._make_records(*about_axis(axis, chain, state), (Stages, Driven, Residuals, Tangents, Factors))
         self._origin = state.base[0] - axis.in_lab(self.state.base[0])
-        self.trial, self.stages, self.driven = State.empty(N), Stages.empty(N), Driven.empty()
-        self.work = Work.empty(N)
         self._condition_ends()
-        self._handed = Handed.over(*self._records)
-        self._last = (np.zeros_like(self.stages.theta), np.zeros(3, complex), np.zeros_like(self.stages.F))
-        self._centres = np.zeros((3, N), complex)
         follow_segments(self.chain, self._tangents(), self.state.omega, self.state.alpha, self.state.base,
                         *self._centres)  # fmt: skip
 
-    def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
-        """Try to go from t to t + dt; how it ended and the Newton iterations. With `consistent`, from rest."""
-        self._drive(t, dt)
-        if consistent:
-            self.stages.theta[:], self.stages.shift[:], self.stages.F[:] = 0.0, 0.0, 0.0
-        else:
-            self._guess(dt)
-        return self._solve_anew(dt, consistent)
-
-    def refusal(self) -> str:
-        """Nothing: there is no contact."""
-        return ""
-
-    def take_step(self, t: float, dt: float) -> Array:
-        """Make the trial the state; return the energy (4,) in J that flowed in the step.
-
-        From the ends, from the loads, dissipated, none into contact. By Radau's own quadrature, of order 5.
-        """
-        stages, weights = self.stages, tableau.A[2] * dt
-        stage_powers(self._handed.reference, self._powers)
-        swing = 0.5j * self.chain.h * self.chain.swing * stages.T[:, -2] * stages.omega[:, -2]
-        for end, frame, V in ((self.start, 0, stages.base[:, 1]), (self.end, -1, stages.V[:, -1] + swing)):
-            if end.in_lab:
-                shift = self._axis.in_lab(weights @ V)
-            else:
-                shift = self._axis.in_material(weights @ (V / stages.T[:, frame]))
-            end.follow(shift, self._axis.about(weights @ stages.omega[:, frame]))
-        ended = (stages.phi, stages.omega, stages.alpha, stages.base, stages.F)
-        for mine, series in zip((*self.trial, *self._centres), (*ended, stages.r, stages.V, stages.A), strict=True):
-            mine[:] = series[-1]
-        self.state, self.trial = self.trial, self.state
-        self._last_dt = dt
-        for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
-            kept[:] = now
-        return np.append(weights @ self._powers, 0.0)
+    @classmethod
+    def of(cls, scene: Scene) -> OneAxisMethod | None:
+        """The method for a scene, if that turns about one axis."""
+        axis = axis_of(scene)
+        return None if axis is None else cls(scene, axis)
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
@@ -92,10 +65,6 @@ class OneAxisMethod(RadauMethod):
     def turn(self) -> float:
         """The largest rotation (rad) of the trial within a joint."""
         return float(largest_turn(self.stages.phi[-1]))
-
-    def step_limit(self) -> float:
-        """None."""
-        return inf
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
@@ -120,38 +89,6 @@ class OneAxisMethod(RadauMethod):
         turned = float(self.state.phi[-1] - self.state.phi[0])
         return (1.0 - self.chain.swing) * turned / (2 * np.pi)
 
-    def smallest_gap(self) -> float:
-        """NaN: there is no contact."""
-        return nan
-
-    def pressing(self) -> int:
-        """None."""
-        return 0
-
-    def compile(self) -> None:
-        """Have every kernel compiled that a run may need."""
-        self._last_dt = 1.0
-        self._guess(1.0)
-        self.relative_increment(1.0)
-
-    @property
-    def _records(self) -> tuple[Chain, LoadsAbout, Driven, Scheme, Stages, Work]:
-        """What the kernels of a step get by reference."""
-        return self.chain, self.applied.records, self.driven, SCHEME, self.stages, self.work
-
-    def _solve(self, dt: float) -> tuple[int, int]:
-        """Iterate on the stages from where they are; how it ended and the iterations."""
-        self._handed = self._handed.again(*self._records)
-        status, iterations = step(self._handed.reference, dt, self._unit, self._newton_part, self.state)
-        return int(status), int(iterations)
-
-    def _errors(self, dt: float) -> tuple[float, float, float, float]:
-        """Of the trial: rotation (rad), error and motion; position (m) likewise."""
-        errors: tuple[float, float, float, float] = estimate_error(
-            self._handed.reference, dt, self.state, self._centres
-        )
-        return errors
-
     def _tangents(self) -> Plane:
         """T (N + 2,) of the orientations."""
         return directions(self.chain.swing * self.state.phi)
@@ -163,31 +100,25 @@ class OneAxisMethod(RadauMethod):
         r, V = self._centres[0] + 0.5 * h * T, self._centres[1] + swing
         return np.append(self.state.base[0], r), np.append(self.state.base[1], V)
 
-    def _guess(self, dt: float) -> None:
-        """The motion of the last step goes on; after a start, that of the state."""
-        stages, state = self.stages, self.state
-        if self._last_dt > 0.0:
-            ratio = dt / self._last_dt
-            weights = tableau.extrapolation(ratio)
-            theta, shift, force = self._last
-            departed = np.matmul(weights, theta, out=stages.theta_t)  # which is not known yet
-            extrapolate(self.trial, state, self._last_dt, tableau.C, dt, departed, stages.theta)
-            stages.shift[:] = weights @ shift - shift[2]
-            np.matmul(tableau.quadratic_extrapolation(ratio), force, out=stages.F)
-            return
-        tau = tableau.C * dt
-        stages.theta[:] = 0.5 * tau[:, None] ** 2 * state.alpha
-        stages.shift[:] = tau * state.base[1] + 0.5 * tau**2 * state.base[2]
-        stages.F[:] = state.F
+    def _follow_ends(self, weights: Array) -> None:
+        stages, axis = self.stages, self._axis
+        stage_powers(self._handed.reference, self._powers)
+        swing = 0.5j * self.chain.h * self.chain.swing * stages.T[:, -2] * stages.omega[:, -2]
+        for end, frame, V in ((self.start, 0, stages.base[:, 1]), (self.end, -1, stages.V[:, -1] + swing)):
+            if end.in_lab:
+                shift = axis.in_lab(weights @ V)
+            else:
+                shift = axis.in_material(weights @ (V / stages.T[:, frame]))
+            end.follow(shift, axis.about(weights @ stages.omega[:, frame]))
 
-    def _drive(self, t: float, dt: float) -> None:
-        """Write what is given at the stages of a step."""
+    def _go_on(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
+        departed = np.matmul(weights, theta, out=self.stages.theta_t)  # which is not known yet
+        extrapolate(self.trial, self.state, self._last_dt, tableau.C, dt, departed, self.stages.theta)
+
+    def _drive_end(self, i: int, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
         driven, axis = self.driven, self._axis
-        for i, c in enumerate(tableau.C):
-            self.applied.set_time(t + c * dt, i)
-            for side, end, values, dead in self._ends_at(t, c * dt, dt):
-                driven.values[i, side] = values[self._components(end)]
-                driven.dead[i, side], driven.couple[i, side] = dead[:3] @ axis.lab, dead[3:] @ axis.n
+        driven.values[i, side] = values[self._components(end)]
+        driven.dead[i, side], driven.couple[i, side] = dead[:3] @ axis.lab, dead[3:] @ axis.n
 
     def _components(self, end: DrivenEnd) -> list[int]:
         """Which of an end's six conditions are not fulfilled by themselves."""

@@ -17,7 +17,8 @@ from solver.kernels.kernel import inlined, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.linear.tridiagonal import invert3
 from solver.methods.space.one_axis.balances import Driven, Tangents
-from solver.methods.space.one_axis.chain import Chain, Residuals
+from solver.methods.space.one_axis.chain import Chain, Residuals, Stages
+from solver.methods.space.segments.chain import STAGES
 from solver.physics.elasticity import tangent
 from solver.physics.ends import LOAD, LOAD_LAB, RATE
 
@@ -25,7 +26,7 @@ from solver.physics.ends import LOAD, LOAD_LAB, RATE
 class Factors(NamedTuple):
     """The factored system: `X` (N, 2, 2), `Y` = X E (N, 2); `lower`, `inverse` of the reduced diagonal, `upper` =
     inverse times the blocks above (N + 2, 3, 3); right-hand side and solution `x` (N + 2, 3); `moved` (N, 2):
-    displacements of the centres; `load` (N, 2): the residuals of translation."""
+    displacements of the centres; `load` (N, 2), `ends` (2, 2): residuals of translation and of the ends' conditions."""
 
     X: Array
     Y: Array
@@ -35,12 +36,14 @@ class Factors(NamedTuple):
     x: Array
     moved: Array
     load: Array
+    ends: Array
 
     @classmethod
     def empty(cls, intervals: int, dtype: type) -> Factors:
         """Zeros for N = `intervals`."""
         N = intervals
-        shapes = ((N, 2, 2), (N, 2), (N + 2, 3, 3), (N + 2, 3, 3), (N + 2, 3, 3), (N + 2, 3), (N, 2), (N, 2))
+        shapes = ((N, 2, 2), (N, 2), (N + 2, 3, 3), (N + 2, 3, 3), (N + 2, 3, 3), (N + 2, 3), (N, 2), (N, 2),
+                  (2, 2))  # fmt: skip
         return cls(*(np.zeros(shape, dtype) for shape in shapes))
 
 
@@ -168,10 +171,9 @@ def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex
 
 
 @kernel
-def load_rows(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, ends: Array,
-              factors: Factors) -> None:  # fmt: skip
-    """Complete the right-hand side x, where rotation is with minus, and `load`, for the ends' residuals (2, 2)."""
-    N, X, b, load = len(chain.mass), factors.X, factors.x, factors.load
+def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
+    """Write the rows of F into x and condition the ends; rotation, with minus, is there."""
+    N, X, b, load, ends = len(chain.mass), factors.X, factors.x, factors.load, factors.ends
     for side in range(2):
         frame = 0 if side == 0 else N + 1
         if driven.kinds[side, 2] == RATE:
@@ -217,28 +219,36 @@ def solve(factors: Factors) -> None:
 
 
 @kernel
-def solve_real(chain: Chain, driven: Driven, tangents: Tangents, gamma: float, rows: Residuals,
-               factors: Factors) -> None:  # fmt: skip
-    """Solve the real system for the first of the transformed residuals."""
-    for a in range(rows.rotation.shape[1]):
-        factors.x[a, 0] = -rows.rotation[0, a]
-    factors.load[:] = rows.translation[0]
-    load_rows(chain, driven, tangents, gamma, rows.ends[0], factors)
-    solve(factors)
+def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transform: Array, back: Array, inverse: Array,
+                       gamma: float, lam: complex, dt: float, residuals: Residuals, real: Factors, pair: Factors,
+                       touch: None, coupling: None, first: bool) -> float:  # fmt: skip
+    """There is no contact."""
+    return 1.0
 
 
 @kernel
-def solve_pair(chain: Chain, driven: Driven, tangents: Tangents, pair: complex, rows: Residuals,
-               factors: Factors) -> None:  # fmt: skip
-    """Solve the complex system for the second and third of the transformed residuals."""
-    for a in range(rows.rotation.shape[1]):
-        factors.x[a, 0] = complex(-rows.rotation[1, a], -rows.rotation[2, a])
-    for j in range(rows.translation.shape[1]):
-        for k in range(2):
-            factors.load[j, k] = complex(rows.translation[1, j, k], rows.translation[2, j, k])
-    ends = scratch_like((2, 2), factors.x)
-    for side in range(2):
-        for k in range(2):
-            ends[side, k] = complex(rows.ends[1, side, k], rows.ends[2, side, k])
-    load_rows(chain, driven, tangents, pair, ends, factors)
-    solve(factors)
+def update(chain: Chain, transform: Array, unit: float, fraction: float, stages: Stages, tangents: Tangents,
+           real: Factors, pair: Factors) -> tuple[float, float]:  # fmt: skip
+    """Add the increments, all of them, to the stages; return their size: rotation (rad), force by the largest one."""
+    T, x, z, half = transform, real.x, pair.x, 0.5 * chain.h * chain.swing
+    turned, forced, largest = 0.0, 0.0, unit
+    for i in range(STAGES):
+        t0, t1, t2 = T[i, 0], T[i, 1], T[i, 2]
+        for a in range(len(x)):
+            psi = t0 * x[a, 0] + t1 * z[a, 0].real + t2 * z[a, 0].imag
+            if not np.isfinite(psi):
+                return np.inf, np.inf
+            stages.theta[i, a] += psi
+            turned = max(turned, abs(psi))
+        for a in range(len(x) - 1):
+            change = complex(t0 * x[a, 1] + t1 * z[a, 1].real + t2 * z[a, 1].imag,
+                             t0 * x[a, 2] + t1 * z[a, 2].real + t2 * z[a, 2].imag)  # fmt: skip
+            stages.F[i, a] += change
+            forced = max(forced, abs(change.real), abs(change.imag))
+            largest = max(largest, abs(stages.F[i, a].real), abs(stages.F[i, a].imag))
+        # the start lies half a segment before the first centre
+        psi = t0 * x[1, 0] + t1 * z[1, 0].real + t2 * z[1, 0].imag
+        p, q = real.moved[0], pair.moved[0]
+        moved = complex(t0 * p[0] + t1 * q[0].real + t2 * q[0].imag, t0 * p[1] + t1 * q[1].real + t2 * q[1].imag)
+        stages.shift[i] += moved - half * psi * 1j * tangents.T[1]
+    return turned, forced / largest

@@ -13,7 +13,8 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.methods.linear.krylov import KEPT, Krylov, begin, combine, follow, set_out, unsolved
-from solver.methods.linear.tridiagonal import Factors, node_moves, solve_stages
+from solver.methods.linear.stages import solve_stages
+from solver.methods.linear.tridiagonal import Factors, node_moves
 from solver.methods.space.segments.balances import Driven, Tangents, share
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.physics.contact.forces import Touch, allowed_fraction, change_forces, move_points, press
@@ -138,15 +139,18 @@ def _change(response: Array, inverse: Array, dt: float, touch: Touch, coupling: 
 @kernel
 def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transform: Array, back: Array, inverse: Array,
                        gamma: float, lam: complex, dt: float, residuals: Residuals, real: Factors, pair: Factors,
-                       touch: Touch, coupling: Coupling) -> float:  # fmt: skip
+                       touch: Touch, coupling: Coupling, first: bool) -> float:  # fmt: skip
     """Solve for the increments that belong to the transformed `residuals`, with the tangents of contact.
 
-    The directions of the step's earlier solves come first: their responses are known. Returns how much of the increment
+    The directions of the step's earlier solves, of which the `first` has none, come first: their responses are known.
+    Returns how much of the increment
     may be taken without using up a pair's distance.
     """
     near, krylov, rows, responses = touch.pairs.members, coupling.krylov, coupling.rows, coupling.responses
     size = 3 * STAGES * near.counts[1]
     used = 0
+    if first:
+        coupling.known[0] = 0
     solve_stages(chain, driven, tangents, gamma, lam, residuals, real, pair)
     _respond(chain, tangents, transform, real, pair, near, krylov.z)
     _change(krylov.z, inverse, dt, touch, coupling, krylov.y)

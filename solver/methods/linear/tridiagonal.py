@@ -19,14 +19,14 @@ from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.space.segments.balances import Driven, Tangents
-from solver.methods.space.segments.chain import Chain, Residuals
+from solver.methods.space.segments.chain import STAGES, Chain, Stages
 from solver.physics.ends import LOAD, RATE, RATE_LAB
 
 
 class Factors(NamedTuple):
     """The factored system: `X`, `Y` = X E (N, 3, 3); `lower`, `inverse` of the reduced diagonal, `upper` = inverse
     times the blocks above (N + 2, 6, 6); right-hand side and solution `x` (N + 2, 6); `moved` (N, 3): displacements of
-    the centres; `load` (N, 3): the residuals of translation."""
+    the centres; `load` (N, 3), `ends` (2, 3): the residuals of translation and of the ends' conditions."""
 
     X: Array
     Y: Array
@@ -36,12 +36,14 @@ class Factors(NamedTuple):
     x: Array
     moved: Array
     load: Array
+    ends: Array
 
     @classmethod
     def empty(cls, intervals: int, dtype: type) -> Factors:
         """Zeros for N = `intervals`."""
         N = intervals
-        shapes = ((N, 3, 3), (N, 3, 3), (N + 2, 6, 6), (N + 2, 6, 6), (N + 2, 6, 6), (N + 2, 6), (N, 3), (N, 3))
+        shapes = ((N, 3, 3), (N, 3, 3), (N + 2, 6, 6), (N + 2, 6, 6), (N + 2, 6, 6), (N + 2, 6), (N, 3), (N, 3),
+                  (2, 3))  # fmt: skip
         return cls(*(np.zeros(shape, dtype) for shape in shapes))
 
 
@@ -273,24 +275,10 @@ def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex
 
 
 @kernel
-def load_rows(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, rotation: Array,
-              translation: Array, ends: Array, factors: Factors) -> None:  # fmt: skip
-    """Write the right-hand side for residuals `rotation` (N + 2, 3), `translation` (N, 3), `ends` (2, 3) into x."""
-    for a in range(len(rotation)):
-        for k in range(3):
-            factors.x[a, k] = -rotation[a, k]
-    for j in range(len(translation)):
-        for k in range(3):
-            factors.load[j, k] = translation[j, k]
-    _complete_rows(chain, driven, tangents, eigenvalue, ends, factors)
-
-
-@kernel
-def _complete_rows(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, ends: Array,
-                   factors: Factors) -> None:  # fmt: skip
-    """Write the rows of F into x and condition the ends; rotation, with minus, is there, and translation in `load`."""
+def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
+    """Write the rows of F into x and condition the ends; rotation, with minus, is there."""
     N = len(chain.mass)
-    X, b, load = factors.X, factors.x, factors.load
+    X, b, load, ends = factors.X, factors.x, factors.load, factors.ends
     for side in range(2):
         frame = 0 if side == 0 else N + 1
         for k in range(3):
@@ -330,7 +318,10 @@ def _row(A: Array, k: int, x: tuple) -> complex:  # type: ignore[type-arg]
 
 @kernel
 def solve(factors: Factors) -> None:
-    """Replace the right-hand side in x by the solution. (Tuples stay in registers, which arrays do not.)"""
+    """Replace the right-hand side in x by the solution, and write the displacements of the centres.
+
+    Tuples stay in registers, which arrays do not.
+    """
     x, n = factors.x, len(factors.x)
     zero = 0.0 * x[0, 0]
     last = (zero, zero, zero, zero, zero, zero)
@@ -348,10 +339,11 @@ def solve(factors: Factors) -> None:
                 b[3] - _row(upper, 3, last), b[4] - _row(upper, 4, last), b[5] - _row(upper, 5, last))  # fmt: skip
         for k in range(6):
             b[k] = last[k]
+    _displace(factors)
 
 
 @kernel
-def displace(factors: Factors) -> None:
+def _displace(factors: Factors) -> None:
     """Write the displacements of the centres that belong to the solution."""
     x, X, Y = factors.x, factors.X, factors.Y
     for j in range(len(factors.moved)):
@@ -372,22 +364,42 @@ def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k:
 
 
 @kernel
-def solve_stages(chain: Chain, driven: Driven, tangents: Tangents, gamma: float, pair: complex, rows: Residuals,
-                 real_factors: Factors, pair_factors: Factors) -> None:  # fmt: skip
-    """Solve both systems for the transformed residuals `rows`."""
-    load_rows(chain, driven, tangents, gamma, rows.rotation[0], rows.translation[0], rows.ends[0], real_factors)
-    solve(real_factors)
-    displace(real_factors)
-    for a in range(rows.rotation.shape[1]):
+def update(chain: Chain, transform: Array, unit: float, fraction: float, stages: Stages, tangents: Tangents,
+           real: Factors, pair: Factors) -> tuple[float, float]:  # fmt: skip
+    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one."""
+    T, frame = transform, tangents.R
+    turned, forced, largest = 0.0, 0.0, unit
+    for i in range(STAGES):
+        t0, t1, t2 = fraction * T[i, 0], fraction * T[i, 1], fraction * T[i, 2]
+        for a in range(stages.theta.shape[1]):
+            x, z = real.x[a], pair.x[a]
+            c0 = t0 * x[0] + t1 * z[0].real + t2 * z[0].imag
+            c1 = t0 * x[1] + t1 * z[1].real + t2 * z[1].imag
+            c2 = t0 * x[2] + t1 * z[2].real + t2 * z[2].imag
+            Q, R = frame[a], stages.start[a]
+            u = Q[0, 0] * c0 + Q[0, 1] * c1 + Q[0, 2] * c2
+            v = Q[1, 0] * c0 + Q[1, 1] * c1 + Q[1, 2] * c2
+            w = Q[2, 0] * c0 + Q[2, 1] * c1 + Q[2, 2] * c2
+            p0 = R[0, 0] * u + R[1, 0] * v + R[2, 0] * w
+            p1 = R[0, 1] * u + R[1, 1] * v + R[2, 1] * w
+            p2 = R[0, 2] * u + R[1, 2] * v + R[2, 2] * w
+            theta = stages.theta[i, a]
+            u, v, w = theta[0], theta[1], theta[2]
+            # a rotation by p in the frame of R_n changes theta by p - theta x p / 2 + ...
+            c0, c1, c2 = v * p2 - w * p1, w * p0 - u * p2, u * p1 - v * p0
+            theta[0] += p0 - 0.5 * c0 + (1 / 12) * (v * c2 - w * c1)
+            theta[1] += p1 - 0.5 * c1 + (1 / 12) * (w * c0 - u * c2)
+            theta[2] += p2 - 0.5 * c2 + (1 / 12) * (u * c1 - v * c0)
+            turned = max(turned, abs(p0), abs(p1), abs(p2))
+            if not np.isfinite(p0):
+                return np.inf, np.inf
+        for a in range(stages.F.shape[1]):
+            for k in range(3):
+                change = t0 * real.x[a, 3 + k] + t1 * pair.x[a, 3 + k].real + t2 * pair.x[a, 3 + k].imag
+                stages.F[i, a, k] += change
+                forced = max(forced, abs(change))
+                largest = max(largest, abs(stages.F[i, a, k]))
         for k in range(3):
-            pair_factors.x[a, k] = complex(-rows.rotation[1, a, k], -rows.rotation[2, a, k])
-    for j in range(rows.translation.shape[1]):
-        for k in range(3):
-            pair_factors.load[j, k] = complex(rows.translation[1, j, k], rows.translation[2, j, k])
-    ends = scratch_like((2, 3), pair_factors.x)
-    for side in range(2):
-        for k in range(3):
-            ends[side, k] = complex(rows.ends[1, side, k], rows.ends[2, side, k])
-    _complete_rows(chain, driven, tangents, pair, ends, pair_factors)
-    solve(pair_factors)
-    displace(pair_factors)
+            z0 = node_moves(chain, tangents, pair, 0, k)
+            stages.shift[i, k] += t0 * node_moves(chain, tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
+    return turned / fraction, forced / (fraction * largest)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import namedtuple
 from typing import Any
 
-from solver.kernels.dispatch import variant
+from solver.kernels.dispatch import enter
 from solver.physics.loads import added_mass, damping, dead, drag, floor, following, user, weight
 from solver.physics.loads import load as protocol
 from solver.physics.loads.load import Samples, Source
@@ -35,9 +35,7 @@ LoadsAbout = namedtuple("LoadsAbout", [_name(load) for load in ABOUT])  # type: 
 
 
 for _load in LOADS:
-    for _form in ("force", "tangents", "prepare", "energy", "conservative", "carrier", "entrained", "account"):
-        if hasattr(_load, _form):
-            variant(getattr(protocol, _form), _load.Record)(getattr(_load, _form))
+    enter(protocol, (_load.Record,), _load)
 
 
 def sources_of(scene: Scene, samples: Samples) -> tuple[Source, ...]:

@@ -16,7 +16,8 @@ from solver.methods.box import BoxMethod
 from solver.methods.space.box.nodes import place_nodes
 from solver.methods.space.segments.joints import bend_joints
 from solver.methods.space.segments.motion import extrapolate, spin_steadily
-from solver.methods.staggered import SCHEME, StaggeredMethod
+from solver.methods.staggered import StaggeredMethod
+from solver.methods.time.radau.method import SCHEME
 from tests.solver.scenes import ARC, ROD
 
 SIZES = (4, 7, 8, 21)

@@ -44,7 +44,7 @@ def stage_powers(given: Reference, out: Array) -> None:
 
     `given`: see `newton.step`.
     """
-    chain, loads, _, _, stages, _ = given.records
+    chain, loads, _, _, stages, _, _ = given.records
     N, by_loads = len(chain.mass), scratch(2)
     for i in range(STAGES):
         by_loads[0], by_loads[1] = 0.0, 0.0

@@ -23,7 +23,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import angle_by_sine, cosine_and_sinc, cross, dot, entries, product, turned_back, unit
-from solver.methods.space.segments.chain import STAGES, Stages, State
+from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
 
 LARGEST_TURN = 2.0
 """Rotation (rad) in one step beyond which the series are not exact to rounding."""
@@ -128,8 +128,8 @@ def follow_segments(R: Array, omega: Array, alpha: Array, base: Array, h: float,
 
 
 @kernel
-def move(state: State, stages: Stages, inverse: Array, dt: float, h: float) -> float:
-    """Write all that follows from theta and shift at all stages; return the largest |theta|^2.
+def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Array, dt: float) -> float:
+    """Write all that follows from theta and shift at all stages; return the largest |theta|.
 
     `inverse` is A^-1: theta_t = A^-1 theta / dt, theta_tt = A^-1 theta_t / dt.
     """
@@ -147,7 +147,7 @@ def move(state: State, stages: Stages, inverse: Array, dt: float, h: float) -> f
             stages.base[i, 2, k] = (inverse[i, 0] * stages.base[0, 1, k] + inverse[i, 1] * stages.base[1, 1, k]
                                     + inverse[i, 2] * stages.base[2, 1, k] - total * state.base[1, k]) / dt  # fmt: skip
         largest = max(largest, turn_segments(state, stages, i))
-        follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], h,
+        follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], chain.h,
                         stages.r[i], stages.V[i], stages.A[i])  # fmt: skip
     return float(np.sqrt(largest))
 

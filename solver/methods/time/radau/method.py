@@ -1,19 +1,23 @@
-"""What the staggered method does alike in space and about one axis: what is given, and steps by Radau IIA."""
+"""Steps by Radau IIA of a chain of rigid segments of any kind: guess, trial, error, and the step that is taken."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from math import inf, nan
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.arrays import Array
+from solver.kernels.handed import Handed
+from solver.methods.linear.stages import Scheme
 from solver.methods.space.segments.chain import STAGES, Chain, State
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
+from solver.methods.space.stages import Record
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
-from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Scheme
+from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Work, estimate_error, step
 from solver.physics.elasticity import mean_bending
 from solver.physics.ends import DrivenEnd
 from solver.scene.scene import Scene
@@ -31,12 +35,17 @@ of which the tolerated part is what Newton's iteration leaves: no shorter step h
 
 
 class RadauMethod(ABC):
-    """Steps of Radau IIA of order 5 in time, for a chain that a subclass describes."""
+    """Steps of Radau IIA of order 5 in time, for a chain that a subclass describes; there is no contact."""
 
     increment_order = 4.0
     increment_tolerance = 0.01
     easy_iterations = 4
     shortest_step = 0.0
+    chain: Record
+    state: Record
+    trial: Record
+    stages: Record
+    driven: Record
 
     def __init__(self, scene: Scene, axis: Any = None) -> None:
         N, length = scene.numerics.intervals, float(scene.rod.length)
@@ -47,34 +56,18 @@ class RadauMethod(ABC):
         self._newton_part = NEWTON_PART * tolerance if tolerance < 1.0 else 0.0
         self._small_motion = max(SMALL_MOTION, TOLERANCE / tolerance)
         self._last_dt = 0.0
-        self._powers = np.zeros((3, 3))
+        self._powers = np.zeros((STAGES, 3))
 
-    def relative_increment(self, dt: float) -> float:
-        """The embedded estimate of the trial's error relative to its motion, the larger of rotation and place."""
-        turn_error, turned, move_error, moved = self._errors(dt)
-        small = self._small_motion
-        return max(turn_error / (turned + small), move_error / (moved + small * float(self.s[-1])))
+    def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
+        """Try to go from t to t + dt; how it ended and the Newton iterations.
 
-    def strain(self) -> float:
-        """None: segments are rigid."""
-        return 0.0
-
-    @abstractmethod
-    def _solve(self, dt: float) -> tuple[int, int]:
-        """Iterate on the stages from where they are; how it ended and the iterations."""
-
-    @abstractmethod
-    def _errors(self, dt: float) -> tuple[float, float, float, float]:
-        """Of the trial: rotation (rad), error and motion; position (m) likewise."""
-
-    def _lay_out(self, scene: Scene) -> tuple[Chain, State, Array]:
-        """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
-        chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
-        self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
-        return chain, *lay_out(scene.initial, chain, self.s)
-
-    def _solve_anew(self, dt: float, consistent: bool) -> tuple[int, int]:
-        """As `_solve`; with `consistent` in two turns, if need be."""
+        With `consistent`, from rest: an end that is set going at once gives forces that say nothing of what follows.
+        """
+        self._drive(t, dt)
+        if consistent:
+            self._guess_rest()
+        else:
+            self._guess(dt)
         status, iterations = self._solve(dt)
         if consistent and iterations == LARGEST_ITERATIONS and status != CONVERGED:
             # an end that is let go turns at once, however short the step: go on from there, with new tangents
@@ -82,7 +75,134 @@ class RadauMethod(ABC):
             iterations += more
         return status, iterations
 
-    def _ends_at(self, t: float, tau: float, dt: float) -> Iterator[tuple[int, DrivenEnd, Array, Array]]:
-        """What is given at both ends at t + tau of a step of dt: side, end, values (6,) and dead lab loads (6,)."""
-        for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
-            yield side, end, *self.applied.driving(end, s, t, tau, FEEDBACK / dt)
+    def relative_increment(self, dt: float) -> float:
+        """The embedded estimate of the trial's error relative to its motion, the larger of rotation and place."""
+        errors: tuple[float, ...] = estimate_error(self._handed.reference, dt, self.state, self._centres)
+        turn_error, turned, move_error, moved = errors
+        small = self._small_motion
+        return max(turn_error / (turned + small), move_error / (moved + small * float(self.s[-1])))
+
+    def take_step(self, t: float, dt: float) -> Array:
+        """Make the trial the state; return the energy (4,) in J that flowed in the step.
+
+        From the ends, from the loads, dissipated, into contact. By Radau's own quadrature, of order 5.
+        """
+        stages, weights = self.stages, tableau.A[-1] * dt
+        self._follow_ends(weights)
+        for name in self.trial._fields:
+            getattr(self.trial, name)[:] = getattr(stages, name)[-1]
+        self.state, self.trial = self.trial, self.state
+        for mine, series in zip(self._centres, (stages.r, stages.V, stages.A), strict=True):
+            mine[:] = series[-1]
+        for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
+            kept[:] = now
+        self._last_dt = dt
+        return self._flowed(weights)
+
+    def strain(self) -> float:
+        """None: segments are rigid."""
+        return 0.0
+
+    def refusal(self) -> str:
+        """Nothing."""
+        return ""
+
+    def step_limit(self) -> float:
+        """None."""
+        return inf
+
+    def smallest_gap(self) -> float:
+        """NaN."""
+        return nan
+
+    def pressing(self) -> int:
+        """None."""
+        return 0
+
+    def compile(self) -> None:
+        """Have every kernel compiled that a run may need, after its first step."""
+        self._guess(1.0)
+        self.relative_increment(1.0)
+
+    @abstractmethod
+    def _drive_end(self, i: int, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
+        """Write what is given at an end at stage i: `values` (6,) of its conditions, `dead` lab loads (6,)."""
+
+    @abstractmethod
+    def _go_on(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
+        """Guess theta of the stages of a step of dt, `ratio` as long as the last one, whose `theta` goes on."""
+
+    @abstractmethod
+    def _follow_ends(self, weights: Array) -> None:
+        """Tell the ends how they moved in a step; write the power (W) of ends and loads, and what is dissipated,
+        at the stages into `_powers`."""
+
+    def _flowed(self, weights: Array) -> Array:
+        """The energy (4,) that flowed in a step."""
+        return np.append(weights @ self._powers, 0.0)
+
+    @property
+    def _touch(self) -> Record:
+        """What contact needs: nothing."""
+        return None
+
+    @property
+    def _records(self) -> tuple[Record, ...]:
+        """What the kernels of a step get by reference."""
+        return self.chain, self.applied.records, self.driven, SCHEME, self.stages, self._touch, self.work
+
+    def _lay_out(self, scene: Scene) -> tuple[Chain, State, Array]:
+        """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
+        chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
+        self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
+        return chain, *lay_out(scene.initial, chain, self.s)
+
+    def _make_records(self, chain: Record, state: Record, kinds: tuple[Any, ...], coupling: Record = None) -> None:
+        """All that the steps of a chain write, from its state at t = 0 on; `kinds`: the classes of these records."""
+        N, (stages, driven, residuals, tangents, factors) = len(self.s) - 1, kinds
+        self.chain, self.state, self.trial = chain, state, type(state).empty(N)
+        self.stages, self.driven = stages.empty(N), driven.empty(N)
+        self.work = Work(
+            residuals.empty(N), residuals.empty(N), tangents.empty(N), factors.empty(N, np.float64),
+            factors.empty(N, np.complex128), coupling, np.zeros_like(self.stages.r[0]),
+        )  # fmt: skip
+        self._handed = Handed.over(*self._records)
+        unknown = self.stages.theta, self.stages.shift, self.stages.F
+        self._last: tuple[Array, ...] = tuple(np.zeros_like(series) for series in unknown)
+        self._centres: NDArray[Any] = np.zeros_like(self.stages.r)
+        """Positions, velocities and accelerations of the segments' centres, of the state."""
+
+    def _drive(self, t: float, dt: float) -> None:
+        """Write what is given at the stages of a step."""
+        for i, c in enumerate(tableau.C):
+            self.applied.set_time(t + c * dt, i)
+            for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
+                self._drive_end(i, side, end, *self.applied.driving(end, s, t, c * dt, FEEDBACK / dt))
+
+    def _guess(self, dt: float) -> None:
+        """The motion of the last step goes on; after a start, that of the state."""
+        stages, state = self.stages, self.state
+        if self._last_dt > 0.0:
+            ratio = dt / self._last_dt
+            weights = tableau.extrapolation(ratio)
+            theta, shift, force = self._last
+            self._go_on(dt, ratio, weights, theta)
+            stages.shift[:] = weights @ shift - shift[-1]
+            by_stage = STAGES, -1
+            np.matmul(tableau.quadratic_extrapolation(ratio), force.reshape(by_stage), out=stages.F.reshape(by_stage))
+            return
+        tau = tableau.C * dt
+        stages.theta[:] = np.multiply.outer(0.5 * tau**2, state.alpha)
+        stages.shift[:] = np.multiply.outer(tau, state.base[1]) + np.multiply.outer(0.5 * tau**2, state.base[2])
+        stages.F[:] = state.F
+
+    def _guess_rest(self) -> None:
+        """Steady motion, and no forces."""
+        self.stages.theta[:], self.stages.shift[:], self.stages.F[:] = 0.0, 0.0, 0.0
+
+    def _solve(self, dt: float) -> tuple[int, int]:
+        """Iterate on the stages from where they are; how it ended and the iterations."""
+        self._handed = self._handed.again(*self._records)
+        status, iterations = step(self._handed.reference, dt, self._unit, self._newton_part, self.state)
+        self.applied.check()
+        return int(status), int(iterations)

@@ -10,7 +10,7 @@ import pytest
 from numba.core.errors import TypingError
 
 from solver.arrays import Array
-from solver.kernels.asked import answer, asked
+from solver.kernels.dispatch import dispatched, enter, variant
 from solver.kernels.kernel import kernel
 
 
@@ -26,9 +26,13 @@ class Circle(NamedTuple):
     radius: float
 
 
-perimeter = asked("perimeter")
+@dispatched
+def perimeter(shape: Any, scale: float) -> float:
+    """Of a shape."""
+    raise NotImplementedError
 
 
+@variant(perimeter, Square)
 @kernel
 def of_square(shape: Square, scale: float) -> float:
     return 4.0 * scale * shape.side
@@ -41,11 +45,10 @@ def of_polygon(shape: Polygon, scale: float) -> float:
 
 @kernel
 def twice(shape: Any) -> float:
-    return perimeter(shape, 2.0)  # type: ignore[no-any-return]
+    return perimeter(shape, 2.0)
 
 
-answer((Square,), SimpleNamespace(perimeter=of_square))  # type: ignore[arg-type]
-answer((Polygon,), SimpleNamespace(perimeter=of_polygon))  # type: ignore[arg-type]
+enter(SimpleNamespace(perimeter=perimeter), (Polygon,), SimpleNamespace(perimeter=of_polygon))  # type: ignore[arg-type]
 
 
 def test_the_record_says_which_kernel_is_meant() -> None:

@@ -1,0 +1,103 @@
+"""The linear systems of a step's three stages, one real and one complex, and what they ask of a solver.
+
+A system's `Factors` hold its right-hand side and solution `x`, first a row's rotation; `load` and `ends`, residuals of
+translation and of the ends' conditions; `moved`, displacements of the segments' centres.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from solver.arrays import Array
+from solver.kernels.dispatch import dispatched
+from solver.kernels.kernel import inlined
+from solver.methods.space.segments.chain import STAGES
+from solver.methods.space.stages import Record
+
+
+class Scheme(NamedTuple):
+    """Coefficients of a scheme of three stages: `nodes` c, `inverse` A^-1 = T diag(gamma, lambda) T^-1 with T
+    `transform` and T^-1 `back`, `gamma` and lambda `pair`, and the weights `error` of the embedded estimate."""
+
+    nodes: Array
+    inverse: Array
+    transform: Array
+    back: Array
+    gamma: float
+    pair: complex
+    error: Array
+
+
+@dispatched
+def factor(chain: Record, driven: Record, tangents: Record, eigenvalue: complex, factors: Record) -> bool:
+    """Factor the system for one eigenvalue of the time scheme, real or complex; False if it is singular."""
+    raise NotImplementedError
+
+
+@dispatched
+def complete(chain: Record, driven: Record, tangents: Record, eigenvalue: complex, factors: Record) -> None:
+    """Complete the right-hand side `x`, in which only rotation stands, with minus, by `load` and `ends`."""
+    raise NotImplementedError
+
+
+@dispatched
+def solve(factors: Record) -> None:
+    """From the right-hand side to the solution, and `moved`."""
+    raise NotImplementedError
+
+
+@dispatched
+def solve_with_contact(chain: Record, driven: Record, tangents: Record, transform: Array, back: Array, inverse: Array,
+                       gamma: float, lam: complex, dt: float, residuals: Record, real: Record, pair: Record,
+                       touch: Record, coupling: Record, first: bool) -> float:  # fmt: skip
+    """As `solve_stages`, with the tangents of contact; return the part of the increments that may be taken."""
+    raise NotImplementedError
+
+
+@dispatched
+def update(chain: Record, transform: Array, unit: float, fraction: float, stages: Record, tangents: Record,
+           real: Record, pair: Record) -> tuple[float, float]:  # fmt: skip
+    """Add a fraction of the increments to the stages; return their size, rotation (rad) and force by the largest."""
+    raise NotImplementedError
+
+
+@inlined
+def solve_stages(chain: Record, driven: Record, tangents: Record, gamma: float, pair: complex, rows: Record,
+                 real_factors: Record, pair_factors: Record) -> None:  # fmt: skip
+    """Solve both systems for the transformed residuals `rows`."""
+    _load_real(rows, real_factors)
+    complete(chain, driven, tangents, gamma, real_factors)
+    solve(real_factors)
+    _load_pair(rows, pair_factors)
+    complete(chain, driven, tangents, pair, pair_factors)
+    solve(pair_factors)
+
+
+@inlined
+def _load_real(rows: Record, factors: Record) -> None:
+    """The first of the transformed residuals as a right-hand side."""
+    n = len(factors.x)
+    width = rows.rotation.size // (STAGES * n)
+    rotation = rows.rotation.reshape(STAGES, n, width)
+    for k in range(width):
+        for a in range(n):
+            factors.x[a, k] = -rotation[0, a, k]
+    factors.load[:] = rows.translation[0]
+    factors.ends[:] = rows.ends[0]
+
+
+@inlined
+def _load_pair(rows: Record, factors: Record) -> None:
+    """The second and third of the transformed residuals as the right-hand side of the complex system."""
+    n, load, ends = len(factors.x), factors.load, factors.ends
+    width = rows.rotation.size // (STAGES * n)
+    rotation = rows.rotation.reshape(STAGES, n, width)
+    for k in range(width):
+        for a in range(n):
+            factors.x[a, k] = complex(-rotation[1, a, k], -rotation[2, a, k])
+    for k in range(load.shape[1]):
+        for j in range(len(load)):
+            load[j, k] = complex(rows.translation[1, j, k], rows.translation[2, j, k])
+    for side in range(2):
+        for k in range(ends.shape[1]):
+            ends[side, k] = complex(rows.ends[1, side, k], rows.ends[2, side, k])

@@ -1,0 +1,77 @@
+"""The kernels of segments in space that a step of three stages asks for: see `space.stages`."""
+
+from __future__ import annotations
+
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
+from solver.kernels.scratch import scratch
+from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, condition_ends, segment_tangents
+from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
+from solver.methods.space.segments.joints import bend_joints
+from solver.methods.space.segments.motion import spin_steadily
+from solver.physics.contact.forces import touching
+from solver.physics.ends import LOAD, RATE
+from solver.physics.loads.registry import Loads
+
+begin_step, tangents_at, in_contact = spin_steadily, segment_tangents, touching
+
+
+@kernel
+def join_stages(chain: Chain, stages: Stages) -> None:
+    """Write the moments of all stages, whose motion is known."""
+    for i in range(STAGES):
+        bend_joints(chain, stages.quaternion[i], stages.bend[i], stages.moment[i], stages.left[i], stages.right[i])
+
+
+@kernel
+def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residuals: Residuals) -> None:
+    """Write the residuals of all stages, whose motion and forces of contact are known."""
+    join_stages(chain, stages)
+    for i in range(STAGES):
+        balance_segments(chain, loads, driven, stages, residuals, i)
+        condition_ends(chain, driven, stages, residuals, i)
+
+
+@kernel
+def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals: Residuals) -> None:
+    """Turn the rows in material components from the stages' own frames into those of the tangents.
+
+    Where an end's conditions are of two kinds, only among components of one kind: exact for a frame that spins about
+    the axis of the odd one.
+    """
+    R = tangents.R
+    n = len(R)
+    old, turned = scratch(3), scratch((3, 3))
+    for i in range(STAGES):
+        for a in range(n):
+            Q, row = stages.R[i, a], residuals.rotation[i, a]
+            x = Q[0, 0] * row[0] + Q[0, 1] * row[1] + Q[0, 2] * row[2]
+            y = Q[1, 0] * row[0] + Q[1, 1] * row[1] + Q[1, 2] * row[2]
+            z = Q[2, 0] * row[0] + Q[2, 1] * row[1] + Q[2, 2] * row[2]
+            if 0 < a < n - 1:
+                for k in range(3):
+                    row[k] = R[a, 0, k] * x + R[a, 1, k] * y + R[a, 2, k] * z
+                continue
+            side = 0 if a == 0 else 1
+            for k in range(3):
+                for m in range(3):
+                    turned[k, m] = R[a, 0, k] * Q[0, m] + R[a, 1, k] * Q[1, m] + R[a, 2, k] * Q[2, m]
+            for first, rows in ((3, row), (0, residuals.ends[i, side])):
+                old[:] = rows
+                for k in range(3):
+                    kind = driven.kinds[side, first + k]
+                    if kind in (RATE, LOAD):
+                        rows[k] = 0.0
+                        for m in range(3):
+                            if driven.kinds[side, first + m] == kind:
+                                rows[k] += turned[k, m] * old[m]
+
+
+@kernel
+def resist(chain: Chain, tangents: Tangents, rate: float, velocity: Array, forces: Array) -> None:
+    """Write the forces (N, 3) of inertia on the segments for accelerations `rate` `velocity` of their centres."""
+    for j in range(len(forces)):
+        for k in range(3):
+            forces[j, k] = 0.0
+            for m in range(3):
+                forces[j, k] -= tangents.M[j, k, m] * rate * velocity[j, m]

@@ -49,6 +49,7 @@ class BoxMethod:
     increment_order = 2.0
     increment_tolerance = 0.1
     easy_iterations = 4
+    touches = True
 
     def __init__(self, scene: Scene) -> None:
         numerics = scene.numerics
@@ -78,6 +79,11 @@ class BoxMethod:
         self._F_rate = np.zeros((len(self.s), 3))
         self._flows = Flows.empty(len(self.s))
         self._handed = Handed.over(*self._records)
+
+    @classmethod
+    def of(cls, scene: Scene) -> BoxMethod:
+        """The method for a scene."""
+        return cls(scene)
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt into `trial`; how it ended and the Newton iterations.

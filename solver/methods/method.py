@@ -9,6 +9,7 @@ from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
+from solver.scene.scene import Scene
 
 
 class Method(Protocol):
@@ -17,7 +18,7 @@ class Method(Protocol):
     `s` (n,): arclengths of the nodes (m); `start`, `end`: the driven ends; `applied`: the given loads; `shortest_step`
     (s): no shorter step is possible; `increment_order`: power of dt with which `relative_increment` falls, and
     `increment_tolerance` how large it may be unless told; `easy_iterations`: Newton iterations up to which a step may
-    be followed by a longer one.
+    be followed by a longer one; `touches`: whether it takes scenes that can touch themselves.
     """
 
     s: Array
@@ -28,6 +29,11 @@ class Method(Protocol):
     increment_order: float
     increment_tolerance: float
     easy_iterations: int
+    touches: bool
+
+    @classmethod
+    def of(cls, scene: Scene) -> Method | None:
+        """The method for a scene; None where another one is to take it."""
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt; how it ended (see `status`) and the Newton iterations.

@@ -16,7 +16,7 @@ def with_intervals(scene: Scene, intervals: int) -> Scene:
 def halve_steps(scene: Scene) -> Scene:
     """The scene with steps half as long: dt_max, and by what their error makes of them."""
     numerics = scene.numerics
-    tolerated = tolerated_increment(numerics) * 0.5 ** METHODS[numerics.method].increment_order
+    tolerated = tolerated_increment(numerics) * 0.5 ** METHODS[numerics.method][-1].increment_order
     halved = replace(numerics, dt_max=0.5 * numerics.dt_max, increment_tolerance=tolerated)
     return replace(scene, numerics=halved)
 

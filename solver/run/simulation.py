@@ -7,7 +7,6 @@ from math import pi
 
 from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics, complete
-from solver.methods.one_axis import OneAxisMethod
 from solver.methods.registry import discretized, tolerated_increment
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
@@ -52,7 +51,7 @@ class Simulation(Run):
     def warm(self) -> None:
         """Have every kernel compiled."""
         numerics = self._scene.numerics
-        load(numerics.method, not isinstance(self._method, OneAxisMethod), numerics.linear_solver,
+        load(numerics.method, self._method.touches, numerics.linear_solver,
              numerics.rho_inf_space < 1.0)  # fmt: skip
 
     def _first_frame(self) -> Frame:

@@ -6,7 +6,7 @@ from functools import cache
 
 from solver.kernels.kernel import compile_apart
 from solver.measures.topology import writhe_of_rod
-from solver.methods.registry import discretized
+from solver.methods.registry import METHODS, discretized
 from solver.scene.contact import Contact
 from solver.scene.ends import End
 from solver.scene.fluid import Fluid
@@ -18,14 +18,13 @@ from solver.scene.scene import Scene
 
 def warm(method: str = Numerics.method) -> None:
     """Load every kernel of a method from the cache, after another process has compiled what is not there; once."""
-    load(method, touching=True)
-    if method == "staggered":
-        load(method, touching=False)
+    for kind in METHODS[method]:
+        load(method, kind.touches)
 
 
 @cache
 def load(method: str, touching: bool, linear_solver: str = Numerics.linear_solver, wide: bool = False) -> None:
-    """Load the kernels for scenes that can touch themselves, or for those that turn about one axis and cannot.
+    """Load the kernels of the class that takes scenes which can touch themselves, or which cannot.
 
     `linear_solver` of the box method; `wide`: with auxiliary derivatives along s, rho_inf_space < 1.
     """
@@ -36,7 +35,7 @@ def load(method: str, touching: bool, linear_solver: str = Numerics.linear_solve
 
 
 def exercise(method: str, touching: bool, linear_solver: str = Numerics.linear_solver, wide: bool = False) -> None:
-    """Call a method's kernels by two steps of a tiny scene, about one axis where it cannot touch itself."""
+    """Call a method's kernels by two steps of a tiny scene that can, or cannot, touch itself."""
     contact = Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05)
     numerics = Numerics(method=method, linear_solver=linear_solver, intervals=4, dt_max=1e-3,  # type: ignore[arg-type]
                         rho_inf_space=0.5 if wide else 1.0)  # fmt: skip

@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-import solver.methods.registry
+import solver.methods.one_axis
 from solver import (
     FIXED,
     FREE,
@@ -120,7 +120,7 @@ SCENES = {
 def run(scene: Scene, monkeypatch: pytest.MonkeyPatch, in_space: bool = False) -> tuple[list[Frame], Statistics]:
     with monkeypatch.context() as patch:
         if in_space:
-            patch.setattr(solver.methods.registry, "axis_of", lambda scene: None)
+            patch.setattr(solver.methods.one_axis, "axis_of", lambda scene: None)
         simulation = simulate(scene)
     assert isinstance(simulation._method, StaggeredMethod if in_space else OneAxisMethod)  # type: ignore[attr-defined]
     return list(simulation), simulation.statistics

@@ -346,15 +346,17 @@ import sys
 from dataclasses import replace
 from numba.core.dispatcher import Dispatcher
 from solver import *
+from solver.run.warming import load
 from tests.solver.scenes import ARC, ARC_ROD, ROD, fixed_steps, moved_clamp, turned_clamp
 
 ONE, ZERO = Curve.constant(1), Curve.constant(0)
 GROWTH = Curve.table([0, 1], [0, 1], "smoothstep")
+LINEAR = eval(sys.argv[1])
 
 
 def run(**others):
     scene = Scene(rod=ROD, initial=Initial.straight(), start=End.clamp(), end=End.free(), t_end=1, output_interval=1,
-                  numerics=Numerics(intervals=8, dt_max=1, rho_inf=1))
+                  numerics=Numerics(intervals=8, dt_max=1, rho_inf=1, **LINEAR))
     try:
         for frame in simulate(replace(scene, **others)):
             pass
@@ -362,7 +364,7 @@ def run(**others):
         print("ended with", failure, file=sys.stderr)
 
 
-warm()
+load("box", True, LINEAR.get("linear_solver", Numerics.linear_solver), "rho_inf_space" in LINEAR)
 force = (Curve.constant(1e-3), ZERO, ZERO)
 run(rod=Rod.circular(1, 1, 10**7, 5 * 10**6, 1500))
 run(distributed=(DistributedLoad(force), DistributedLoad(force, frame="material", schedule=GROWTH)), damping=1)
@@ -374,9 +376,9 @@ run(start=turned_clamp(Condition("rate", ONE)), end=End.slider())
 run(start=End.pin(), gravity=(1, 0, 0))
 run(contact=Contact(1, 2, 0, 1, 1, 0.01, 0.1, 0.01))
 run(contact=Contact(k1=1e-9, k2=3, k3=0, k4=1, aperture=1, cutoff=0.6, skip=0.5, spacing=0.05, sum="grid_points"))
-run(numerics=Numerics(linear_solver="shooting", intervals=8, dt_max=0.1, rho_inf=0))
-run(numerics=Numerics(intervals=8, dt_max=0.1, rho_inf_space=0))
-run(numerics=Numerics(intervals=8, dt_max=0.1, rho_inf_space=0.5))
+run(numerics=Numerics(intervals=8, dt_max=0.1, rho_inf=0, **LINEAR))
+if "rho_inf_space" in LINEAR:
+    run(numerics=Numerics(intervals=8, dt_max=0.1, rho_inf_space=0.5))
 
 for name, module in sorted(sys.modules.items()):
     if name == "solver" or name.startswith("solver."):
@@ -386,12 +388,14 @@ for name, module in sorted(sys.modules.items()):
 """
 
 
-def test_every_kernel_compiles_once() -> None:
+@pytest.mark.parametrize("linear", [{}, {"linear_solver": "shooting"}, {"rho_inf_space": 0}])
+def test_every_kernel_compiles_once(linear: dict[str, object]) -> None:
     """Two signatures of one kernel cost a user a second compilation in the middle of a run.
 
-    Integers in the place of floats, loads of every kind, contact and both linear solves must all find the kernels
-    that `warm` has made. In a process of its own, since tests call kernels as they please.
+    Integers in the place of floats, loads of every kind and contact must all find the kernels that warming has made for
+    the linear solver. In a process of its own, since tests call kernels as they please.
     """
-    done = subprocess.run([sys.executable, "-c", COMPILE_ONCE], capture_output=True, text=True, check=False)
+    program = [sys.executable, "-c", COMPILE_ONCE, repr(linear)]
+    done = subprocess.run(program, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout == ""

@@ -65,11 +65,11 @@ def variant(general: Callable[..., Any], record: type) -> Callable[[Function], F
 
 def enter(functions: ModuleType, records: tuple[type, ...], *modules: Any) -> None:
     """Let the kernels in `modules` be the variants of the general functions of the same names, for all `records`."""
-    for name, general in vars(functions).items():
-        for module in modules:
-            if getattr(general, "__wrapped__", None) is not None and hasattr(module, name):
-                for record in records:
-                    variant(general, record)(getattr(module, name))
+    named = {name: general for name, general in vars(functions).items() if callable(general) and general in _VARIANTS}
+    for module in modules:
+        for name in named.keys() & vars(module).keys():
+            for record in records:
+                variant(named[name], record)(vars(module)[name])
 
 
 def has_variant(general: Callable[..., Any], record: type) -> bool:

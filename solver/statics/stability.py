@@ -13,7 +13,7 @@ from scipy.linalg import eigvalsh, solve_banded
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
-from solver.statics.equations import SOFTEST, Equations, levers
+from solver.statics.equations import PSI, SOFTEST, Equations, X, levers
 
 BAND = 5
 
@@ -42,26 +42,26 @@ def negative_modes(equations: Equations) -> int:
 def _with_place(equations: Equations) -> int:
     """The same where loads depend on the place: of the whole system, from block to block.
 
-    Rotations, displacements and forces of all blocks are kept. The forces are the multipliers of as many conditions,
-    each of which has one negative eigenvalue.
+    Rotations, displacements and forces are kept. The forces are the multipliers of as many conditions, each of which
+    has one negative eigenvalue. The start, whose place stands in no balance of its own, goes with the first segment.
     """
     D, lower, upper = equations.blocks()
-    count, before = 0, np.zeros((0, 0))
-    for a in range(len(D)):
-        own, beside = 0.5 * (D[a] + D[a].T), 0.5 * (lower[a] + upper[a - 1].T)
-        for side in (0, 1):
-            if a == side * (len(D) - 1):
-                held = np.concatenate([equations.ends[side].held[3:], equations.ends[side].held[:3], [False] * 3])
-                own[held], own[:, held], beside[held] = 0.0, 0.0, 0.0
-                own[held, held] = 1.0
-            elif a == 1 and side == 0:
-                held = np.concatenate([equations.ends[0].held[3:], equations.ends[0].held[:3], [True] * 3])
-                beside[:, held] = 0.0
-        if a > 0:
-            own -= beside @ np.linalg.solve(before, beside.T)
-        count += int(np.sum(np.linalg.eigvalsh(own) < 0.0))
-        before = own
-    return count - 3 * (len(D) - 1)
+    D[:, X, PSI] = 0.0  # forces that turn with the rod are held as they are
+    n, size = len(D), D.shape[1]
+    for side, end in enumerate(equations.ends):
+        held = np.concatenate([end.held[3:], end.held[:3], np.zeros(3, bool)])
+        D[-side][:, held] = 0.0
+        D[-side][held, held] = 1.0
+        (lower[1] if side == 0 else upper[-2])[:, held] = 0.0
+    beside = 0.5 * (lower[1:] + upper[:-1].transpose(0, 2, 1))
+    symmetric = 0.5 * (D + D.transpose(0, 2, 1))
+    own = np.block([[symmetric[0], beside[0].T], [beside[0], symmetric[1]]])
+    count = int(np.sum(eigvalsh(own) < 0.0))
+    for a in range(2, n):
+        coupled = np.hstack([np.zeros((size, len(own) - size)), beside[a - 1]])
+        own = symmetric[a] - coupled @ np.linalg.solve(own, coupled.T)
+        count += int(np.sum(eigvalsh(0.5 * (own + own.T)) < 0.0))
+    return count - 3 * (n - 1)
 
 
 def _second_variation(stiff: Array, behind: Array, equations: Equations) -> Array:

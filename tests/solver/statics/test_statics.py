@@ -250,3 +250,22 @@ def test_a_rod_without_a_single_equilibrium_ends_by_name(ends: tuple[End, End]) 
     with pytest.raises(RunFailed) as failure:
         list(simulate(static(start=ends[0], end=ends[1])))
     assert failure.value.outcome == Outcome.SINGULAR_SYSTEM
+
+
+@pytest.mark.parametrize("thrust", [0.5, 5.0, 30.0, 70.0])
+def test_both_counts_of_falling_directions_agree(thrust: float) -> None:
+    """Where no load depends on the place, the count by rotations alone is that of the whole system."""
+    from solver.statics import stability
+
+    push = Curve.constant(-thrust * EJ / LENGTH**2)
+    end = End((FREE, FREE, (Condition("load", push),)), (FREE, FREE, FREE))
+    scene = Scene(rod=ROD, initial=Initial.straight(), start=End.clamp(), end=end, t_end=1.0, output_interval=1.0,
+                  numerics=Numerics(intervals=16), analysis="static")  # fmt: skip
+    equations = Equations(scene)
+    equations.let_go()
+    point = equations.start
+    point.F[:, 2] = -thrust * EJ / LENGTH**2
+    equations.linearise(point)
+    assert stability.negative_modes(equations) == stability._with_place(equations)
+    # pi^2/4, 9 pi^2/4, 25 pi^2/4, each in two planes
+    assert stability.negative_modes(equations) == 2 * sum(thrust > (k * np.pi / 2.0) ** 2 for k in (1, 3, 5))

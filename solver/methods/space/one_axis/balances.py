@@ -36,8 +36,8 @@ class Driven(NamedTuple):
     couple: Array
 
     @classmethod
-    def empty(cls) -> Driven:
-        """Zeros."""
+    def empty(cls, _intervals: int) -> Driven:
+        """Zeros, as many for a rod of any number of intervals."""
         return cls(np.zeros((2, 3), np.int64), np.zeros((STAGES, 2, 3)), np.zeros((2, 2), complex),
                    np.zeros((STAGES, 2), complex), np.zeros((STAGES, 2)))  # fmt: skip
 

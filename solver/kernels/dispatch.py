@@ -10,6 +10,9 @@
 The choice is made while the caller is compiled, by the type of its argument: it costs nothing, only what is chosen is
 compiled, and the caller is cached on disk as ever. (Kernels that are handed to kernels, or stand in a closure, are not:
 numba gives each a name that no other process knows.)
+
+LLVM inlines the choice; numba must not (`inline="always"`): where an `inlined` kernel makes two of them, numba confuses
+the records of the two, and the caller computes something else without a word.
 """
 
 from __future__ import annotations
@@ -49,7 +52,7 @@ def dispatched(general: Function) -> Function:
     names: dict[str, Any] = {"variants": _VARIANTS.setdefault(call, {}), "NoneType": type(None),
                              "general": None if must_be_given else general}  # fmt: skip
     exec(source, names)  # noqa: S102  # numba wants the parameters of an overload to be those of its function
-    overload(call, strict=False, inline="always")(names["choose"])
+    overload(call, strict=False)(names["choose"])
     return call  # type: ignore[return-value]
 
 

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
+import numpy as np
+
 from validation.provenance import provenance
 from validation.row import Row
 
@@ -17,7 +19,7 @@ def keep(scene: str, rows: Sequence[Row]) -> None:
     """Put a scene's rows in the place of those of its last run."""
     scenes = json.loads(FILE.read_text(encoding="utf-8")) if FILE.is_file() else {}
     scenes[scene] = {"made with": provenance(), "rows": [asdict(row) for row in rows]}
-    FILE.write_text(json.dumps(scenes, indent=1) + "\n", encoding="utf-8")
+    FILE.write_text(json.dumps(scenes, indent=1, default=np.generic.item) + "\n", encoding="utf-8")
 
 
 def kept() -> dict[str, list[Row]]:

@@ -53,9 +53,11 @@ class Record(NamedTuple):
 
 
 def of(scene: Scene, samples: Samples) -> Source:
-    """The floor of a scene; of several the last."""
+    """The floor of a scene. Raises ValueError if there are several."""
     floors = [load for load in scene.loads if isinstance(load, Given)]
-    floor = floors[-1] if floors else Given(1.0)
+    if len(floors) > 1:
+        raise ValueError(f"a scene has one floor at the most, got {len(floors)}: {floors}")
+    floor = floors[0] if floors else Given(1.0)
     normal = np.array([floor.normal], dtype=float)
     constants = np.array([floor.height, floor.stiffness, floor.friction, floor.slip])
     return Source(Record(bool(floors), normal / np.linalg.norm(normal), constants))

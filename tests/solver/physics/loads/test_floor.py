@@ -82,3 +82,9 @@ def test_a_case_has_a_floor() -> None:
     given = {"stiffness": 50.0, "height": -0.2, "friction": 0.1}
     raw = apply_settings(load_case("free-flight"), {"loads.floor": given})
     assert build_scene(parse_case(raw)).loads == (floor.Given(50.0, -0.2, (0.0, 0.0, 1.0), 0.1, 1e-3),)
+
+
+def test_a_second_floor_is_refused() -> None:
+    floors = (floor.Given(STIFFNESS), floor.Given(STIFFNESS, normal=(1.0, 0.0, 0.0)))
+    with pytest.raises(ValueError, match="one floor at the most, got 2"):
+        simulate(Scene(ROD, lying(0.1), End.free(), End.free(), 1.0, 1.0, loads=floors))

@@ -20,9 +20,12 @@ class _Motion(Spec):
     """What both shapes have: how the section lies, and a rigid motion in the lab frame."""
 
     a1: Annotated[
-        Triple,
-        means("lab direction of the first principal axis at s = 0, made normal to the rod there; not along it"),
-    ] = (1.0, 0.0, 0.0)
+        Triple | None,
+        means(
+            "lab direction of the first principal axis at s = 0, made normal to the rod there; not along it. None: e1, "
+            "or e2 where the rod begins along e1"
+        ),
+    ] = None
     twist: Annotated[
         Profile, means("profile: turn of the section about the rod, beside parallel transport along it", "rad")
     ] = 0.0
@@ -49,6 +52,8 @@ class Straight(_Motion):
     def _check(self) -> Self:
         if not any(self.direction):
             raise refusal("direction", self.direction, "must not be zero")
+        if self.a1 is None:
+            return self
         (a, b, c), (x, y, z) = self.a1, self.direction
         across = hypot(b * z - c * y, c * x - a * z, a * y - b * x)
         if across <= 1e-6 * hypot(a, b, c) * hypot(x, y, z):
@@ -75,7 +80,7 @@ class Centreline(_Motion):
         for i in range(1, len(self.points)):
             if self.points[i] == self.points[i - 1]:
                 raise refusal(f"points/{i}", self.points[i], "must differ from the point before it")
-        if not any(self.a1):
+        if self.a1 is not None and not any(self.a1):
             raise refusal("a1", self.a1, "must not be zero")
         return self
 

@@ -21,20 +21,22 @@ class Initial:
     """The rod at t = 0.
 
     `centreline` maps arclengths s (n,) to lab positions (n, 3) in m with |r_s| = 1; `a1` is the lab
-    direction (made normal to the tangent) of the first principal axis at s = 0; along s the frame
+    direction (made normal to the tangent) of the first principal axis at s = 0, where none is given
+    e1, or e2 where the rod begins along e1; along s the frame
     follows by parallel transport, turned about the tangent by `twist` (rad). `velocity` (m/s) and
     `angular_velocity` (rad/s, about the centre of mass) are a rigid motion in the lab frame.
     """
 
     centreline: Callable[[Array], Array]
-    a1: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    a1: tuple[float, float, float] | None = None
     twist: Profile = field(default_factory=lambda: Curve.constant(0.0))
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         for name in ("a1", "velocity", "angular_velocity"):
-            require_finite(f"initial {name}", getattr(self, name))
+            if getattr(self, name) is not None:
+                require_finite(f"initial {name}", getattr(self, name))
 
     def keeps(self, view: View) -> bool:
         """Whether the rod lies, and is thrown, along the motion about an axis."""

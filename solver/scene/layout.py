@@ -11,6 +11,9 @@ from solver.kernels.kernel import kernel
 from solver.kernels.rotation import quaternion_of
 from solver.scene.initial import Initial
 
+ALONG = 1e-6
+"""Sine of the angle below which a direction counts as along the rod."""
+
 
 def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     """Positions (n, 3), orientations (n, 4) and curvature-twist (n, 3) at the nodes `s` (n,) at t = 0.
@@ -22,7 +25,7 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     curve = CubicSpline(refined, path)
     tangent = curve(refined, 1)
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
-    first = _transport(tangent, np.array(initial.a1, dtype=float))
+    first = _transport(tangent, _first_axis(initial, tangent[0]))
     R = np.stack([first, np.cross(tangent, first), tangent], axis=2)
     angle = np.asarray(initial.twist(refined), dtype=float)
     if angle.any():
@@ -35,10 +38,18 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     return path[::8].copy(), quaternion_of(R[::8]), kappa[::8]
 
 
+def _first_axis(initial: Initial, tangent: Array) -> Array:
+    """The lab direction of a1 at s = 0, not yet normal to the tangent there."""
+    if initial.a1 is not None:
+        return np.array(initial.a1, dtype=float)
+    e1, e2, _ = np.eye(3)
+    return e2 if np.linalg.norm(np.cross(e1, tangent)) < ALONG else e1
+
+
 def _transport(tangent: Array, first: Array) -> Array:
     """Parallel transport of `first`, made normal to tangent[0], along unit tangents (n, 3)."""
     normal = first - np.dot(first, tangent[0]) * tangent[0]
-    if np.linalg.norm(normal) < 1e-6 * np.linalg.norm(first):
+    if np.linalg.norm(normal) < ALONG * np.linalg.norm(first):
         raise ValueError(f"a1 must not be parallel to the tangent at s = 0, got {first.tolist()}")
     carried = np.empty_like(tangent)
     carried[0] = normal / np.linalg.norm(normal)

@@ -176,6 +176,11 @@ def test_a_case_is_the_same_after_a_round_through_its_document():
     assert parse_case(json.loads(json.dumps(spec.document()))) == spec
 
 
+def test_a_rod_along_e1_needs_no_first_axis():
+    case = apply_settings(load_case("elastica"), {"initial": {"shape": "straight", "direction": [2.0, 0.0, 0.0]}})
+    assert parse_case(case).initial.a1 is None
+
+
 def test_settings_change_a_copy_only():
     raw = small_case()
     changed = apply_settings(raw, {"numerics.dt_max": 0.01, "loads.point.0.s": 0.25, "fluid.added_mass": 1})

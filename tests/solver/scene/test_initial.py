@@ -79,6 +79,12 @@ def test_the_first_axis_is_a1_made_normal_to_the_tangent() -> None:
     assert_allclose(frames(quaternion)[0, 0], [0.0, 1.0, 0.0], atol=1e-14)
 
 
+@pytest.mark.parametrize("direction", [(1.0, 0.0, 0.0), (-3.0, 0.0, 0.0)])
+def test_where_no_first_axis_is_given_a_rod_along_e1_has_e2(direction: tuple[float, float, float]) -> None:
+    _, quaternion, _ = nodes_at_rest(Initial.straight(direction=direction), np.linspace(0.0, 1.0, 5))
+    assert_allclose(frames(quaternion)[0, 0], [0.0, 1.0, 0.0], atol=1e-14)
+
+
 def test_the_twist_turns_the_frame_about_the_tangent() -> None:
     s = np.linspace(0.0, 1.0, 5)
     _, quaternion, kappa = nodes_at_rest(Initial.straight(twist=Curve.table([0.0, 1.0], [0.3, 2.3])), s)

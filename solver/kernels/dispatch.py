@@ -25,7 +25,7 @@ from typing import Any
 
 from numba.extending import overload
 
-from solver.kernels.kernel import Function
+from solver.kernels.kernel import OPTIONS, Function
 
 _VARIANTS: dict[Any, dict[type, Any]] = {}
 """By the general function: the kernel of each class of records."""
@@ -45,14 +45,12 @@ def dispatched(general: Function) -> Function:
     first = parameters.split(",")[0]
     source = (f"def choose({parameters}):\n"
               f"    kernel = variants.get(getattr({first}, 'instance_class', NoneType))\n"
-              f"    def forward({parameters}):\n"
-              f"        return kernel({parameters})\n"
-              f"    return forward if kernel else general\n")  # fmt: skip
+              f"    return kernel.py_func if kernel else general\n")  # fmt: skip
     must_be_given = "NotImplementedError" in general.__code__.co_names
     names: dict[str, Any] = {"variants": _VARIANTS.setdefault(call, {}), "NoneType": type(None),
                              "general": None if must_be_given else general}  # fmt: skip
     exec(source, names)  # noqa: S102  # numba wants the parameters of an overload to be those of its function
-    overload(call, strict=False)(names["choose"])
+    overload(call, jit_options=OPTIONS, strict=False)(names["choose"])  # type: ignore[arg-type]
     return call  # type: ignore[return-value]
 
 

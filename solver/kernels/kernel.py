@@ -8,6 +8,8 @@ of its process waiting for a second: one that holds the lock for less than the s
 
 Numba's cache does not see that a kernel called from another file has changed. So the cache lives in a folder
 named by a digest of the whole solver: another version of the code has another cache, and nothing compiles twice.
+That digest says nothing of records of others, a test's or a user's: what the solver's kernels make of them is compiled
+in each process. (Numba's index of a kernel names their modules: no process without these could read it.)
 """
 
 from __future__ import annotations
@@ -23,11 +25,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba.core.caching import FunctionCache
 from numba.core.registry import cpu_target
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-OPTIONS: dict[str, Any] = {"cache": True, "no_cfunc_wrapper": True, "error_model": "numpy", "nogil": True}
+OPTIONS: dict[str, Any] = {"no_cfunc_wrapper": True, "error_model": "numpy", "nogil": True}
+
+OWN = __name__.split(".")[0]
+"""The solver's package."""
 
 APART = "HOCKLE_COMPILES"
 """The environment variable that tells a process that it is the one that compiles."""
@@ -82,17 +88,39 @@ def _good_for() -> str:
     return hashlib.sha256(repr(told).encode()).hexdigest()[:16]
 
 
+class _Cache(FunctionCache):
+    """A kernel's compiled variants on disk, without those for records of others."""
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        if self._py_func.__module__.split(".")[0] != OWN or all(map(_is_own, data.signature.args)):
+            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+
+
+def _is_own(kind: Any) -> bool:
+    """Whether all records in one of numba's types are of the solver."""
+    record = getattr(kind, "instance_class", None)
+    if record is not None and record.__module__.split(".")[0] != OWN:
+        return False
+    parts = getattr(kind, "types", ()) or getattr(kind, "field_dict", {}).values()
+    return all(map(_is_own, parts))
+
+
+def _compiled(function: Function, **options: Any) -> Function:
+    dispatcher = numba.njit(**OPTIONS, **options)(function)
+    dispatcher._cache = _Cache(function)  # type: ignore[no-untyped-call]
+    return dispatcher  # type: ignore[no-any-return]
+
+
 def kernel(function: Function) -> Function:
     """Compile a function of plain arrays and numbers."""
-    return numba.njit(**OPTIONS)(function)  # type: ignore[no-any-return]
+    return _compiled(function)
 
 
 def inner(function: Function) -> Function:
     """Compile a function that only kernels call: without what Python would need to call it, which takes long."""
-    options = OPTIONS | {"no_cpython_wrapper": True}
-    return numba.njit(**options)(function)  # type: ignore[no-any-return]
+    return _compiled(function, no_cpython_wrapper=True)
 
 
 def inlined(function: Function) -> Function:
     """Compile a function that is to vanish into its callers: one that is called for every node or interval."""
-    return numba.njit(inline="always", **OPTIONS)(function)  # type: ignore[no-any-return]
+    return _compiled(function, inline="always")

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import series
 from solver.kernels.scratch import scratch
 
@@ -99,7 +99,7 @@ def matrices_of(quaternion: Array, R: Array) -> None:
         matrix_of(quaternion[j], R[j])
 
 
-@kernel
+@inner
 def tangent_of(quaternion: Array, T: Array) -> None:
     """Write the tangent R a3 of a unit quaternion (4,) into `T` (3,)."""
     w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.measures.spherical import half_area
 
 BLOCK = 8
@@ -74,7 +74,7 @@ def _tangents(r: Array, first: Array, last: Array) -> Array:
     return t
 
 
-@kernel
+@inner
 def _smooth(t: Array) -> NDArray[np.bool_]:
     """Of each block, whether its tangents and those of its neighbours turn by less than a right angle in all."""
     turned, segments = np.zeros(len(t)), len(t) - 2
@@ -88,7 +88,7 @@ def _smooth(t: Array) -> NDArray[np.bool_]:
     return smooth
 
 
-@kernel
+@inner
 def _spheres(r: Array) -> tuple[Array, Array]:
     """Centres (blocks, 3) and radii (blocks,) of spheres, each around all vertices of a block."""
     blocks = (r.shape[1] + BLOCK - 2) // BLOCK
@@ -102,7 +102,7 @@ def _spheres(r: Array) -> tuple[Array, Array]:
     return centres, radii
 
 
-@kernel
+@inner
 def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
     """Of each block, whether the sphere around it is apart from those of all but its neighbours, and from the rays."""
     centres, radii = _spheres(r)
@@ -122,7 +122,7 @@ def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
     return alone
 
 
-@kernel
+@inner
 def _ray_apart(centre: Array, radius: float, origin: Array, direction: Array) -> bool:
     """Whether a ray passes a sphere by."""
     away = centre - origin

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.rotation import rotate
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
@@ -91,7 +91,7 @@ def _ray(r: Array, origin: Array, direction: Array) -> float:
     return total
 
 
-@kernel
+@inner
 def _distances(r: Array, i: int, out: Array) -> None:
     """Distances of vertex i from all later vertices."""
     x, y, z, later = r[0, i + 1 :], r[1, i + 1 :], r[2, i + 1 :], out[i + 1 :]
@@ -150,7 +150,7 @@ def _row(r: Array, i: int, last: int, squares: Array, from_i: Array, from_next: 
     return left_out
 
 
-@kernel
+@inner
 def _sum(values: Array) -> float:
     """Their sum, in an order that is vectorised and yet the same on every CPU."""
     a, b, c, d, e, f, g, h = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -164,7 +164,7 @@ def _sum(values: Array) -> float:
     return total
 
 
-@kernel
+@inner
 def _near_pairs(r: Array, i: int, last: int, squares: Array, from_i: Array, from_next: Array) -> float:
     """Half the area of segment i with those segments that `_row` leaves out."""
     total = 0.0

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from solver.arrays import Array
-from solver.kernels.handed import Handed
+from solver.kernels.handed import Handed, Reference
 from solver.kernels.rotation import relative_rotation, rotate_back, tangents_of
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
@@ -99,8 +99,7 @@ class BoxMethod:
         stretch_feedback(self._stretch, self._stretch_before, ahead, gain, self.work.feedback)
         guess(self.state, self._F_rate, 0.0 if consistent else dt, self.trial.Y)
         self.contact.prepare(self._bending, self.state.r, self.state.Y, dt)
-        self._handed = self._handed.again(*self._records)
-        status, iterations = step(self._handed.reference, self.state, self.trial, self._rule, dt, self.h,
+        status, iterations = step(self._hand_over(), self.state, self.trial, self._rule, dt, self.h,
                                   self._ends(t, dt))  # fmt: skip
         self.applied.check()
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
@@ -170,7 +169,7 @@ class BoxMethod:
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""
-        return energies(self.state, self.section, self.applied.records, self.h)
+        return energies(self._hand_over(), self.state, self.h)
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
@@ -194,6 +193,11 @@ class BoxMethod:
     def _records(self) -> tuple[Section, Loads, Scales, Touch, Work]:
         """What the kernels of a step get by reference."""
         return self.section, self.applied.records, self._scales, self.contact.touch, self.work
+
+    def _hand_over(self) -> Reference:
+        """The records, as they are now."""
+        self._handed = self._handed.again(*self._records)
+        return self._handed.reference
 
     @property
     def _rule(self) -> Scheme:

@@ -18,7 +18,6 @@ from solver.methods.space.one_axis.balances import Driven, Motion, Tangents
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages, State, about_axis
 from solver.methods.space.one_axis.energies import energies, stage_powers
 from solver.methods.space.one_axis.motion import extrapolate, follow_segments, largest_turn
-from solver.methods.space.segments.chain import STAGES
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
 from solver.physics.ends import LOAD, DrivenEnd
@@ -82,7 +81,7 @@ class OneAxisMethod(RadauMethod):
         """The energies of the state."""
         r, V, A = self._centres
         motion = Motion(r, V, A, self._tangents(), self.state.omega, self.chain.swing)
-        return energies(self.chain, self.applied.records, STAGES - 1, self.state.phi, motion)
+        return energies(self._hand_over(), self.chain, self.state.phi, motion)
 
     def twist(self) -> float:
         """Tw of the state, in turns."""

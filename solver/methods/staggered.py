@@ -16,7 +16,7 @@ from solver.methods.linear.tridiagonal import Factors
 from solver.methods.space import stages as space
 from solver.methods.space.segments import motion, stages
 from solver.methods.space.segments.balances import Driven, Motion, Tangents
-from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages, State
+from solver.methods.space.segments.chain import Chain, Residuals, Stages, State
 from solver.methods.space.segments.energies import energies, stage_powers, twist
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
 from solver.methods.space.segments.motion import extrapolate, follow_segments, move, spin_steadily
@@ -114,8 +114,7 @@ class StaggeredMethod(RadauMethod):
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""
         r, V, A = self._centres
-        return energies(self.chain, self.applied.records, STAGES - 1, self._joints,
-                        Motion(r, V, A, self._R, self.state.omega))  # fmt: skip
+        return energies(self._hand_over(), self._joints, Motion(r, V, A, self._R, self.state.omega))
 
     def twist(self) -> float:
         """Tw of the state, in turns."""

@@ -12,7 +12,7 @@ from solver.kernels.rotation import rotate_back
 from solver.measures.frame import Fields, Frame, Statistics, complete
 from solver.measures.topology import writhe_of_rod
 from solver.methods.space.segments.balances import motion_at
-from solver.methods.space.segments.energies import energies, twist
+from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.staggered import orientations_at_nodes
 from solver.run.run import Run
 from solver.scene.ends import End
@@ -88,7 +88,7 @@ class Equilibria(Run):
         equations.linearise(point)
         fields = self._fields(point)
         stages = equations.stages
-        energy = energies(equations.chain, equations.loads, 0, stages.bend[0], motion_at(stages, 0))
+        energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], motion_at(stages, 0))
         energy = energy._replace(kinetic=0.0, added_mass=0.0)
         frame = Frame(
             t=t, **vars(fields),

@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import variant
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
 from solver.methods.linear.panels import Swaps, close, eliminate, forward_panel
 from solver.methods.linear.system import System, factor, solve, take_own_unknowns
@@ -139,7 +139,7 @@ def solve_wide(wide: Augmented, system: System, scale: float, b: Array, x: Array
     x[:, :] = wide.x[:, :12]
 
 
-@kernel
+@inner
 def _substitute(wide: Augmented, b_end: Array) -> None:
     panels, y, x, size = wide.panels, wide.y, wide.x, len(wide.last)
     N, carried = len(panels), len(wide.rhs_start)

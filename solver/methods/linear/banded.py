@@ -9,7 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import variant
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
 from solver.methods.linear.panels import Swaps
 from solver.methods.linear.system import System, factor, solve
@@ -38,7 +38,7 @@ class Banded(NamedTuple):
         return cls(np.zeros((size, 3 * REACH + 1)), np.zeros(size, np.int64), np.zeros(size))
 
 
-@kernel
+@inner
 def _enter(block: Array, row: int, column: int, band: Array) -> None:
     """Write a block of the matrix, whose first entry stands at (row, column)."""
     rows, columns = block.shape
@@ -63,7 +63,7 @@ def factor_band(linear: Banded, Y: Array, past: Array, c0: float, h: float, node
     return CONVERGED if _eliminate(band, linear.swaps) else SINGULAR
 
 
-@kernel
+@inner
 def _eliminate(band: Array, swaps: Swaps) -> bool:
     """Factor in place; False if a column has no pivot."""
     size = len(band)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.methods.linear.krylov import Krylov, begin, combine, follow, set_out, unsolved
 from solver.methods.linear.system import LinearSolver, System, solve
 from solver.methods.space.box.fields import Nodes, State, V
@@ -64,14 +64,14 @@ def _move(x: Array, c0: float, system: System, touch: Touch, members: Members, c
     move_points(touch, members, coupling.moved, coupling.accelerated)
 
 
-@kernel
+@inner
 def _change(c0: float, system: System, touch: Touch, coupling: Coupling, y: Array) -> None:
     """y = S x: the change of the forces that belongs to coupling.x."""
     _move(coupling.x, c0, system, touch, touch.pressing.members, coupling)
     change_forces(touch, 0, y)
 
 
-@kernel
+@inner
 def _solve_for_forces(linear: LinearSolver, y: Array, h: float, system: System, touch: Touch, sign: float,
                       b_scale: float, coupling: Coupling) -> None:  # fmt: skip
     """coupling.x = K^-1 (b_scale b + sign E y), b the system's residuals."""
@@ -112,7 +112,7 @@ def solve_with_contact(linear: LinearSolver, c0: float, h: float, system: System
     return used
 
 
-@kernel
+@inner
 def contact_fraction(c0: float, system: System, touch: Touch, coupling: Coupling) -> float:
     """How much of the update system.x may be taken without using up a pair's distance."""
     _move(system.x, c0, system, touch, touch.pairs.members, coupling)

@@ -18,7 +18,7 @@ The pivots of V and F are not the largest of their columns, but the multipliers 
 from __future__ import annotations
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner
 from solver.methods.linear.panels import Swaps
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, V
 
@@ -162,7 +162,7 @@ def _eliminate_row(i: int, pivots: int, left: Array, inverse: Array) -> bool:
     return multipliers < LARGEST_MULTIPLIERS
 
 
-@kernel
+@inner
 def factor_anew(left: Array, swaps: Swaps) -> bool:
     """Factor `left` (12, 6) in place with row pivoting; `swaps` (6,) says where each pivot came from."""
     for k in range(LOCAL):

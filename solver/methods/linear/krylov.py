@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 
 LARGEST_NUMBER = 80
 """Largest number of directions."""
@@ -103,6 +103,6 @@ def combine(krylov: Krylov, used: int, size: int) -> None:
             y[c] += parts[m] * krylov.directions[m, c]
 
 
-@kernel
+@inner
 def _norm(z: Array, size: int) -> float:
     return float(np.sqrt(np.dot(z[:size], z[:size])))

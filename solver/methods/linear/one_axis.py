@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.linear.tridiagonal import invert3
 from solver.methods.space.one_axis.balances import Driven, Tangents
@@ -47,7 +47,7 @@ class Factors(NamedTuple):
         return cls(*(np.zeros(shape, dtype) for shape in shapes))
 
 
-@kernel
+@inner
 def _translate(tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
     """Write X and Y of all segments."""
     square = eigenvalue * eigenvalue
@@ -89,7 +89,7 @@ def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factor
     D[N + 1, 1, 1], D[N + 1, 2, 2] = 1.0, 1.0
 
 
-@kernel
+@inner
 def _fill_ends(driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
     """Put the ends' conditions in place."""
     lower, D, upper = factors.lower, factors.inverse, factors.upper
@@ -102,7 +102,7 @@ def _fill_ends(driven: Driven, tangents: Tangents, eigenvalue: complex, factors:
     _condition(driven, tangents, eigenvalue, 1, D[last - 1], lower[last - 1], upper[last - 1])
 
 
-@kernel
+@inner
 def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: int,
                D: Array, neighbour: Array, frame: Array) -> None:  # fmt: skip
     """Turn the rows "the end stays where it is" in D and `neighbour` into the end's conditions.
@@ -141,7 +141,7 @@ def _times(A: Array, x: tuple) -> tuple:  # type: ignore[type-arg]
             A[2, 0] * x[0] + A[2, 1] * x[1] + A[2, 2] * x[2])  # fmt: skip
 
 
-@kernel
+@inner
 def _reduce(lower: Array, inverse: Array, upper: Array) -> bool:
     """Eliminate downwards: from the diagonal blocks to the inverses of the reduced ones, `upper` times by them."""
     D = scratch_like((3, 3), inverse)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.methods.linear.krylov import KEPT, Krylov, begin, combine, follow, set_out, unsolved
 from solver.methods.linear.stages import solve_stages
 from solver.methods.linear.tridiagonal import Factors, node_moves
@@ -61,7 +61,7 @@ def place_nodes(chain: Chain, R: Array, omega: Array, base: Array, centres: Arra
             V[j + 1, k] = speeds[j, k] + half * (Q[k, 0] * w[1] - Q[k, 1] * w[0])
 
 
-@kernel
+@inner
 def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: Touch, coupling: Coupling) -> None:
     """Write the forces on the nodes at all stages into `driven.push`."""
     for i in range(STAGES):
@@ -71,7 +71,7 @@ def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: Touch, cou
     driven.push[:] = touch.push
 
 
-@kernel
+@inner
 def _load_with_forces(chain: Chain, tangents: Tangents, back: Array, y: Array, sign: float, touch: Touch,
                       members: Members, rows: Residuals) -> None:  # fmt: skip
     """Add to `rows` what forces `sign` y on the nodes (stage, node, 3), those of `members`, do to the transformed
@@ -97,7 +97,7 @@ def _load_with_forces(chain: Chain, tangents: Tangents, back: Array, y: Array, s
                     rows.translation[i, j, k] -= f[k]
 
 
-@kernel
+@inner
 def _respond(chain: Chain, tangents: Tangents, transform: Array, real: Factors, pair: Factors, members: Members,
              response: Array) -> None:  # fmt: skip
     """Write the changes of place of the nodes of `members` at all stages (stage, node, 3) into `response`."""
@@ -126,7 +126,7 @@ def _move(response: Array, inverse: Array, dt: float, touch: Touch, members: Mem
                 coupling.accelerated[i, node, k] = rate / dt
 
 
-@kernel
+@inner
 def _change(response: Array, inverse: Array, dt: float, touch: Touch, coupling: Coupling, y: Array) -> None:
     """y = S x: the change of the forces at all stages."""
     members, size = touch.pressing.members, 3 * touch.pairs.members.counts[1]
@@ -182,7 +182,7 @@ def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transfo
     return fraction
 
 
-@kernel
+@inner
 def _clear(rows: Residuals) -> None:
     rows.rotation[:] = 0.0
     rows.translation[:] = 0.0

@@ -13,7 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import variant
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
 from solver.methods.linear.panels import Swaps
 from solver.methods.linear.system import System, factor, solve, solves_again
@@ -64,13 +64,13 @@ def combine_marched(linear: Shooting, system: System, scale: float, b: Array, x:
 
 
 @variant(solves_again, Shooting)
-@kernel
+@inner
 def _only_once(linear: Shooting) -> bool:
     """So the tangents of contact are left out."""
     return False
 
 
-@kernel
+@inner
 def _march(linear: Shooting, Y: Array, c0: float, h: float, nodes: Nodes, section: Section,
            system: System) -> float:  # fmt: skip
     """Write the marched solutions and their coefficients; return the growth (inf if a block is singular)."""
@@ -103,7 +103,7 @@ def _march(linear: Shooting, Y: Array, c0: float, h: float, nodes: Nodes, sectio
     return float(growth)
 
 
-@kernel
+@inner
 def _largest(homogeneous: Array) -> float:
     """The largest entry of the homogeneous solutions at a node, the first six columns of (12, 7); NaN if one is."""
     largest, poison = 0.0, 0.0
@@ -153,7 +153,7 @@ def _start(start: Array, b: Array, first: Array, pivots: Swaps) -> bool:
     return True
 
 
-@kernel
+@inner
 def _solve_dense(A: Array, X: Array) -> bool:
     """Overwrite X (n, m) with A^-1 X by Gaussian elimination with row pivoting; A (n, n) is destroyed."""
     n, m = X.shape

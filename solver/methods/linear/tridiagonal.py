@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
@@ -47,7 +47,7 @@ class Factors(NamedTuple):
         return cls(*(np.zeros(shape, dtype) for shape in shapes))
 
 
-@kernel
+@inner
 def invert3(P: Array, X: Array) -> bool:
     """Write P^-1 (3, 3) into X; False if P is singular."""
     a = P[1, 1] * P[2, 2] - P[1, 2] * P[2, 1]
@@ -67,7 +67,7 @@ def invert3(P: Array, X: Array) -> bool:
     return True
 
 
-@kernel
+@inner
 def _translate(chain: Chain, tangents: Tangents, eigenvalue: complex, P: Array, factors: Factors) -> None:
     """Write X and Y of all segments."""
     square = eigenvalue * eigenvalue
@@ -111,7 +111,7 @@ def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factor
         upper[3 + k, 1] -= half * ahead[k, 0]
 
 
-@kernel
+@inner
 def _fill_end(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors, a: int,
               lower: Array, D: Array, upper: Array) -> None:  # fmt: skip
     """Write the blocks of rows 0, N and N + 1: those of the ends' frames and of the forces at the ends."""
@@ -154,7 +154,7 @@ def _fill_end(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: comp
         _condition(driven, tangents, eigenvalue, 1, D, lower, upper, upper)
 
 
-@kernel
+@inner
 def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: int,
                D: Array, neighbour: Array, frame: Array, other: Array) -> None:  # fmt: skip
     """Turn the rows "the end stays where it is" in D and `neighbour` into the end's conditions.
@@ -205,7 +205,7 @@ def _subtract_times(A: Array, i: int, j: int, B: Array, k: int, m: int, out: Arr
             out[row + p, column + q] -= x * B[k, m + q] + y * B[k + 1, m + q] + z * B[k + 2, m + q]
 
 
-@kernel
+@inner
 def _invert6(D: Array, room: Array, inverse: Array) -> bool:
     """Write D^-1 by its 3 x 3 blocks, that of the forces first: it is definite. False if a block is singular.
 
@@ -354,7 +354,7 @@ def _displace(factors: Factors) -> None:
                                    + (Y[j, k, 0] * psi[0] + Y[j, k, 1] * psi[1] + Y[j, k, 2] * psi[2]))  # fmt: skip
 
 
-@kernel
+@inner
 def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k: int) -> complex:
     """Component k of a node's displacement in the solution."""
     j, side = (node - 1, 1.0) if node > 0 else (0, -1.0)

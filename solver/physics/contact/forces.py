@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.physics.contact.law import Law, pair_force, sees
 from solver.physics.contact.members import Members, dismiss, take_in
 from solver.physics.contact.points import REACH, Points, place_point
@@ -89,7 +89,7 @@ def press(touch: Touch, r: Array, velocity: Array) -> None:
             take_in(pressing.members, touch.points, pressing.second[stage, pair])
 
 
-@kernel
+@inner
 def _press_at(touch: Touch, r: Array, velocity: Array, stage: int) -> None:
     points, pairs, pressing, push, borne = touch.points, touch.pairs, touch.pressing, touch.push[stage], touch.borne
     push[:, :] = 0.0

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.physics.contact.points import Points
 from solver.scene.contact import Contact
 
@@ -46,7 +46,7 @@ class Law(NamedTuple):
         return cls(*(float(x) for x in (*constants, contact.cutoff, contact.skip, weight)))
 
 
-@kernel
+@inner
 def _fade(x: float) -> tuple[float, float]:
     """Smoothstep and its derivative."""
     if x <= 0.0:
@@ -56,7 +56,7 @@ def _fade(x: float) -> tuple[float, float]:
     return x * x * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x)
 
 
-@kernel
+@inner
 def _repulsion(law: Law, gap: float, floor: float) -> tuple[float, float]:
     """k1 / gap^k2 and its derivative, continued linearly below `floor`."""
     at = max(gap, floor)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner
 from solver.physics.contact.points import REACH, Points
 
 
@@ -28,7 +28,7 @@ class Members(NamedTuple):
                    np.zeros(points, np.bool_), np.full(nodes, -1))  # fmt: skip
 
 
-@kernel
+@inner
 def dismiss(members: Members) -> None:
     """Empty the lists."""
     members.counts[:] = 0

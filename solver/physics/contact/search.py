@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.physics.contact.law import Law
 from solver.physics.contact.members import Members, dismiss, take_in
 from solver.physics.contact.points import Points
@@ -44,7 +44,7 @@ def harmless_bending(distance: float, law: Law) -> float:
     return 2.0 * acos(distance / law.skip) if distance < law.skip else 0.0
 
 
-@kernel
+@inner
 def longest_spacing(points: Points) -> float:
     """The largest distance (m) of two neighbours: how far apart one point farther along may be, at the most."""
     longest = 0.0

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 import threading
+from pathlib import Path
 
 import numpy as np
 
@@ -38,3 +42,22 @@ def test_other_threads_run_while_a_kernel_does():
     begun.wait()
     assert wait_for(flags, 0, 2)
     thread.join()
+
+
+WRITTEN = """
+import numpy as np
+from typing import NamedTuple
+from solver.kernels.handed import Handed
+class {name}(NamedTuple):
+    values: np.ndarray
+Handed.over({name}(np.zeros(2)))
+"""
+
+
+def test_records_of_others_stand_in_no_cache(tmp_path):
+    for name in ("mine", "theirs"):
+        (tmp_path / f"{name}.py").write_text(WRITTEN.format(name=name.title()))
+        environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "kernels"), "HOCKLE_COMPILES": "1"}
+        environment["PYTHONPATH"] = f"{tmp_path}{os.pathsep}{Path(__file__).parents[3]}"
+        subprocess.run([sys.executable, "-c", f"import {name}"], env=environment, check=True)
+        (tmp_path / f"{name}.py").unlink()

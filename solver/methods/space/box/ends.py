@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, Nodes, V
 from solver.physics.elasticity import tangent
 from solver.physics.ends import LOAD, RATE, RATE_LAB, Kinds
 from solver.physics.section import Section
 
 
-@kernel
+@inner
 def end_conditions(Y: Array, node: int, kinds: Kinds, targets: Array, dead: Array, rows: Array, columns: Array,
                    nodes: Nodes, section: Section, b: Array, A: Array) -> None:  # fmt: skip
     """Write residuals `b` (6,) and tangents `A` (6, 12) of the conditions `kinds` (6,) with values `targets` (6,).
@@ -50,7 +50,7 @@ def end_conditions(Y: Array, node: int, kinds: Kinds, targets: Array, dead: Arra
         _scale(row, rows[0] if kinds[row] == RATE else rows[9], columns, b, A)
 
 
-@kernel
+@inner
 def _turn_axis(R: Array, J: Array, i: int, k: int, component: float, row: Array) -> None:
     """Add component * d(R[k, i])/d omega: d(R e_i) = R (dpsi x e_i) = R[:, a] dpsi_c - R[:, c] dpsi_a."""
     a, c = (i + 1) % 3, (i + 2) % 3

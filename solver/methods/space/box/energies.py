@@ -12,6 +12,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import for_each
+from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import matrices_of
 from solver.kernels.vectors import add, dot, plus
@@ -21,21 +22,19 @@ from solver.methods.space.box.nodes import Motion
 from solver.physics.elasticity import strain_energy, tangent
 from solver.physics.loads.load import energy, entrained, has_energy, point, prepare
 from solver.physics.loads.registry import Loads
-from solver.physics.section import Section
 
 
-def energies(state: State, section: Section, loads: Loads, h: float) -> Energies:
-    """The energies at a state."""
-    R, by_loads = np.empty((len(state.r), 3, 3)), np.zeros(2)
-    matrices_of(state.quaternion, R)
-    _sum_loads(state, R, loads, h, by_loads)
-    bending, torsion, kinetic = _integrate(state, section, h)
-    return Energies(bending, torsion, kinetic, added_mass=float(by_loads[1]), potential=float(by_loads[0]))
+def energies(given: Reference, state: State, h: float) -> Energies:
+    """The energies at a state; `given`: see `newton.step`."""
+    return _integrate(given, state, h, np.empty((len(state.r), 3, 3)), np.zeros(2))
 
 
 @kernel
-def _integrate(state: State, section: Section, h: float) -> tuple[float, float, float]:
+def _integrate(given: Reference, state: State, h: float, R: Array, by_loads: Array) -> Energies:
     """Bending, torsion and motion: each interval's mean density, of mean strains and velocities."""
+    section, loads, _, _, _ = given.records
+    matrices_of(state.quaternion, R)
+    add_energies(loads, Motion(state.r, state.Y, state.aux, R, 0.0), h, by_loads)
     Y, elastic = state.Y, section.elastic
     bending, torsion, kinetic = 0.0, 0.0, 0.0
     for j in range(len(Y) - 1):
@@ -49,19 +48,13 @@ def _integrate(state: State, section: Section, h: float) -> tuple[float, float, 
             kinetic += mass * velocity * velocity
             kinetic += (section.inertia[j, i] + section.inertia[j + 1, i]) * omega * omega
     part = 0.0625 * h  # 1/2, and three means of two
-    return 2.0 * part * bending, 2.0 * part * torsion, part * kinetic
+    return Energies(2.0 * part * bending, 2.0 * part * torsion, part * kinetic, by_loads[1], by_loads[0])
 
 
 @inner
 def _strain(Y: Array, kappa0: Array, j: int) -> Any:
     """kappa - kappa0 at node j."""
     return (Y[j, KAPPA] - kappa0[j, 0], Y[j, KAPPA + 1] - kappa0[j, 1], Y[j, KAPPA + 2] - kappa0[j, 2])
-
-
-@kernel
-def _sum_loads(state: State, R: Array, loads: Loads, h: float, out: Array) -> None:
-    """Write the potential energy of the loads, and the kinetic energy of the mass that they entrain, into `out`."""
-    add_energies(loads, Motion(state.r, state.Y, state.aux, R, 0.0), h, out)
 
 
 @inner

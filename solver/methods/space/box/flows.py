@@ -90,7 +90,7 @@ def enter_step(given: Reference, old: State, new: State, contact: Array, c0: flo
     flows.energy[2] += flows.rubbed[0]
 
 
-@kernel
+@inner
 def _work_of_ends(old: Array, new: Array, section: Section, moved: Array, late: float) -> float:
     """From Y (n, 12) at both ends of the step."""
     early, work = 1.0 - late, 0.0
@@ -104,7 +104,7 @@ def _work_of_ends(old: Array, new: Array, section: Section, moved: Array, late: 
     return work
 
 
-@kernel
+@inner
 def _work_of_loads(flows: Flows, late: float, h: float) -> float:
     early, given, moved, work = 1.0 - late, flows.given, flows.moved, 0.0
     for j in range(len(moved) - 1):

@@ -19,7 +19,7 @@ frames does work on the rod, and raised the error of Wr(32 s) in the paper's sce
 from __future__ import annotations
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner
 from solver.kernels.scratch import scratch
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, Nodes, V
 from solver.methods.space.box.schemes import SpaceScheme
@@ -29,7 +29,7 @@ MEANS = 5
 """Means over an interval: kappa, omega, F (lab), q, and a3 x R_m^t F_m."""
 
 
-@kernel
+@inner
 def interval_residuals(Y: Array, past: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes, feedback: Array,
                        rows: Array, b: Array) -> None:  # fmt: skip
     """Write the residuals of (2) to (5), times the row scales, into `b` (N, 12); without the term of A.
@@ -58,7 +58,7 @@ def interval_residuals(Y: Array, past: Array, c0: float, h: float, space: SpaceS
             b[j, 9 + i] = rows[9 + i] * rotation
 
 
-@kernel
+@inner
 def _take_means(j: int, Y: Array, left: float, right: float, nodes: Nodes, mean: Array) -> None:
     """Write the weighted means of kappa, omega, F and q, and a3 x R_m^t F_m, into `mean` (MEANS, 3)."""
     for i in range(3):

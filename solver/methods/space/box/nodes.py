@@ -42,7 +42,7 @@ def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) ->
     _place(past, new.Y, old.quaternion, c0, 1.0 / c0, new.r, new.quaternion, nodes.R, nodes.J)
 
 
-@kernel
+@inner
 def balance_rotation(new: State, section: Section, past: Array, c0: float, nodes: Nodes) -> None:
     """Write q = K (kappa - kappa0) and W = I omega_t + omega x I omega with its tangent by omega, but for loads."""
     for j in range(len(past)):
@@ -62,7 +62,7 @@ def balance_rotation(new: State, section: Section, past: Array, c0: float, nodes
         D[2, 0], D[2, 1] = (I1 - I0) * w1, (I1 - I0) * w0
 
 
-@kernel
+@inner
 def balance_translation(new: State, section: Section, past: Array, c0: float, nodes: Nodes) -> None:
     """Write P = rho_c A dV/dt with its tangents by V and omega, but for loads."""
     for j in range(len(past)):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import tangent_of
 from solver.kernels.scratch import scratch
 from solver.methods.space.box.fields import KAPPA, State, V
@@ -55,7 +55,7 @@ def total_bending(Y: Array, h: float) -> float:
     return h * total
 
 
-@kernel
+@inner
 def measure_stretch(state: State, h: float, stretch: Array) -> float:
     """Write Delta r - h T_m (N, 3), lab: what inextensibility has lost to the scheme in space and to time.
 

@@ -166,7 +166,7 @@ def across(T: complex, z: complex) -> float:
     return T.real * z.imag - T.imag * z.real
 
 
-@kernel
+@inner
 def end_velocity(chain: Chain, stages: Stages, i: int, side: int) -> complex:
     """V of the first or the last node at stage i."""
     N = len(chain.mass)

@@ -1,4 +1,4 @@
-"""The arrays of the chain that turns about one axis: as in `staggered.chain`, with an angle for a rotation and a
+"""The arrays of the chain that turns about one axis: as in `segments.chain`, with an angle for a rotation and a
 complex number for a vector of the plane (see `Axis`)."""
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from solver.physics.elasticity import Elasticity, about
 
 
 class Chain(NamedTuple):
-    """What does not change in a run: of `staggered.chain.Chain` what belongs to the axis, and its `swing`.
+    """What does not change in a run: of `segments.chain.Chain` what belongs to the axis, and its `swing`.
 
     Segments (N,): `mass`, `inertia`, `dry_inertia`; joints (N + 1,): `span`, `elastic`.
     """

@@ -13,15 +13,14 @@ from solver.methods.space.one_axis.balances import Motion, along, end_velocity, 
 from solver.methods.space.one_axis.chain import Chain
 from solver.methods.space.segments.chain import STAGES
 from solver.physics.loads.load import add_energies, add_powers
-from solver.physics.loads.registry import LoadsAbout
 
 
-def energies(chain: Chain, loads: LoadsAbout, i: int, phi: Array, motion: Motion) -> Energies:
-    """The energies at a state: the loads of the i-th time of a step, angles (N + 2,), and the segments' motion."""
+def energies(given: Reference, chain: Chain, phi: Array, motion: Motion) -> Energies:
+    """The energies at the end of a step: angles (N + 2,), and the segments' motion; `given`: see `newton.step`."""
     strain = np.diff(phi) / chain.span - chain.elastic.kappa0
     elastic = float(0.5 * np.sum(chain.span * chain.elastic.K * strain**2))
     by_loads, V, omega = np.zeros(2), motion.V, motion.omega[1:-1]
-    _sum_loads(loads, i, motion, by_loads)
+    _sum_loads(given, motion, by_loads)
     kinetic = np.sum(chain.mass * (V.real**2 + V.imag**2)) + np.sum(chain.dry_inertia * omega**2)
     turning = np.sum((chain.inertia - chain.dry_inertia) * omega**2)
     return Energies(
@@ -34,8 +33,9 @@ def energies(chain: Chain, loads: LoadsAbout, i: int, phi: Array, motion: Motion
 
 
 @kernel
-def _sum_loads(loads: LoadsAbout, i: int, motion: Motion, out: Array) -> None:
-    add_energies(loads, i, motion, out)
+def _sum_loads(given: Reference, motion: Motion, out: Array) -> None:
+    _, loads, _, _, _, _, _ = given.records
+    add_energies(loads, STAGES - 1, motion, out)
 
 
 @kernel

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.balances import Driven, Tangents, along, balance
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages, State
@@ -19,7 +19,7 @@ def in_contact(touch: None) -> bool:
     return False
 
 
-@kernel
+@inner
 def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: None, coupling: None) -> None:
     """Nothing presses."""
 
@@ -29,7 +29,7 @@ def begin_step(state: State, nodes: Array, dt: float, stages: Stages) -> None:
     """Nothing: a steady rotation is no more than a product."""
 
 
-@kernel
+@inner
 def join_stages(chain: Chain, stages: Stages) -> None:
     """Write the moments of the joints at all stages, whose motion is known."""
     for i in range(STAGES):
@@ -43,7 +43,7 @@ def evaluate(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages, re
         balance(chain, loads, driven, stages, residuals, i)
 
 
-@kernel
+@inner
 def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals: Residuals) -> None:
     """Turn the rows in material components from the stages' own frames into the tangents', among those of one kind."""
     ends = residuals.ends
@@ -60,7 +60,7 @@ def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals
                             ends[i, side, k] += along(d[k], turn * d[m]) * old
 
 
-@kernel
+@inner
 def resist(chain: Chain, tangents: Tangents, rate: float, velocity: Plane, forces: Array) -> None:
     """Write the forces (N, 2) of inertia on the segments for accelerations `rate` `velocity` of their centres."""
     for j in range(len(forces)):

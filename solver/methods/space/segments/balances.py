@@ -211,7 +211,7 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
             residuals.rotation[i, frame, k] = missed - values[3 + k]
 
 
-@kernel
+@inner
 def _cross_matrix(x: Array, factor: float, out: Array) -> None:
     """Add factor [x] to `out` (3, 3)."""
     out[0, 1] -= factor * x[2]
@@ -275,7 +275,7 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     _end_tangents(chain, driven, stages, i, tangents, swing)
 
 
-@kernel
+@inner
 def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents: Tangents, swing: Array) -> None:
     """Tangents of the conditions on a loaded end's rotation (the start's with the opposite sign), and `turn`."""
     N = len(chain.mass)

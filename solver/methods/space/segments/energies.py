@@ -17,36 +17,34 @@ from solver.physics.loads.load import add_energies, add_powers
 from solver.physics.loads.registry import Loads
 
 
-def energies(chain: Chain, loads: Loads, i: int, bend: Array, motion: Motion) -> Energies:
-    """The energies at a state: the loads of the i-th time of a step, joints' `bend` (N + 1, 3), and the segments'
-    motion."""
-    by_loads = np.zeros(2)
-    _sum_loads(loads, i, motion, by_loads)
-    bending, torsion, kinetic, turning = _integrate(chain, bend, motion)
-    return Energies(bending, torsion, kinetic, added_mass=turning + chain.h * float(by_loads[1]),
-                    potential=chain.h * float(by_loads[0]))  # fmt: skip
+@kernel
+def energies(given: Reference, bend: Array, motion: Motion) -> Energies:
+    """The energies at the end of a step: joints' `bend` (N + 1, 3), the segments' motion.
+
+    `given`: see `newton.step`.
+    """
+    chain, loads, _, _, _, _, _ = given.records
+    return energies_at(chain, loads, STAGES - 1, bend, motion)
 
 
 @kernel
-def _sum_loads(loads: Loads, i: int, motion: Motion, out: Array) -> None:
-    add_energies(loads, i, motion, out)
-
-
-@kernel
-def _integrate(chain: Chain, bend: Array, motion: Motion) -> tuple[float, float, float, float]:
-    """Bending, torsion, motion, and the turning of the mass that loads entrain."""
-    bending, torsion, kinetic, turning = 0.0, 0.0, 0.0, 0.0
-    for i in range(len(bend)):
-        kappa = times(1.0 / chain.span[i], vector(bend, i))
-        bent, twisted = strain_energy(tangent(chain.elastic, i), minus(kappa, vector(chain.elastic.kappa0, i)))
-        bending += chain.span[i] * bent
-        torsion += chain.span[i] * twisted
+def energies_at(chain: Chain, loads: Loads, i: int, bend: Array, motion: Motion) -> Energies:
+    """The energies at a state, by the loads of the i-th time of a step."""
+    bending, torsion, kinetic, turning, by_loads = 0.0, 0.0, 0.0, 0.0, scratch(2)
+    by_loads[0], by_loads[1] = 0.0, 0.0
+    add_energies(loads, i, motion, by_loads)
+    for joint in range(len(bend)):
+        kappa = times(1.0 / chain.span[joint], vector(bend, joint))
+        bent, twisted = strain_energy(tangent(chain.elastic, joint), minus(kappa, vector(chain.elastic.kappa0, joint)))
+        bending += chain.span[joint] * bent
+        torsion += chain.span[joint] * twisted
     for j in range(len(motion.r)):
         for k in range(3):
             velocity, spin = motion.V[j, k], motion.omega[j + 1, k] * motion.omega[j + 1, k]
             kinetic += chain.mass[j] * velocity * velocity + chain.dry_inertia[j, k] * spin
             turning += (chain.inertia[j, k] - chain.dry_inertia[j, k]) * spin
-    return bending, torsion, 0.5 * chain.h * kinetic, 0.5 * chain.h * turning
+    h = chain.h
+    return Energies(bending, torsion, 0.5 * h * kinetic, 0.5 * h * turning + h * by_loads[1], h * by_loads[0])
 
 
 @kernel

@@ -15,7 +15,7 @@ from typing import no_type_check
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import abreast, series
 from solver.kernels.rotation import angle_by_sine, cross, dot, product
 from solver.kernels.scratch import scratch
@@ -103,7 +103,7 @@ def largest_turn(before: Array, after: Array) -> float:
     return largest
 
 
-@kernel
+@inner
 def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back: Array) -> None:
     """Write B and the tangents of B q and B^t q by Theta.
 

@@ -20,7 +20,7 @@ from typing import no_type_check
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import angle_by_sine, cosine_and_sinc, cross, dot, entries, product, turned_back, unit
 from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
@@ -93,7 +93,7 @@ def _turn(theta, theta_t, theta_tt, omega_n, start, steady, S):
     return turned, entries(*turned), gained + omega_n, rate - gyration, square
 
 
-@kernel
+@inner
 def turn_segments(state: State, stages: Stages, i: int) -> float:
     """Write quaternion, R, omega and alpha of stage i; return the largest |theta|^2."""
     return float(_turn(stages.theta[i], stages.theta_t[i], stages.theta_tt[i], state.omega, state.quaternion,
@@ -152,7 +152,7 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
     return float(np.sqrt(largest))
 
 
-@kernel
+@inner
 def differentiate(inverse: Array, dt: float, values: Array, rates: Array) -> None:
     """rates = A^-1 values / dt, stages first."""
     count = values.size // STAGES

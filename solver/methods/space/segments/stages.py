@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, condition_ends, segment_tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
@@ -16,7 +16,7 @@ from solver.physics.loads.registry import Loads
 begin_step, tangents_at, in_contact = spin_steadily, segment_tangents, touching
 
 
-@kernel
+@inner
 def join_stages(chain: Chain, stages: Stages) -> None:
     """Write the moments of all stages, whose motion is known."""
     for i in range(STAGES):
@@ -32,7 +32,7 @@ def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residua
         condition_ends(chain, driven, stages, residuals, i)
 
 
-@kernel
+@inner
 def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals: Residuals) -> None:
     """Turn the rows in material components from the stages' own frames into those of the tangents.
 
@@ -67,7 +67,7 @@ def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals
                                 rows[k] += turned[k, m] * old[m]
 
 
-@kernel
+@inner
 def resist(chain: Chain, tangents: Tangents, rate: float, velocity: Array, forces: Array) -> None:
     """Write the forces (N, 3) of inertia on the segments for accelerations `rate` `velocity` of their centres."""
     for j in range(len(forces)):

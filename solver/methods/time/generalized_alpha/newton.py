@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.handed import Reference
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.methods.linear.box_contact import Coupling, add_contact, contact_fraction, solve_with_contact
 from solver.methods.linear.system import LinearSolver, System, factor, solve, solves_again, take_own_unknowns
 from solver.methods.schemes import Scheme, c0_of
@@ -84,7 +84,7 @@ def form_residuals(new: State, past: Array, c0: float, h: float, section: Sectio
                    nodes, section, system.b_end, system.end)  # fmt: skip
 
 
-@kernel
+@inner
 def increment_size(new: State, system: System, scales: Scales) -> float:
     """The largest scaled increment, kappa and F relative to their own size where that exceeds 1."""
     kappa, force, size = 1.0, 1.0, 0.0

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.kernels.handed import Handed
+from solver.kernels.handed import Handed, Reference
 from solver.methods.linear.stages import Scheme
 from solver.methods.space.segments.chain import STAGES, Chain, State
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
@@ -200,9 +200,13 @@ class RadauMethod(ABC):
         """Steady motion, and no forces."""
         self.stages.theta[:], self.stages.shift[:], self.stages.F[:] = 0.0, 0.0, 0.0
 
+    def _hand_over(self) -> Reference:
+        """The records, as they are now."""
+        self._handed = self._handed.again(*self._records)
+        return self._handed.reference
+
     def _solve(self, dt: float) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""
-        self._handed = self._handed.again(*self._records)
-        status, iterations = step(self._handed.reference, dt, self._unit, self._newton_part, self.state)
+        status, iterations = step(self._hand_over(), dt, self._unit, self._newton_part, self.state)
         self.applied.check()
         return int(status), int(iterations)

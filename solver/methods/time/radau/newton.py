@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from solver.arrays import Array
 from solver.kernels.handed import Reference
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.methods.linear.stages import Scheme, complete, factor, solve, solve_stages, solve_with_contact, update
 from solver.methods.space.segments.chain import STAGES
 from solver.methods.space.segments.motion import LARGEST_TURN
@@ -54,7 +54,7 @@ class Work(NamedTuple):
     velocities: Array
 
 
-@kernel
+@inner
 def mix(weights: Array, source: Array, target: Array) -> None:
     """target[i] = sum over j of weights[i, j] source[j], stages first."""
     count = source.size // STAGES
@@ -146,7 +146,7 @@ def step(given: Reference, dt: float, unit: float, part: float, state: Record) -
     return STALLED, LARGEST_ITERATIONS
 
 
-@kernel
+@inner
 def largest_departure(theta: Array) -> float:
     """The largest component of a segment's departure from steady rotation (rad); `theta` (N + 2, ...) with the ends'
     frames, which do not count."""
@@ -183,7 +183,7 @@ def estimate_error(given: Reference, dt: float, state: Record, centres: Array) -
     return turn_error, turned, move_error, moved
 
 
-@kernel
+@inner
 def _load_rotation(chain: Record, state: Record, stages: Record, weights: Array, mu: float, dt: float,
                    x: Array) -> float:  # fmt: skip
     """Write the rotation's right-hand side into x; return the largest rotation (rad) of a segment in the step."""
@@ -205,7 +205,7 @@ def _load_rotation(chain: Record, state: Record, stages: Record, weights: Array,
     return turned
 
 
-@kernel
+@inner
 def _delay(before: Array, r: Array, V: Array, weights: Array, mu: float, velocities: Array) -> float:
     """Write mu g of the centres' places and velocities, as velocities; return the largest displacement (m)."""
     count, moved = velocities.size, 0.0

@@ -1,6 +1,7 @@
 """The linear systems of both methods, taken out of a step.
 
-The one place of the validation and the benchmarks that knows the solver's inner signatures.
+The one place of the validation and the benchmarks that knows the solver's inner signatures. Records go to kernels as
+those of a step get them, by reference.
 """
 
 from __future__ import annotations
@@ -9,20 +10,24 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from solver.arrays import Array
+from solver.kernels.handed import Handed, Reference
+from solver.kernels.kernel import kernel
 from solver.methods.box import BoxMethod
 from solver.methods.linear.shooting import Shooting
 from solver.methods.linear.stages import solve_stages
 from solver.methods.linear.system import LinearSolver, factor, solve
 from solver.methods.linear.tridiagonal import update
 from solver.methods.schemes import Scheme, c0_of
+from solver.methods.space.box.fields import State
 from solver.methods.space.box.intervals import MEANS, interval_panel
 from solver.methods.space.box.schemes import BOX
 from solver.methods.space.segments.motion import move, spin_steadily
 from solver.methods.space.segments.stages import evaluate
+from solver.methods.space.stages import Record
 from solver.methods.staggered import StaggeredMethod
 from solver.methods.status import CONVERGED
 from solver.methods.time.generalized_alpha.history import history
-from solver.methods.time.generalized_alpha.newton import balance_nodes, form_residuals, set_scales
+from solver.methods.time.generalized_alpha.newton import EndValues, balance_nodes, form_residuals, set_scales
 from solver.methods.time.radau.method import SCHEME
 from solver.methods.time.radau.newton import factor_both, transform_residuals
 
@@ -41,14 +46,12 @@ class NewtonSystem:
         method.work.feedback[:] = 0.0
         set_scales(method._scales, self._c0, method.work.system)
         method.contact.prepare(method._bending, method.state.r, method.state.Y, dt)
+        self._handed = Handed.over(*method._records)
 
     def assemble(self) -> None:
         """Residuals, and what the tangents are made of."""
-        method, work = self._method, self._method.work
-        balance_nodes(method.state, method.trial, work.past, self._c0, method.section, method.applied.records,
-                      work.nodes)  # fmt: skip
-        form_residuals(method.trial, work.past, self._c0, method.h, method.section, self._ends, work.nodes,
-                       work.feedback, work.system)  # fmt: skip
+        method = self._method
+        _assemble(self._handed.reference, method.state, method.trial, self._c0, method.h, self._ends)
 
     def factor(self) -> bool:
         """Form the panels and factor them by the method's linear solver, block elimination by default."""
@@ -96,6 +99,13 @@ class NewtonSystem:
         return matrix, np.concatenate([system.b_start, system.b.ravel(), system.b_end])
 
 
+@kernel
+def _assemble(given: Reference, old: State, new: State, c0: float, h: float, ends: EndValues) -> None:
+    section, loads, _, _, work = given.records
+    balance_nodes(old, new, work.past, c0, section, loads, work.nodes)
+    form_residuals(new, work.past, c0, h, section, ends, work.nodes, work.feedback, work.system)
+
+
 class StagesSystem:
     """The system of the stages of a staggered step of `dt` from a method's state, without contact."""
 
@@ -104,34 +114,58 @@ class StagesSystem:
         method._drive(0.0, dt)
         method._guess_rest()
         spin_steadily(method.state, SCHEME.nodes, dt, method.stages)
+        self._handed = Handed.over(*method._records)
         self.move()
         self.evaluate()
 
     def move(self) -> None:
         """All that follows from the unknown rotations."""
-        method = self._method
-        move(method.chain, method.state, method.stages, SCHEME.nodes, SCHEME.inverse, self._dt)
+        _move(self._handed.reference, self._method.state, self._dt)
 
     def evaluate(self) -> None:
         """Moments and residuals."""
-        method = self._method
-        evaluate(method.chain, method.applied.records, method.driven, method.stages, method.work.residuals)
+        _evaluate(self._handed.reference)
 
     def factor(self) -> bool:
         """Tangents, and the real and the complex system factored."""
-        method, work = self._method, self._method.work
-        return bool(factor_both(method.chain, method.applied.records, method.driven, SCHEME, self._dt, method.stages,
-                                work.tangents, work.real, work.pair))  # fmt: skip
+        return bool(_factor(self._handed.reference, self._dt))
 
     def solve(self) -> None:
         """Both systems solved for the residuals."""
-        method, work = self._method, self._method.work
-        transform_residuals(method.driven, SCHEME, method.stages, work.tangents, work.residuals,
-                            work.transformed)  # fmt: skip
-        solve_stages(method.chain, method.driven, work.tangents, SCHEME.gamma / self._dt, SCHEME.pair / self._dt,
-                     work.transformed, work.real, work.pair)  # fmt: skip
+        _solve(self._handed.reference, self._dt)
 
     def update(self) -> None:
         """A vanishing part of the increments added to the stages, at the cost of all."""
-        method, work = self._method, self._method.work
-        update(method.chain, SCHEME.transform, 1.0, 1e-30, method.stages, work.tangents, work.real, work.pair)
+        _update(self._handed.reference)
+
+
+@kernel
+def _move(given: Reference, state: Record, dt: float) -> None:
+    chain, _, _, scheme, stages, _, _ = given.records
+    move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
+
+
+@kernel
+def _evaluate(given: Reference) -> None:
+    chain, loads, driven, _, stages, _, work = given.records
+    evaluate(chain, loads, driven, stages, work.residuals)
+
+
+@kernel
+def _factor(given: Reference, dt: float) -> bool:
+    chain, loads, driven, scheme, stages, _, work = given.records
+    return factor_both(chain, loads, driven, scheme, dt, stages, work.tangents, work.real, work.pair)
+
+
+@kernel
+def _solve(given: Reference, dt: float) -> None:
+    chain, _, driven, scheme, stages, _, work = given.records
+    transform_residuals(driven, scheme, stages, work.tangents, work.residuals, work.transformed)
+    solve_stages(chain, driven, work.tangents, scheme.gamma / dt, scheme.pair / dt, work.transformed, work.real,
+                 work.pair)  # fmt: skip
+
+
+@kernel
+def _update(given: Reference) -> None:
+    chain, _, _, scheme, stages, _, work = given.records
+    update(chain, scheme.transform, 1.0, 1e-30, stages, work.tangents, work.real, work.pair)

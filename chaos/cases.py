@@ -50,5 +50,5 @@ def undisturbed(case: dict[str, Any]) -> str:
         with DatasetWriter(path, spec) as writer:
             for frame in simulation:
                 writer.append(frame)
-            writer.publish("completed", "", simulation.s, simulation.statistics)
+            writer.publish("completed", "", simulation)
         return digest(path)

@@ -139,7 +139,8 @@ def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
         except RunFailed as failed:
             failure = failed
         outcome = failure.outcome if failure else Outcome.COMPLETED
-        writer.publish(outcome.value, str(failure or ""), simulation.s, simulation.statistics)
+        message = " ".join([str(failure or ""), *simulation.remarks.sentences()]).strip()
+        writer.publish(outcome.value, message, simulation)
     return failure
 
 

@@ -19,7 +19,7 @@ from service.jobs.held import HeldJob
 from service.results import Datasets, DatasetWriter, StoreUnreachable
 from service.results.durable import size_of
 from service.settings import Settings
-from solver import Frame, Run, RunFailed, Scene, code_digest, simulate
+from solver import Frame, Run, RunFailed, code_digest, simulate
 from worker import stopping
 from worker.checkpoints import Checkpoint, Checkpoints
 from worker.drift import drift_of
@@ -74,13 +74,13 @@ class Attempt:
         with DatasetWriter(self._path, spec, self._directory, segments) as writer:
             status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED, ""
             try:
-                self._compute(simulation, scene, writer)
+                self._compute(simulation, writer)
             except RunFailed as failure:
                 status, outcome, message = Status.FAILED, failure.outcome, str(failure)
             self._with_room(writer.flush)
             self._check_size()
-            ended = outcome.value, message, simulation.s, simulation.statistics
-            published = self._with_room(lambda: writer.publish(*ended))
+            message = " ".join([message, *simulation.remarks.sentences()]).strip()
+            published = self._with_room(lambda: writer.publish(outcome.value, message, simulation))
         dataset = Dataset(self._path.name, published.sha256, published.bytes)
         return Ending(status, outcome, message, dataset, self._drift(spec))
 
@@ -88,7 +88,7 @@ class Attempt:
         """Have the dataset lie where all can read it. Raises whatever ends a run."""
         self._with_room(lambda: self._datasets.publish(self._path))
 
-    def _compute(self, simulation: Run, scene: Scene, writer: DatasetWriter) -> None:
+    def _compute(self, simulation: Run, writer: DatasetWriter) -> None:
         self._due = time.monotonic() + self._interval
         under_way = False
         while not simulation.finished:
@@ -100,7 +100,7 @@ class Attempt:
                 self._keep(writer, frame)
             steps = simulation.statistics.steps
             self._lock.mark(steps)
-            self._lease.tell(Reached(min(simulation.t / scene.t_end, 1.0), simulation.t, steps, self._redone))
+            self._lease.tell(Reached(simulation.progress, simulation.t, steps, self._redone))
             try:
                 stopping.check()
             except stopping.Stopping:

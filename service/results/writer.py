@@ -19,7 +19,7 @@ from service.results import netcdf
 from service.results.durable import discard, scratch, sha256_of, sync
 from service.results.schema import stored_variables
 from service.results.segments import Segment, Segments
-from solver import Frame, Statistics
+from solver import Frame, Run
 
 
 @dataclass(frozen=True)
@@ -68,18 +68,17 @@ class DatasetWriter:
         self._segments.flush()
         return list(self._segments.written)
 
-    def publish(self, outcome: str, message: str, s: NDArray[np.float64], statistics: Statistics) -> Published:
+    def publish(self, outcome: str, message: str, run: Run) -> Published:
         """Write the dataset beside its place, read it back, and give it its name.
 
-        `outcome` and `message` say how the run ended, `s` (m) where its nodes were. Raises OSError where that
-        cannot be done; then nothing is left under the name that was not there before, and it may be tried again.
+        `outcome` and `message` say how the run ended. Raises OSError where that cannot be done; then nothing is left
+        under the name that was not there before, and it may be tried again.
         """
         self._segments.flush()
         self._tries += 1  # HDF5 keeps a file open that it could not write, and never writes under its name again
         beside = self._directory / f"{self._path.stem}.{self._tries}{self._path.suffix}.part"
-        attributes = self._attributes(outcome, message, self._history(len(s) - 1), statistics)
         try:
-            return self._publish(beside, s, attributes)
+            return self._publish(beside, run.s, self._attributes(outcome, message, run))
         except OSError:
             discard(beside)
             raise
@@ -102,10 +101,10 @@ class DatasetWriter:
         return (f"{history} and with {2 * intervals} and steps half as long; the values are extrapolated from both "
                 "(Richardson, order 2), the errors are those of the finer run")  # fmt: skip
 
-    def _attributes(self, outcome: str, message: str, history: str, statistics: Statistics) -> dict[str, Any]:
-        """The global attributes: CF, ACDD, and what a reader needs to run the case again."""
+    def _attributes(self, outcome: str, message: str, run: Run) -> dict[str, Any]:
+        """The global attributes: CF, ACDD, what a reader needs to run the case again, and what the run noticed."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        spec = self._spec
+        spec, history, statistics = self._spec, self._history(len(run.s) - 1), run.statistics
         return {
             "Conventions": "CF-1.11, ACDD-1.3",
             "title": spec.title or spec.name,
@@ -125,5 +124,6 @@ class DatasetWriter:
             "steps": statistics.steps,
             "failed_steps": statistics.failed_steps,
             "newton_iterations": statistics.newton_iterations,
+            **run.remarks.attributes(),
             **netcdf.versions(),
         }

@@ -10,18 +10,21 @@ from typing import Any
 from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics
 from solver.run.checkpoint import Saved, restore, saved
+from solver.run.remarks import Remarks
 from solver.scene.scene import Scene
 
 
 class Run(ABC):
     """A run: an iterable of `Frame`, once. Raises `RunFailed` where it cannot go on.
 
-    `t` (s): how far it has come; `statistics`: what it has cost, which runs that are parts of one have in common.
+    `t` (s): how far it has come; `statistics`: what it has cost, which runs that are parts of one have in common;
+    `remarks`: what it noticed.
     """
 
     def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
         self._scene, self._outputs = scene, scene.outputs
         self.statistics = statistics or Statistics()
+        self.remarks = Remarks()
         self.t = 0.0
         self._frames = 0
 
@@ -47,6 +50,16 @@ class Run(ABC):
             frame = self.advance()
             if frame is not None:
                 yield frame
+
+    @property
+    def phase(self) -> str:
+        """What it is doing, in a few words."""
+        return "running"
+
+    @property
+    def progress(self) -> float:
+        """The part of its work that is done, from 0 to 1, as far as it can be known."""
+        return min(self.t / self._scene.t_end, 1.0)
 
     @property
     def finished(self) -> bool:

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import fields
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from service.cases import CaseSpec, apply_settings, build_scene, load_case, parse_case
-from solver import Frame
+from solver import Frame, Statistics
 from solver.measures.frame import Fields, complete
+from solver.run.remarks import Remarks
+
+STATISTICS = Statistics(steps=12, newton_iterations=34, failed_steps=1, cpu_time=5.5)
 
 
 def small_spec(**settings: Any) -> CaseSpec:
@@ -37,3 +41,8 @@ def frames(spec: CaseSpec, count: int) -> Iterator[Frame]:
             contacts=i, dt=0.5, newton_iterations=2 * i,
         )  # fmt: skip
         yield complete(frame, s, scene)
+
+
+def ended(spec: CaseSpec) -> SimpleNamespace:
+    """What a writer asks of a run that has ended."""
+    return SimpleNamespace(s=nodes(spec), statistics=STATISTICS, remarks=Remarks())

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from service.results import DatasetWriter, SubsetTooLarge, UnknownVariable, subset
-from solver import Statistics
-from tests.service.frames import frames, nodes, small_spec
+from tests.service.frames import ended, frames, small_spec
 
 
 @pytest.fixture(scope="module")
@@ -21,7 +20,7 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with DatasetWriter(path, spec) as writer:
         for frame in frames(spec, 9):
             writer.append(frame)
-        writer.publish("completed", "", nodes(spec), Statistics())
+        writer.publish("completed", "", ended(spec))
     return path
 
 

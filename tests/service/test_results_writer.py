@@ -21,18 +21,17 @@ from service.cases import CaseSpec, parse_case
 from service.cases.case import FieldName
 from service.results import VARIABLES, DatasetWriter, Published, durable, netcdf, open_dataset, segments, subset
 from service.results.schema import stored_variables
-from solver import Statistics, VerifiedFrame
-from tests.service.frames import frames, nodes, small_spec
+from solver import VerifiedFrame
+from tests.service.frames import ended, frames, nodes, small_spec
 
 ROOT = Path(__file__).parents[2]
-STATISTICS = Statistics(steps=12, newton_iterations=34, failed_steps=1, cpu_time=5.5)
 
 
 def write(path: Path, spec: CaseSpec, count: int) -> Published:
     with DatasetWriter(path, spec) as writer:
         for frame in frames(spec, count):
             writer.append(frame)
-        return writer.publish("completed", "", nodes(spec), STATISTICS)
+        return writer.publish("completed", "", ended(spec))
 
 
 @pytest.fixture
@@ -139,7 +138,7 @@ def test_many_segments_make_the_same_dataset_as_one(path: Path, monkeypatch: pyt
         for i, frame in enumerate(frames(spec, 9)):
             writer.append(frame)
             assert len(list(path.parent.glob(".other.nc.work-*/segment-*.npz"))) == (i + 1) // 5
-        writer.publish("completed", "", nodes(spec), STATISTICS)
+        writer.publish("completed", "", ended(spec))
     with open_dataset(path) as one, open_dataset(other) as many:
         xr.testing.assert_equal(one, many)
 
@@ -181,10 +180,10 @@ def test_what_had_no_room_can_be_published_once_there_is_some(path: Path):
         resource.setrlimit(resource.RLIMIT_FSIZE, (4096, hard))
         try:
             with pytest.raises(OSError):
-                writer.publish("completed", "", nodes(spec), STATISTICS)
+                writer.publish("completed", "", ended(spec))
         finally:
             resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-        writer.publish("completed", "", nodes(spec), STATISTICS)
+        writer.publish("completed", "", ended(spec))
     assert list(path.parent.iterdir()) == [path]
     with open_dataset(path) as dataset:
         assert dataset.sizes["time"] == 50
@@ -224,8 +223,8 @@ LIMITED = """
 import resource, signal, sys
 from pathlib import Path
 from service.results import DatasetWriter, segments
-from solver import Statistics, VerifiedFrame
-from tests.service.frames import frames, nodes, small_spec
+from solver import VerifiedFrame
+from tests.service.frames import ended, frames, nodes, small_spec
 spec = small_spec(**{"numerics.intervals": 200})
 segments.SEGMENT_BYTES = int(sys.argv[2])
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -234,7 +233,7 @@ with DatasetWriter(Path(sys.argv[1]), spec) as writer:
     try:
         for frame in frames(spec, 300):
             writer.append(frame)
-        writer.publish("completed", "", nodes(spec), Statistics())
+        writer.publish("completed", "", ended(spec))
     except OSError as error:
         sys.exit(f"OSError: {error}")
 """
@@ -268,7 +267,7 @@ def test_a_damaged_file_is_not_published(path: Path, monkeypatch: pytest.MonkeyP
 KILLED = """
 import os, signal, sys
 from pathlib import Path
-from tests.service.frames import frames, nodes, small_spec
+from tests.service.frames import ended, frames, nodes, small_spec
 from service.results import DatasetWriter
 spec = small_spec()
 writer = DatasetWriter(Path(sys.argv[1]), spec)
@@ -292,7 +291,7 @@ def test_a_run_that_lives_is_left_alone_by_the_next_one(path: Path):
         for frame in frames(spec, 2):
             first.append(frame)
         write(path, spec, 5)
-        first.publish("completed", "", nodes(spec), STATISTICS)
+        first.publish("completed", "", ended(spec))
     with open_dataset(path) as dataset:
         assert dataset.sizes["time"] == 2
 
@@ -311,7 +310,7 @@ def test_a_run_goes_on_from_the_segments_of_one_that_was_killed(path: Path):
     with DatasetWriter(path.with_name("x.2.nc"), spec, work, written) as second:
         for frame in all_frames[4:]:
             second.append(frame)
-        second.publish("completed", "", nodes(spec), STATISTICS)
+        second.publish("completed", "", ended(spec))
     write(path, spec, 9)
     with open_dataset(path) as one, open_dataset(path.with_name("x.2.nc")) as other:
         xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
@@ -342,7 +341,7 @@ def test_a_verified_dataset_has_error_bars(path: Path):
     with DatasetWriter(path, spec) as writer:
         for frame in verified:
             writer.append(frame)
-        writer.publish("completed", "", nodes(spec), STATISTICS)
+        writer.publish("completed", "", ended(spec))
     with open_dataset(path) as dataset:
         assert dataset.r.attrs["ancillary_variables"] == "r_error"
         assert "ancillary_variables" not in dataset["dt"].attrs

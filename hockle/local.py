@@ -139,7 +139,7 @@ def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
         except RunFailed as failed:
             failure = failed
         outcome = failure.outcome if failure else Outcome.COMPLETED
-        message = " ".join([str(failure or ""), *simulation.remarks.sentences()]).strip()
+        message = " ".join([str(failure or ""), *simulation.notes()]).strip()
         writer.publish(outcome.value, message, simulation)
     return failure
 

@@ -116,9 +116,10 @@ class Outcome(StrEnum):
     )
     TOLERANCE_NOT_REACHED = (
         "tolerance_not_reached",
-        "pilot runs found no mesh and steps that keep the tolerance; the dataset has no frames",
-        "take a larger tolerance, damp waves that the loads or the start excite, or give intervals and dt_max "
-        "instead of the tolerance",
+        "no run of the scene came to its end within the work that a tolerance may take; the dataset has the frames "
+        "that it reached",
+        "end earlier, damp waves that the loads or the start excite, or give intervals and dt_max instead of the "
+        "tolerance",
         "solver",
     )
     WORKER_LOST = (

@@ -19,7 +19,7 @@ from service.cases.library import apply_settings, load_case, parse_case
 from solver import Frame, Scene, simulate
 from solver.arrays import Array
 from solver.measures.frame import OUTPUTS
-from solver.run.pilot import Piloted
+from solver.run.refined import Refined
 from solver.run.resolution import refine
 from solver.run.verify import VerifiedFrame
 from validation.elastica import TABLE
@@ -60,7 +60,7 @@ def run(told: Scene) -> tuple[Scene, list[VerifiedFrame]]:
     """The frames of a verified run, and its scene with the intervals and steps that it had."""
     begun = simulate(told)
     frames = [frame for frame in begun if isinstance(frame, VerifiedFrame)]
-    return begun.chosen if isinstance(begun, Piloted) else told, frames
+    return begun.chosen if isinstance(begun, Refined) else told, frames
 
 
 def true(told: Scene) -> list[VerifiedFrame]:

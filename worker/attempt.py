@@ -79,7 +79,7 @@ class Attempt:
                 status, outcome, message = Status.FAILED, failure.outcome, str(failure)
             self._with_room(writer.flush)
             self._check_size()
-            message = " ".join([message, *simulation.remarks.sentences()]).strip()
+            message = " ".join([message, *simulation.notes()]).strip()
             published = self._with_room(lambda: writer.publish(outcome.value, message, simulation))
         dataset = Dataset(self._path.name, published.sha256, published.bytes)
         return Ending(status, outcome, message, dataset, self._drift(spec))

@@ -17,7 +17,7 @@ from service.meaning import means
 from solver import Numerics
 from solver.measures.frame import OUTPUTS
 from solver.methods.linear.registry import LINEAR_SOLVERS
-from solver.run.pilot import FIRST_INTERVALS
+from solver.run.plan import FIRST_INTERVALS
 
 ALL_FIELDS = tuple(output.name for output in OUTPUTS if output.along_rod)
 if TYPE_CHECKING:
@@ -79,14 +79,14 @@ class NumericsSpec(Spec):
     ] = None
     tolerance: Annotated[
         Annotated[float, Field(ge=1e-6, le=0.1, allow_inf_nan=False)] | None,
-        means("relative error of r, curvature and energies; chooses method, intervals and steps by pilot runs. "
-              f"{TOLERANCE:g} where nothing else is given but `verify` and `method` `staggered`. Not beside "
-              "`intervals`, `dt_max` or `increment_tolerance`"),
+        means("relative error of r, curvature and energies, and that of Tw and Wr in turns, at which refining "
+              f"ends: a target. {TOLERANCE:g} where nothing else is given but `verify` and `method` `staggered`. Not "
+              "beside `intervals`, `dt_max` or `increment_tolerance`"),
     ] = None  # fmt: skip
     verify: Annotated[
         bool,
         means("also runs with intervals and steps half as long: stores the extrapolated solution, and the estimated "
-              "error of each variable"),
+              "error of each variable. A tolerance does so by itself"),
     ] = False  # fmt: skip
 
     @model_validator(mode="before")
@@ -115,6 +115,11 @@ class NumericsSpec(Spec):
     def expected_intervals(self) -> int:
         """The intervals, or those that a tolerance often leads to."""
         return self.intervals or INTERVALS
+
+    @property
+    def has_errors(self) -> bool:
+        """Whether each variable comes with its estimated error."""
+        return self.verify or self.tolerance is not None
 
     def build(self, frames: int) -> Numerics:
         """The solver's settings for a run of so many frames."""

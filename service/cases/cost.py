@@ -6,7 +6,7 @@
     bytes   = 8 frames n (components of the stored fields), before compression
 
 With `verify` five times the seconds (the second run has twice the intervals and steps) and twice the bytes. With a
-`tolerance`, whose mesh is not known before the pilot runs: n of the usual mesh, a step a frame, and twice the seconds.
+`tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the seconds and the bytes.
 
 The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
 a step from goyal-2003 to 32 s (about two Newton iterations a step, contact included), WRITHE of a rod whose strands lie
@@ -53,7 +53,7 @@ def estimate(spec: CaseSpec) -> Cost:
     frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
     seconds = steps * step + frames * frame
     seconds *= (PILOTS if numerics.tolerance else 1) * (VERIFIED if numerics.verify else 1)
-    components = sum(COMPONENTS[name] for name in spec.output.fields) * (2 if numerics.verify else 1)
+    components = sum(COMPONENTS[name] for name in spec.output.fields) * (2 if numerics.has_errors else 1)
     return Cost(nodes, frames, steps, seconds, 8 * frames * nodes * components)
 
 

@@ -111,7 +111,7 @@ def stored_variables(spec: CaseSpec) -> tuple[Variable, ...]:
     """The variables of a case's dataset: the fields that it asks for, and every number in time; errors if verified."""
     asked = (v for v in VARIABLES if not v.along_rod or v.name in spec.output.fields)
     stored = tuple(v for v in asked if spec.analysis == "static" or not v.statics)
-    if not spec.numerics.verify:
+    if not spec.numerics.has_errors:
         return stored
     errors = {v.name: ERRORS[v.name] for v in stored if v.name in ERRORS}
     return (*(replace(v, ancillary=errors[v.name].name) if v.name in errors else v for v in stored), *errors.values())

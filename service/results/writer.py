@@ -96,6 +96,8 @@ class DatasetWriter:
     def _history(self, intervals: int) -> str:
         """How the values came about."""
         history = f"simulated by hockle with {intervals} intervals"
+        if self._spec.numerics.tolerance is not None:
+            return f"{history} and with fewer; the values are extrapolated (Richardson, order 2), with their errors"
         if not self._spec.numerics.verify:
             return history
         return (f"{history} and with {2 * intervals} and steps half as long; the values are extrapolated from both "
@@ -124,6 +126,6 @@ class DatasetWriter:
             "steps": statistics.steps,
             "failed_steps": statistics.failed_steps,
             "newton_iterations": statistics.newton_iterations,
-            **run.remarks.attributes(),
+            **run.attributes(),
             **netcdf.versions(),
         }

@@ -9,6 +9,7 @@ from typing import Any
 
 from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics
+from solver.run.accuracy import Accuracy
 from solver.run.checkpoint import Saved, restore, saved
 from solver.run.remarks import Remarks
 from solver.scene.scene import Scene
@@ -60,6 +61,19 @@ class Run(ABC):
     def progress(self) -> float:
         """The part of its work that is done, from 0 to 1, as far as it can be known."""
         return min(self.t / self._scene.t_end, 1.0)
+
+    @property
+    def accuracy(self) -> Accuracy | None:
+        """The errors of its frames, where it was to keep a tolerance and these have come."""
+        return None
+
+    def notes(self) -> list[str]:
+        """What a user is to read of it, sentence by sentence."""
+        return [*([self.accuracy.sentence()] if self.accuracy else []), *self.remarks.sentences()]
+
+    def attributes(self) -> dict[str, float | int | str]:
+        """What a dataset of it says of it as a whole, by name."""
+        return {**(self.accuracy.attributes() if self.accuracy else {}), **self.remarks.attributes()}
 
     @property
     def finished(self) -> bool:

@@ -16,11 +16,13 @@ class Numerics:
     `linear_solver` of the box method: a name in solver/methods/linear/registry.py; `intervals` of equal length along s;
     `dt_max` the largest step (s); `rho_inf` the spectral radius of generalized-alpha at infinite frequency in time,
     `rho_inf_space` the same along s (1 is the box scheme); `increment_tolerance` bounds each step's error relative to
-    the step's motion (None: the method's own).
+    the step's motion (None: the method's own), or to `small_motion`, rotation (rad) and displacement (rod lengths), if
+    that is more.
 
-    With a `tolerance` (staggered method) pilot runs choose the intervals, at most `most_intervals`, and the steps, so
-    that the relative error of r, kappa and the energies is below it. `verify`: the scene also runs with intervals and
-    steps half as long, and the frames have the extrapolated solution and an estimate of its error.
+    With a `tolerance` (staggered method) the scene runs on meshes that are twice as fine each, at most of
+    `most_intervals`, until the estimated error of r, kappa, the energies and Tw and Wr is below it, or the work is done
+    that may be: a target, not a condition. `verify`: the scene also runs with intervals and steps half as long. Either
+    way the frames have the extrapolated solution and an estimate of its error.
     """
 
     method: Literal["box", "staggered"] = "box"
@@ -30,6 +32,7 @@ class Numerics:
     rho_inf: float = 0.5
     rho_inf_space: float = 1.0
     increment_tolerance: float | None = None
+    small_motion: float = 1e-7
     tolerance: float | None = None
     most_intervals: int = 2000
     verify: bool = False
@@ -51,7 +54,7 @@ class Numerics:
             raise ValueError(
                 f"rho_inf_space must be 1 with linear_solver {self.linear_solver}, got {self.rho_inf_space}"
             )
-        for name in ("increment_tolerance", "tolerance"):
+        for name in ("increment_tolerance", "small_motion", "tolerance"):
             value = getattr(self, name)
             if value is not None and not value > 0:
                 raise ValueError(f"{name} must be > 0, got {value}")

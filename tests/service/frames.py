@@ -12,7 +12,6 @@ import numpy as np
 from service.cases import CaseSpec, apply_settings, build_scene, load_case, parse_case
 from solver import Frame, Statistics
 from solver.measures.frame import Fields, complete
-from solver.run.remarks import Remarks
 
 STATISTICS = Statistics(steps=12, newton_iterations=34, failed_steps=1, cpu_time=5.5)
 
@@ -45,4 +44,4 @@ def frames(spec: CaseSpec, count: int) -> Iterator[Frame]:
 
 def ended(spec: CaseSpec) -> SimpleNamespace:
     """What a writer asks of a run that has ended."""
-    return SimpleNamespace(s=nodes(spec), statistics=STATISTICS, remarks=Remarks())
+    return SimpleNamespace(s=nodes(spec), statistics=STATISTICS, attributes=dict)

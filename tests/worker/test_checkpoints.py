@@ -106,7 +106,7 @@ def test_a_job_killed_again_and_again_has_the_dataset_of_an_undisturbed_run(job,
     assert list(settings.work.iterdir()) == []
 
 
-def test_a_job_killed_in_its_pilots_goes_on_and_has_its_error_bars(registry, settings):
+def test_a_job_killed_while_it_is_refined_goes_on_and_has_its_error_bars(registry, settings):
     asked = {"t_end": 0.5, "numerics.tolerance": 1e-2, "numerics.verify": True}
     case = apply_settings(load_case("elastica"), asked)
     whole = content(settings, run_on(settings, registry, registry.submit(NewJob(case))))

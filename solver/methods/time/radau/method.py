@@ -29,9 +29,6 @@ NEWTON_PART = 1e-3
 """Of the tolerance of a step's error: what Newton's iteration may leave. (Nothing where steps are of fixed length.)"""
 FEEDBACK = 0.5
 """Part of an end's lag behind its prescribed place that a step takes back."""
-SMALL_MOTION = 1e-7
-"""Rotation (rad) and displacement (rod lengths) in a step below which it is not shortened; or, if that is more, those
-of which the tolerated part is what Newton's iteration leaves: no shorter step has a smaller error."""
 
 
 class RadauMethod(ABC):
@@ -39,7 +36,7 @@ class RadauMethod(ABC):
 
     increment_order = 4.0
     increment_tolerance = 0.01
-    easy_iterations = 4
+    easy_iterations = 7
     shortest_step = 0.0
     chain: Record
     state: Record
@@ -54,7 +51,8 @@ class RadauMethod(ABC):
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._newton_part = NEWTON_PART * tolerance if tolerance < 1.0 else 0.0
-        self._small_motion = max(SMALL_MOTION, TOLERANCE / tolerance)
+        # no shorter step has an error below what Newton's iteration leaves
+        self._small_motion = max(scene.numerics.small_motion, TOLERANCE / tolerance)
         self._last_dt = 0.0
         self._powers = np.zeros((STAGES, 3))
 

@@ -1,0 +1,32 @@
+"""The mesh that a run to a tolerance begins with: fine enough for how the rod is bent and twisted."""
+
+from __future__ import annotations
+
+from math import ceil, log2
+
+import numpy as np
+
+from solver.physics.ends import DrivenEnd
+from solver.run.plan import FIRST_INTERVALS
+from solver.scene.layout import nodes_at_rest
+from solver.scene.scene import Scene
+
+LARGEST_TURN = 0.6
+"""Rotation (rad) within an interval that the first mesh has at the most."""
+LOOKED_AT = 513
+"""Nodes at which the initial shape is looked at."""
+
+
+def first_mesh(scene: Scene) -> int:
+    """How many times FIRST_INTERVALS are to be doubled: see `plan`."""
+    s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
+    _, _, kappa = nodes_at_rest(scene.initial, s)
+    bent = float(np.sum(np.linalg.norm(kappa, axis=1)[1:] * np.diff(s)))
+    return max(ceil(log2(max(bent, twisted(scene)) / (LARGEST_TURN * FIRST_INTERVALS) + 1e-9)), 0)
+
+
+def twisted(scene: Scene) -> float:
+    """The largest rotation (rad) of one end about itself relative to the other that the scene asks for."""
+    ends = DrivenEnd(scene.start), DrivenEnd(scene.end)
+    turned = [[end.rotation_prescribed(t) or 0.0 for end in ends] for t in scene.outputs]
+    return max(abs(one - two) for one, two in turned)

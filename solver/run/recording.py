@@ -1,0 +1,70 @@
+"""A run's frames as rows of numbers, which a checkpoint can hold, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.measures.frame import OUTPUTS, Frame
+
+ALONG = tuple(output for output in OUTPUTS if output.along_rod)
+NUMBERS = tuple(output for output in OUTPUTS if not output.along_rod)
+WIDTH = sum(output.components for output in ALONG)
+"""Numbers per node."""
+
+
+class Columns(NamedTuple):
+    """The outputs of frames: `along` (..., nodes, components), `numbers` (..., 1, outputs)."""
+
+    along: Array
+    numbers: Array
+
+
+def column(name: str) -> slice:
+    """Where the components of an output along the rod stand."""
+    before = [output.name for output in ALONG].index(name)
+    at = sum(output.components for output in ALONG[:before])
+    return slice(at, at + ALONG[before].components)
+
+
+def _number(name: str) -> int:
+    return [output.name for output in NUMBERS].index(name)
+
+
+R, KAPPA, ORIENTATION = column("r"), column("kappa"), column("orientation")
+TWIST, WRITHE, BALANCE = _number("Tw"), _number("Wr"), _number("energy_balance")
+BENDING, TORSION = _number("energy_bending"), _number("energy_torsion")
+KINETIC, ADDED_MASS = _number("energy_kinetic"), _number("energy_added_mass")
+
+
+def row_of(frame: Frame) -> Array:
+    """The time, the numbers and the outputs along the rod of a frame, one after the other."""
+    numbers = [frame.t, *(float(getattr(frame, output.name)) for output in NUMBERS)]
+    fields = [getattr(frame, output.name) for output in ALONG]
+    along = np.concatenate([field.reshape(len(field), -1) for field in fields], axis=1)
+    return np.concatenate([numbers, along.ravel()])
+
+
+def number_of(row: Array, index: int) -> float:
+    """The output that is number `index` of `NUMBERS`."""
+    return float(row[1 + index])
+
+
+def columns_of(rows: Sequence[Array]) -> Columns:
+    """The outputs of many frames, (frames, ...)."""
+    table, end = np.array(rows), 1 + len(NUMBERS)
+    return Columns(table[:, end:].reshape(len(table), -1, WIDTH), table[:, None, 1:end])
+
+
+def frame_of(t: float, columns: Columns) -> Frame:
+    """The frame at time `t` (s) of the outputs of one."""
+    values: dict[str, Any] = {}
+    for output, number in zip(NUMBERS, columns.numbers[0], strict=True):
+        values[output.name] = int(np.nan_to_num(number)) if output.type == "i4" else float(number)
+    for output in ALONG:
+        field = columns.along[:, column(output.name)]
+        values[output.name] = np.ascontiguousarray(field if output.axes else field[:, 0])
+    return Frame(t=t, **values)

@@ -1,0 +1,189 @@
+"""A run to a tolerance: the scene on meshes that are twice as fine each, until their differences are small.
+
+None of these runs is a rehearsal: the frames are what the last two or three meshes say together (`richardson`), with
+their error as these tell it. What comes next is decided by `plan`. Where the tolerance cannot be had for the work that
+may be done, the frames come all the same, with their errors. See docs/decisions/0009-accuracy-on-demand.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.measures.frame import Frame, Statistics
+from solver.outcome import Outcome, RunFailed
+from solver.run.accuracy import Accuracy, judge
+from solver.run.first_mesh import first_mesh
+from solver.run.plan import (
+    OVERHEAD,
+    Attempt,
+    Excess,
+    Trial,
+    allowance,
+    following,
+    intervals_of,
+    longest_step,
+    step_tolerance,
+    to_come,
+)
+from solver.run.recording import row_of
+from solver.run.run import Run
+from solver.run.simulation import Simulation
+from solver.run.together import Together
+from solver.scene.scene import Scene
+
+SMALL_MOTION = 1e-3
+"""See `Numerics`: of the waves that a start excites those below it are not followed step by step."""
+OUTCOMES = tuple(Outcome)
+MOST_ROWS = 1_000_000
+"""Nodes times frames that are kept of a run."""
+
+
+class Refined(Run):
+    """A run at the resolutions that its tolerance needs; all of them come before its first frame."""
+
+    def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
+        super().__init__(scene, statistics)
+        self._history: list[tuple[float, ...]] = []
+        self._recorded: list[tuple[Array, ...]] = []
+        """The rows of each attempt; none where they are not needed any more."""
+        self._rows: list[Array] = []
+        self._excess: tuple[float, ...] = tuple(Excess())
+        self._mesh, self._steps = first_mesh(scene), 0
+        self._before, self._progress, self._decided = 0, 0.0, False
+        self._detail = ""
+        self._run = self._begin()
+
+    @property
+    def s(self) -> Array:
+        """Arclengths of the nodes (n,), m; before the first frame they may be those of a coarser mesh."""
+        return self._together.s if self._decided else self._run.s
+
+    @property
+    def phase(self) -> str:
+        """Which mesh it is at."""
+        return f"run {len(self._history) + 1}: {intervals_of(self._mesh)} intervals"
+
+    @property
+    def progress(self) -> float:
+        """The part of the work that is done, as far as it can be known; it never falls."""
+        if self._decided:
+            return 1.0
+        done, part = self._work, min(self._run.t / self._scene.t_end, 1.0)
+        attempts = self._attempts
+        spent = sum(attempt.work for attempt in attempts)
+        rest = to_come(attempts, self._errors, Trial(self._mesh, self._steps), self._most)
+        whole = spent + done / max(part, 0.01) + rest
+        self._progress = max(self._progress, (spent + done) / max(whole, 1.0))
+        return self._progress
+
+    @property
+    def chosen(self) -> Scene:
+        """A scene whose verified run has the two finest meshes of this one, and steps like these."""
+        together = self._together
+        steps, mesh = together.finest.steps, together.finest.mesh
+        tolerated = step_tolerance(steps, self._scene.numerics.tolerance or 1.0)
+        numerics = replace(
+            self._scene.numerics, tolerance=None, verify=True, intervals=intervals_of(mesh) // 2,
+            dt_max=longest_step(steps, self._scene.output_interval), increment_tolerance=tolerated,
+        )  # fmt: skip
+        return replace(self._scene, numerics=numerics)
+
+    @property
+    def accuracy(self) -> Accuracy | None:
+        """The errors of its frames, once these come."""
+        if not self._decided:
+            return None
+        return judge(self._scene.numerics.tolerance or 0.0, np.array(self._together.errors()))
+
+    def warm(self) -> None:
+        """Have every kernel compiled."""
+        self._run.warm()
+
+    def restore(self, checkpoint: Mapping[str, Any]) -> None:
+        """Go on where a run of the same scene was; see `Run.restore`."""
+        self._mesh, self._steps = checkpoint["._mesh"], checkpoint["._steps"]
+        self._run = self._begin()
+        super().restore(checkpoint)
+
+    def _begin(self) -> Run:
+        numerics = replace(
+            self._scene.numerics, tolerance=None, verify=False, intervals=intervals_of(self._mesh),
+            dt_max=longest_step(self._steps, self._scene.output_interval), small_motion=SMALL_MOTION,
+            increment_tolerance=step_tolerance(self._steps, self._scene.numerics.tolerance or 1.0),
+        )  # fmt: skip
+        return Simulation(replace(self._scene, numerics=numerics), self.statistics)
+
+    @property
+    def _attempts(self) -> list[Attempt]:
+        return [Attempt(*row) for row in self._history]  # type: ignore[arg-type]
+
+    @property
+    def _errors(self) -> Excess:
+        mesh, steps, at = self._excess
+        return Excess(mesh, steps, int(at))
+
+    @property
+    def _most(self) -> int:
+        return min(self._scene.numerics.most_intervals, MOST_ROWS // (len(self._outputs) + 1))
+
+    @property
+    def _work(self) -> float:
+        """Of the attempt under way."""
+        return (self.statistics.newton_iterations - self._before) * (intervals_of(self._mesh) + OVERHEAD)
+
+    @property
+    def _together(self) -> Together:
+        return Together(self._scene, self._attempts, self._recorded)
+
+    def _first_frame(self) -> Frame | None:
+        if not self._decided:
+            self._go_on()
+        return self._next_frame(0.0) if self._decided else None
+
+    def _next_frame(self, output: float) -> Frame | None:
+        together = self._together
+        if self._frames >= together.frames:
+            last = self._attempts[-1]
+            raise RunFailed(OUTCOMES[int(last.outcome)], last.t, self.statistics.steps, self._detail)
+        frame = together.frame(self._frames)
+        self.t = frame.t
+        return frame
+
+    def _go_on(self) -> None:
+        """Take a step of the attempt under way; where it ends, decide what follows."""
+        try:
+            frame = self._run.advance()
+        except RunFailed as failure:
+            self._detail = failure.detail
+            self._ended(failure.t, OUTCOMES.index(failure.outcome), slow=False)
+            return
+        if frame is not None:
+            self._rows.append(row_of(frame))
+        if self._run.finished:
+            self._ended(self._run.t, OUTCOMES.index(Outcome.COMPLETED), slow=False)
+        elif self._work > allowance(self._attempts, Trial(self._mesh, self._steps)):
+            self._ended(self._run.t, OUTCOMES.index(Outcome.TOLERANCE_NOT_REACHED), slow=True)
+
+    def _ended(self, t: float, outcome: int, slow: bool) -> None:
+        complete = OUTCOMES[outcome] is Outcome.COMPLETED
+        self._history.append(tuple(Attempt(self._mesh, self._steps, self._work, t, complete, slow, outcome)))
+        self._recorded.append(tuple(self._rows))
+        self._rows, self._before = [], self.statistics.newton_iterations
+        together = self._together
+        self._recorded = [rows if i in together.needed else () for i, rows in enumerate(self._recorded)]
+        excess = together.excess()
+        if excess.at < 0:  # what another mesh has shown with longer steps
+            excess = Excess(self._errors.mesh, excess.steps, self._errors.at)
+        self._excess = tuple(excess)
+        then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
+        if then is None:
+            self._decided = True
+            self.remarks = self._run.remarks
+        else:
+            self._mesh, self._steps = then
+            self._run = self._begin()

@@ -1,0 +1,87 @@
+"""What runs on several meshes say together: the extrapolated solution, and an estimate of its error.
+
+Both methods are of order 2 along s: with k times the intervals the error of the mesh falls to 1/k^2 of what it was.
+All arrays are (frames, nodes, columns), a column being a component of an output; a number is a column with one node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from solver.arrays import Array
+
+WARY = 2.0
+"""By how much the error of two meshes is taken larger: nothing shows yet that the order is 2."""
+AGREEMENT = 0.6
+"""Part of what order 2 would make the differences of successive meshes fall by, from which on it is believed."""
+LEAST = 0.02
+"""Part of the finest mesh's own error that the extrapolated one is never told to be below."""
+
+
+def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, Array]:
+    """The solution and its error at the nodes of the finest of up to three meshes, which come coarsest first.
+
+    `ratios`: how many times finer each mesh is than the one before it. Of one, nothing tells the error: NaN. Of two, u1
+    and u2: u2 + (u2 - u1) / (k^2 - 1), and as its error that correction, taken `WARY`. Of three, the difference of the
+    two such solutions tells their error; a third of it is taken. Where a column's differences do not fall as order 2
+    has it, nothing is extrapolated, and the error is what a series of such differences would leave.
+    """
+    fine = meshes[-1]
+    nodes, steps = fine.shape[1], [k if fine.shape[1] > 1 else 1 for k in ratios]
+    if not ratios:
+        return fine, np.full_like(fine, np.nan)
+    apart = [two[:, ::step] - one for one, two, step in zip(meshes, meshes[1:], steps, strict=False)]
+    corrections = [each / (k**2 - 1.0) for each, k in zip(apart, ratios, strict=True)]
+    last = corrections[-1]
+    correction = np.nan_to_num(_spread(last, nodes))
+    if len(meshes) == 2:
+        return fine + correction, nowhere_small(WARY * np.abs(last), nodes)
+    far = apart[1][:, :: steps[0]]
+    fall = _rms(apart[0]) / np.maximum(_rms(far), 1e-300)
+    believed = fall >= AGREEMENT * ratios[1] ** 2
+    change = far + last[:, :: steps[0]] - corrections[0]
+    settled = np.maximum(np.abs(change) / 3.0, LEAST * np.abs(last[:, :: steps[0]]))
+    left = np.clip(1.0 / np.maximum(fall - 1.0, 1e-3), 1.0 / (ratios[1] ** 2 - 1.0), 1.0)
+    errors = nowhere_small(settled, nodes), nowhere_small(left * np.abs(apart[1]), nodes)
+    return fine + np.where(believed, correction, 0.0), np.where(believed, *errors)
+
+
+def error_of_steps(series: Sequence[Array], shorter: bool, nodes: int) -> Array:
+    """The error, at `nodes` nodes, of one of two or three runs on one mesh, which come with the longest steps first.
+
+    Of the last, or, if there is one with `shorter` steps than the run in question, of the last but one. The error is
+    in proportion to a step's tolerance, a quarter from one to the next, where the differences show it.
+    """
+    apart = np.abs(series[-1] - series[-2])
+    if shorter or len(series) < 3:
+        return nowhere_small(apart, nodes)
+    fall = _rms(series[-2] - series[-3]) / np.maximum(_rms(apart), 1e-300)
+    return nowhere_small(np.clip(1.0 / np.maximum(fall - 1.0, 1e-3), 1.0 / 3.0, 1.0) * apart, nodes)
+
+
+def nowhere_small(error: Array, nodes: int) -> Array:
+    """An error at `nodes` nodes, nowhere less than its column's rms: where two solutions cross, they say nothing."""
+    error = np.maximum(error, _rms(error))
+    many = error.shape[1]
+    if many == nodes:
+        return error
+    place = np.linspace(0.0, many - 1.0, nodes)
+    before = np.minimum(place.astype(int), many - 2)
+    part = (place - before)[:, None]
+    return np.asarray((1.0 - part) * error[:, before] + part * error[:, before + 1])
+
+
+def _spread(values: Array, nodes: int) -> Array:
+    """Values of a smooth function of s at more nodes, by a cubic spline."""
+    many = values.shape[1]
+    if many == nodes:
+        return values
+    spline = CubicSpline(np.linspace(0.0, 1.0, many), values, axis=1)
+    return np.asarray(spline(np.linspace(0.0, 1.0, nodes)))
+
+
+def _rms(values: Array) -> Array:
+    return np.asarray(np.sqrt(np.mean(values**2, axis=1, keepdims=True)))

@@ -1,0 +1,122 @@
+"""A run to a tolerance: its errors are what it says, it is kept where it can be, and there always is an answer."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from solver import Condition, Curve, End, Initial, Numerics, Outcome, RunFailed, Scene, VerifiedFrame, simulate
+from solver.run import plan
+from solver.run.accuracy import QUANTITIES, errors_of, sizes
+from solver.run.plan import FIRST_INTERVALS
+from solver.run.recording import Columns, columns_of, row_of
+from solver.run.refined import Refined
+from solver.scene.ends import FREE
+from tests.solver.bent import bent_cantilever
+from tests.solver.scenes import EJ
+from validation.error_bars import missed, misses
+
+NUMERICS = Numerics(method="staggered")
+
+
+def tolerated(tolerance: float, **more: float) -> Scene:
+    return bent_cantilever(replace(NUMERICS, tolerance=tolerance, **more))
+
+
+@cache
+def done(tolerance: float) -> tuple[Refined, list[VerifiedFrame]]:
+    run = Refined(tolerated(tolerance))
+    return run, [frame for frame in run if isinstance(frame, VerifiedFrame)]
+
+
+@cache
+def truth() -> list[VerifiedFrame]:
+    """By 128 and 256 intervals, and short steps."""
+    numerics = replace(NUMERICS, intervals=128, dt_max=0.005, increment_tolerance=1e-5, verify=True)
+    return [frame for frame in simulate(bent_cantilever(numerics)) if isinstance(frame, VerifiedFrame)]
+
+
+def true_errors(tolerance: float) -> np.ndarray:
+    """Of `QUANTITIES`, the largest of all frames."""
+    rows = columns_of([row_of(frame) for frame in done(tolerance)[1]]), columns_of([row_of(f) for f in truth()])
+    ours, theirs = rows
+    step = (theirs.along.shape[1] - 1) // (ours.along.shape[1] - 1)
+    apart = Columns(np.abs(ours.along - theirs.along[:, ::step]), np.abs(ours.numbers - theirs.numbers))
+    return errors_of(apart, sizes(tolerated(tolerance), [theirs])).max(axis=0)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+def test_the_true_error_is_below_the_tolerance_and_below_what_the_run_says(tolerance: float) -> None:
+    accuracy = done(tolerance)[0].accuracy
+    assert accuracy is not None
+    assert accuracy.met
+    for name, error in zip(QUANTITIES, true_errors(tolerance), strict=True):
+        assert error <= accuracy.errors[name] + 1e-12 <= tolerance
+
+
+def test_true_errors_are_within_three_bars() -> None:
+    assert missed(misses(done(1e-3)[1], truth())) <= 0.05
+
+
+def test_a_tighter_tolerance_costs_more_and_brings_more() -> None:
+    loose, tight = done(1e-2), done(1e-4)
+    assert tight[0].statistics.newton_iterations > loose[0].statistics.newton_iterations
+    assert true_errors(1e-4)[0] < true_errors(1e-2)[0]
+
+
+def test_runs_on_all_meshes_count_in_what_it_costs_and_frames_come_after_them() -> None:
+    run = simulate(tolerated(1e-2))
+    seen = []
+    while run.advance() is None:
+        assert run.t == 0.0
+        seen.append(run.progress)
+    assert seen == sorted(seen)
+    assert 0.0 < seen[-1] < 1.0
+    assert run.progress == 1.0
+    steps = run.statistics.steps
+    assert steps > 4 * 16
+    assert [frame.t for frame in run] == pytest.approx(np.arange(0.25, 4.1, 0.25))
+    assert run.statistics.steps == steps
+
+
+def test_what_cannot_be_reached_is_delivered_all_the_same_and_says_so() -> None:
+    run = simulate(tolerated(1e-6, most_intervals=32))
+    assert len(list(run)) == 17
+    assert run.accuracy is not None
+    assert not run.accuracy.met
+    assert "beyond the tolerance of 1e-06" in run.notes()[0]
+    assert run.attributes()["tolerance_met"] == "no"
+
+
+def test_where_the_work_that_may_be_done_is_little_there_is_an_answer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plan, "MOST_WORK", 2e4)
+    run = simulate(tolerated(1e-6))
+    assert len(list(run)) == 17
+    assert run.accuracy is not None
+    assert 0.0 < run.accuracy.errors["r"] < 0.1
+
+
+def test_a_run_that_fails_on_every_mesh_gives_the_frames_until_then_and_fails_by_name() -> None:
+    moment = Condition("load", Curve.table([0.0, 2.0], [0.0, 1e4 * EJ], "linear"))
+    twisted = End((FREE, FREE, FREE), (FREE, FREE, (moment,)))
+    scene = replace(tolerated(1e-3, most_intervals=64), end=twisted, points=(), damping=40.0)
+    run = simulate(scene)
+    with pytest.raises(RunFailed) as failure:
+        list(run)
+    assert failure.value.outcome is Outcome.MESH_TOO_COARSE
+    assert run.t == failure.value.t or run.t < failure.value.t
+
+
+def test_a_rod_at_rest_needs_no_fine_mesh() -> None:
+    scene = replace(tolerated(1e-4), points=(), initial=Initial.straight(direction=(1.0, 1.0, 1.0)))
+    assert len(next(iter(simulate(scene))).r) - 1 <= 4 * FIRST_INTERVALS
+
+
+def test_the_first_mesh_is_fine_enough_for_a_rod_of_many_turns() -> None:
+    turn = Condition("position", Curve.table([0.0, 4.0], [0.0, 20.0 * 2.0 * np.pi], "smoothstep"))
+    end = End((FREE, FREE, FREE), (FREE, FREE, (turn,)))
+    run = Refined(replace(tolerated(1e-2), end=end, points=()))
+    assert len(run.s) - 1 >= 20.0 * 2.0 * np.pi / 0.6

@@ -7,6 +7,7 @@ import errno
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from hockle.failure import Failure
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from service.results import DatasetWriter
     from solver import Run, RunFailed
 
+SHOWN_EVERY = 0.1
+"""Seconds between two looks of the progress bar."""
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -81,6 +84,7 @@ def run(told: argparse.Namespace) -> int:
 
 def summary(path: Path) -> str:
     """How the run of a dataset ended, what it cost, and its last frame's balance."""
+    from outcomes import Outcome
     from service.results import open_dataset
 
     with open_dataset(path) as dataset:
@@ -99,6 +103,8 @@ def summary(path: Path) -> str:
                 f"Lk {float(last.Lk):.4f}",
                 f"  energy {stored:.4g} J, " + _trust(last),
             ]
+        if told["outcome"] == Outcome.COMPLETED and told["message"]:
+            lines.append(f"  {told['message']}")
     return "\n".join(
         [*lines, f"  {path} ({path.stat().st_size / 1e6:.1f} MB, {dataset.sizes['time']} frames)"]
     )
@@ -145,11 +151,18 @@ def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
 
 
 def _progress(spec: CaseSpec, simulation: Run, writer: DatasetWriter) -> Iterator[dict[str, Any]]:
-    """Write the frames as they come, and tell of each what the progress bar shows."""
-    yield {"status": spec.name, "progress": 0.0, "t": 0.0}
-    for frame in simulation:
-        writer.append(frame)
-        yield {"status": spec.name, "progress": min(frame.t / spec.t_end, 1.0), "t": frame.t}
+    """Write the frames as they come, and say now and then what the progress bar shows."""
+    yield {"status": f"{spec.name}: loading kernels, or compiling them", "progress": 0.0, "t": 0.0}
+    simulation.warm()
+    shown = 0.0
+    while not simulation.finished:
+        frame = simulation.advance()
+        if frame is not None:
+            writer.append(frame)
+        if monotonic() - shown >= SHOWN_EVERY:
+            shown = monotonic()
+            yield {"status": f"{spec.name}: {simulation.phase}", "progress": simulation.progress, "t": simulation.t}
+    yield {"status": spec.name, "progress": 1.0, "t": simulation.t}
 
 
 def _not_written(path: Path, error: OSError) -> str:

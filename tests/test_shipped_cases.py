@@ -85,7 +85,7 @@ def test_the_papers_cable_meets_the_milestones(tmp_path: Path):
     with DatasetWriter(path, spec) as writer:
         for frame in frames:
             writer.append(frame)
-        writer.publish("completed", "", simulation.s, simulation.statistics)
+        writer.publish("completed", "", simulation)
     with open_dataset(path) as dataset:
         told = {name: value for name, value, _ in milestones(dataset)}
     # References of two converged implementations; the tolerances are those of the default settings.

@@ -7,7 +7,7 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -37,11 +37,10 @@ def after_two_frames(monkeypatch: pytest.MonkeyPatch, happens: Callable[[], None
     """Let something happen once a simulation has given two frames."""
 
     class Interrupted(Simulation):
-        def __iter__(self) -> Iterator[Frame]:
-            for i, frame in enumerate(super().__iter__()):
-                if i == 2:
-                    happens()
-                yield frame
+        def advance(self) -> Frame | None:
+            if self._frames == 2:
+                happens()
+            return super().advance()
 
     def simulate(scene: Scene) -> Simulation:
         return Interrupted(scene)

@@ -41,8 +41,8 @@ class Outcome(StrEnum):
     NO_CONSISTENT_START = (
         "no_consistent_start",
         "no forces were found with which the rod could start",
-        "do not hold or drive a straight rod, which cannot stretch, along its axis at both ends; let loads and "
-        "ends begin gently; or use more intervals",
+        "let loads and ends begin gently, or use more intervals; a straight rod that is held along its axis at both "
+        "ends needs the method staggered",
         "solver",
     )
     STEP_TOO_SMALL = (
@@ -67,9 +67,10 @@ class Outcome(StrEnum):
     )
     ROD_STRETCHED = (
         "rod_stretched",
-        "the rod, which cannot stretch, was no longer as long as it is: an interval was off by more than 10 %",
-        "use more intervals, a smaller dt_max or increment_tolerance, or the method staggered, which keeps the "
-        "length whatever happens",
+        "the rod was no longer as long as it is by more than 10 %: its ends pull it so far, or the box method did not "
+        "keep the length of an interval",
+        "look for ends that ask for more than the rod's length; by the box method, use more intervals, a smaller "
+        "dt_max or increment_tolerance, or the method staggered",
         "solver",
     )
     ENERGY_MADE = (
@@ -97,8 +98,8 @@ class Outcome(StrEnum):
     SINGULAR_SYSTEM = (
         "singular_system",
         "the linear system has no single solution",
-        "check that the end conditions leave no motion undetermined, and that a straight rod, which cannot "
-        "stretch, is not held along its axis at both ends",
+        "check that the end conditions leave no motion undetermined; a straight rod that is held along its axis at "
+        "both ends needs the method staggered",
         "solver",
     )
     EQUILIBRIUM_LOST = (

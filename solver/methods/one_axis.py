@@ -20,6 +20,7 @@ from solver.methods.space.one_axis.energies import energies, stage_powers
 from solver.methods.space.one_axis.motion import extrapolate, follow_segments, largest_turn
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
+from solver.physics.axial import axial_compliance
 from solver.physics.ends import LOAD, DrivenEnd
 from solver.scene.scene import Scene
 
@@ -49,7 +50,7 @@ class OneAxisMethod(RadauMethod):
     @classmethod
     def of(cls, scene: Scene) -> OneAxisMethod | None:
         """The method for a scene, if that turns about one axis."""
-        axis = axis_of(scene)
+        axis = None if axial_compliance(scene) > 0.0 else axis_of(scene)
         return None if axis is None else cls(scene, axis)
 
     def switch_ends(self, t: float) -> None:

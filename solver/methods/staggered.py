@@ -22,6 +22,7 @@ from solver.methods.space.segments.joints import bend_joints, largest_turn, tota
 from solver.methods.space.segments.motion import extrapolate, follow_segments, move, spin_steadily
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
+from solver.physics.axial import axial_compliance
 from solver.physics.contact.forces import Touch, keeps_apart
 from solver.physics.contact.self_contact import SelfContact
 from solver.physics.ends import DrivenEnd
@@ -47,6 +48,7 @@ class StaggeredMethod(RadauMethod):
         self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=3)
         self._make_records(chain, state, (Stages, Driven, Residuals, Tangents, Factors),
                            Coupling.empty(N if scene.contact is not None else 0))  # fmt: skip
+        self.driven.compliance[:] = 0.5 * axial_compliance(scene)
         self._joints = self._bend(self.state.quaternion)[0]
         R = np.zeros((N + 2, 3, 3))
         for quaternion, matrix in zip(self.state.quaternion, R, strict=True):
@@ -167,10 +169,22 @@ class StaggeredMethod(RadauMethod):
         stages, ends = self.stages, self._end_velocities()
         stage_powers(self._handed.reference, ends, self._powers)
         for side, (end, frame) in enumerate(((self.start, 0), (self.end, -1))):
-            velocity = ends[:, side].copy()
+            velocity = ends[:, side] + (2.0 * side - 1.0) * self._stretching(side, frame)
             if not end.in_lab:
                 velocity = rotate_back(stages.quaternion[:, frame].copy(), velocity)
             end.follow(weights @ velocity, weights @ stages.omega[:, frame])
+
+    def _stretching(self, side: int, frame: int) -> Array:
+        """The velocity (3, 3), lab, by which what holds an end moves away from the rod's end at the stages."""
+        tangent, rate = self.stages.R[:, frame, :, 2], self.stages.F_t[:, side]
+        stretch = self.driven.compliance[side] * np.sum(tangent * rate, axis=1)
+        return np.asarray(stretch[:, None] * tangent)
+
+    def strain(self) -> float:
+        """The trial's stretch by the compliance of its ends, in rod lengths."""
+        forces, tangents = self.stages.F[-1, [0, -1]], self.stages.R[-1, [0, -1], :, 2]
+        stretch = self.driven.compliance * np.abs(np.sum(forces * tangents, axis=1))
+        return float(stretch.sum() / self.s[-1])
 
     def _flowed(self, weights: Array) -> Array:
         stored, rubbed = self.contact.power().T

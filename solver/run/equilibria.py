@@ -14,6 +14,7 @@ from solver.measures.topology import writhe_of_rod
 from solver.methods.space.segments.balances import motion_at
 from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.staggered import orientations_at_nodes
+from solver.physics.axial import axial_stiffness
 from solver.run.run import Run
 from solver.scene.ends import End
 from solver.scene.initial import Initial
@@ -37,6 +38,7 @@ class Equilibria(Run):
         compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
         self._equations = Equations(scene)
         self._path = Path(self._equations)
+        self.remarks.axial_stiffness = axial_stiffness(scene)
         self._Lk = self._turns_at_start()
 
     @property

@@ -10,6 +10,7 @@ from solver.measures.frame import Frame, Statistics, complete
 from solver.methods.registry import discretized, tolerated_increment
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
+from solver.physics.axial import axial_stiffness
 from solver.run.accounts import Accounts
 from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
@@ -39,6 +40,8 @@ class Simulation(Run):
         )  # fmt: skip
         self._switches = sorted({c.since for e in (scene.start, scene.end)
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
+        if scene.numerics.method == "staggered":
+            self.remarks.axial_stiffness = axial_stiffness(scene)
         self._turns = 0.0
         self._turn = self._trial_turn = pi
         """The largest rotation (rad) within an interval, of the state and of the trial."""
@@ -135,7 +138,7 @@ class Simulation(Run):
         if self._control.too_coarse(increment):
             return "the motion is faster than the step", Outcome.STEP_TOO_SMALL
         if self._method.strain() > LARGEST_STRAIN:
-            return f"an interval stretched by {self._method.strain():.2g} of its length", Outcome.ROD_STRETCHED
+            return f"stretched by {self._method.strain():.2g} of its length", Outcome.ROD_STRETCHED
         refusal = self._method.refusal()
         if refusal:
             return refusal, Outcome.ROD_CROSSED_ITSELF

@@ -23,6 +23,7 @@ from solver.methods.space.segments.chain import Chain, Residuals, Stages
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.segments.joints import bend_joints
 from solver.methods.space.segments.motion import follow_segments
+from solver.physics.axial import axial_compliance
 from solver.physics.elasticity import mean_bending
 from solver.scene.scene import Scene
 from solver.statics.ends import StaticEnd
@@ -84,6 +85,7 @@ class Equations:
         _lay_down(self.chain, state.quaternion, self.start.base, self.stages)
         R = self.stages.R[0]
         self.ends = (StaticEnd(scene.start, R[0]), StaticEnd(scene.end, R[-1]))
+        self._compliance = 0.5 * axial_compliance(scene)
         self._home = (state.quaternion[[0, -1]].copy(), np.stack([self.start.base, self.tip()]))
         self.stiffness = mean_bending(self.chain.elastic)
         moment, force = self.stiffness / length, self.stiffness / length**2
@@ -140,12 +142,16 @@ class Equations:
         self._follower(side)[:] = follower[:3] + (loaded[:3] if end.follows else 0.0)
         force = dead[:3] + R @ self._follower(side) + (0.0 if end.follows else loaded[:3])
         across = end.axes.T @ (sign * (point.F[frame] - force)) / self._unit(X)
-        place = point.base if side == 0 else self.tip()
+        place = (point.base if side == 0 else self.tip()) + self._stretch(side, R) @ point.F[frame]
         away = (end.axes.T @ (place - self._home[1][side]) - values[:3]) / self.units[3]
         moment = sign * (inner - R.T @ dead[3:] - follower[3:] - loaded[3:]) / self._unit(PSI)
         turned = self._turned(side, t, point.quaternion[frame])
         left[frame, PSI] = np.where(end.held[3:], turned, moment) * self._unit(PSI)
         left[frame, X] = np.where(end.held[:3], away, across) * self._unit(X)
+
+    def _stretch(self, side: int, R: Array) -> Array:
+        """What takes the force at an end to how far what holds it is from the rod's end (3, 3): see `physics.axial`."""
+        return np.asarray((2.0 * side - 1.0) * self._compliance * np.outer(R[:, 2], R[:, 2]))
 
     def _follower(self, side: int) -> Array:
         """Forces (3,) that follow an end's frame."""
@@ -197,6 +203,9 @@ class Equations:
                 block[X][end.held[:3]] = 0.0
             D[a, PSI, PSI][end.held[3:]] = one[end.held[3:]] * self._unit(PSI)
             D[a, X, X][end.held[:3]] = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
+            force = upper[0] if side == 0 else D[-1]
+            stretch = end.axes.T @ self._stretch(side, R[a]) * self._unit(X) / self.units[3]
+            force[X, FORCE][end.held[:3]] = stretch[end.held[:3]]
         scale = self._rows[:, None] * self.units
         return D * scale, lower * scale, upper * scale
 

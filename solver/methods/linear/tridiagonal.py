@@ -178,6 +178,8 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
                 for m in range(6):
                     D[3 + k, m] += weight * rows[n, m]
                     neighbour[3 + k, m] += weight * beside[n, m]
+                for m in range(3):
+                    D[3 + k, 3 + m] -= weight * driven.compliance[side] * R[n, 2] * R[m, 2]
             for m in range(3):
                 frame[3 + k, m] += sign * tangents.turn[side, k, m] / eigenvalue
         else:

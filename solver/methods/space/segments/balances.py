@@ -30,18 +30,19 @@ from solver.physics.loads.registry import Loads
 
 class Driven(NamedTuple):
     """What is given at the stages: ends' `kinds` (2, 6), `values` (3, 2, 6) and dead lab loads `dead` (3, 2, 6);
-    forces on the nodes `push` (3, N + 1, 3), lab."""
+    forces on the nodes `push` (3, N + 1, 3), lab. `compliance` (2,): see `physics.axial`, of each end."""
 
     kinds: Kinds
     values: Array
     dead: Array
     push: Array
+    compliance: Array
 
     @classmethod
     def empty(cls, intervals: int) -> Driven:
         """Zeros for N = `intervals`."""
         return cls(np.zeros((2, 6), np.int64), np.zeros((3, 2, 6)), np.zeros((3, 2, 6)),
-                   np.zeros((3, intervals + 1, 3)))  # fmt: skip
+                   np.zeros((3, intervals + 1, 3)), np.zeros(2))  # fmt: skip
 
 
 class Tangents(NamedTuple):
@@ -193,6 +194,13 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
             for k in range(3):
                 V[k] = stages.V[i, N - 1, k] + 0.5 * chain.h * (Q[k, 0] * w[1] - Q[k, 1] * w[0])
         kinds, values, dead = driven.kinds[side], driven.values[i, side], driven.dead[i, side]
+        if driven.compliance[side] > 0.0:  # the rod's end and what holds it move apart along the tangent
+            stretch = 0.0
+            for k in range(3):
+                stretch += R[k, 2] * stages.F_t[i, side, k]
+            stretch *= driven.compliance[side] * (1.0 if side == 1 else -1.0)
+            for k in range(3):
+                V[k] += stretch * R[k, 2]
         inner = stages.left[i, 0] if side == 0 else stages.right[i, N]
         for k in range(3):
             if kinds[k] == RATE_LAB:

@@ -62,7 +62,8 @@ class Stages(NamedTuple):
     `steady` (3, N + 2, 4) and `S` (3, N + 2, 3, 3). From these: `theta_t`, `theta_tt`; `quaternion`, `R`, `omega`,
     `alpha` of the orientations; `r`, `V`, `A` (3, N, 3): position, velocity and acceleration of the segments' centres,
     lab; `base` (3, 3, 3) those of the start; `bend` (3, N + 1, 3): the joints' rotation vectors; `moment` (3, N + 1, 3)
-    q; `left`, `right` (3, N + 1, 3): q turned into the frames before and behind the joint.
+    q; `left`, `right` (3, N + 1, 3): q turned into the frames before and behind the joint; `F_t` (3, 2, 3): rates
+    of F at the start and at the end.
     """
 
     theta: Array
@@ -85,6 +86,7 @@ class Stages(NamedTuple):
     moment: Array
     left: Array
     right: Array
+    F_t: Array
 
     @classmethod
     def empty(cls, intervals: int) -> Stages:
@@ -93,7 +95,7 @@ class Stages(NamedTuple):
         turned, centres, joints = (STAGES, n, 3), (STAGES, n - 2, 3), (STAGES, n - 1, 3)
         quaternions, matrices = (STAGES, n, 4), (STAGES, n, 3, 3)
         shapes = (turned, (STAGES, 3), joints, (n, 3, 3), quaternions, matrices, turned, turned, quaternions, matrices,
-                  turned, turned, centres, centres, centres, (STAGES, 3, 3), *[joints] * 4)  # fmt: skip
+                  turned, turned, centres, centres, centres, (STAGES, 3, 3), *[joints] * 4, (STAGES, 2, 3))  # fmt: skip
         return cls(*(np.zeros(shape) for shape in shapes))
 
 

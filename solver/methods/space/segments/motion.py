@@ -131,7 +131,7 @@ def follow_segments(R: Array, omega: Array, alpha: Array, base: Array, h: float,
 def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Array, dt: float) -> float:
     """Write all that follows from theta and shift at all stages; return the largest |theta|.
 
-    `inverse` is A^-1: theta_t = A^-1 theta / dt, theta_tt = A^-1 theta_t / dt.
+    `inverse` is A^-1: theta_t = A^-1 theta / dt, theta_tt = A^-1 theta_t / dt; likewise the rates of the ends' forces.
     """
     differentiate(inverse, dt, stages.theta, stages.theta_t)
     differentiate(inverse, dt, stages.theta_t, stages.theta_tt)
@@ -140,8 +140,11 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
             stages.base[i, 0, k] = state.base[0, k] + stages.shift[i, k]
             stages.base[i, 1, k] = (inverse[i, 0] * stages.shift[0, k] + inverse[i, 1] * stages.shift[1, k]
                                     + inverse[i, 2] * stages.shift[2, k]) / dt  # fmt: skip
-    largest = 0.0
+    largest, last = 0.0, len(chain.mass)
     for i in range(STAGES):
+        for k in range(3):
+            stages.F_t[i, 0, k] = _rate(inverse, dt, stages.F, state.F, i, 0, k)
+            stages.F_t[i, 1, k] = _rate(inverse, dt, stages.F, state.F, i, last, k)
         total = inverse[i, 0] + inverse[i, 1] + inverse[i, 2]
         for k in range(3):
             stages.base[i, 2, k] = (inverse[i, 0] * stages.base[0, 1, k] + inverse[i, 1] * stages.base[1, 1, k]
@@ -150,6 +153,15 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
         follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], chain.h,
                         stages.r[i], stages.V[i], stages.A[i])  # fmt: skip
     return float(np.sqrt(largest))
+
+
+@inlined
+def _rate(inverse: Array, dt: float, F: Array, before: Array, i: int, node: int, k: int) -> float:
+    """The rate of a component of F at a node at stage i."""
+    rate = 0.0
+    for j in range(STAGES):
+        rate += inverse[i, j] * (F[j, node, k] - before[node, k])
+    return rate / dt
 
 
 @inner

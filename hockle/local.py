@@ -47,7 +47,9 @@ def cases(_: argparse.Namespace) -> int:
 
 
 def validate(told: argparse.Namespace) -> int:
-    """Print what a case would cost, or everything that is wrong with it."""
+    """Print what a case would cost and what looks like a slip in it, or everything that is wrong with it."""
+    from service.cases import build_scene, warnings_of
+
     spec = _spec(told)
     intervals, dt_max = spec.numerics.intervals, spec.numerics.dt_max
     if intervals is None or dt_max is None:
@@ -56,6 +58,8 @@ def validate(told: argparse.Namespace) -> int:
         steps = spec.frames - 1 if spec.analysis == "static" else spec.t_end / dt_max
         size = f"{intervals + 1} nodes, {spec.frames} frames, {steps:.0f} steps or more"
     print(f"{spec.name} is valid: {size}")
+    for warning in warnings_of(spec, build_scene(spec)):
+        print(f"warning: {warning}", file=sys.stderr)
     return 0
 
 

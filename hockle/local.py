@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from service.results import DatasetWriter
     from solver import Run, RunFailed
 
+LOADING = "compiling or loading the solver"
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -149,11 +150,14 @@ def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
 
 
 def _progress(spec: CaseSpec, simulation: Run, writer: DatasetWriter) -> Iterator[dict[str, Any]]:
-    """Write the frames as they come, and tell of each what the progress bar shows."""
-    yield {"status": spec.name, "progress": 0.0, "t": 0.0}
+    """Write the frames as they come, and tell of each what the progress bar shows; first, that the solver is loaded."""
+    told = {"status": spec.name, "progress": 0.0, "t": 0.0}
+    yield told | {"phase": LOADING}
+    simulation.warm()
+    yield told | {"phase": simulation.phase}
     for frame in simulation:
         writer.append(frame)
-        yield {"status": spec.name, "progress": min(frame.t / spec.t_end, 1.0), "t": frame.t}
+        yield told | {"phase": simulation.phase, "progress": simulation.progress, "t": frame.t}
 
 
 def _not_written(path: Path, error: OSError) -> str:

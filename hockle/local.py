@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from service.results import DatasetWriter
     from solver import Run, RunFailed
 
+LOADING = "compiling or loading the solver"
 SHOWN_EVERY = 0.1
 """Seconds between two looks of the progress bar."""
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -50,7 +51,9 @@ def cases(_: argparse.Namespace) -> int:
 
 
 def validate(told: argparse.Namespace) -> int:
-    """Print what a case would cost, or everything that is wrong with it."""
+    """Print what a case would cost and what looks like a slip in it, or everything that is wrong with it."""
+    from service.cases import build_scene, warnings_of
+
     spec = _spec(told)
     intervals, dt_max = spec.numerics.intervals, spec.numerics.dt_max
     if intervals is None or dt_max is None:
@@ -59,6 +62,8 @@ def validate(told: argparse.Namespace) -> int:
         steps = spec.frames - 1 if spec.analysis == "static" else spec.t_end / dt_max
         size = f"{intervals + 1} nodes, {spec.frames} frames, {steps:.0f} steps or more"
     print(f"{spec.name} is valid: {size}")
+    for warning in warnings_of(spec, build_scene(spec)):
+        print(f"warning: {warning}", file=sys.stderr)
     return 0
 
 
@@ -151,8 +156,10 @@ def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
 
 
 def _progress(spec: CaseSpec, simulation: Run, writer: DatasetWriter) -> Iterator[dict[str, Any]]:
-    """Write the frames as they come, and say now and then what the progress bar shows."""
-    yield {"status": f"{spec.name}: loading kernels, or compiling them", "progress": 0.0, "t": 0.0}
+    """Write the frames as they come, and say now and then what the progress bar shows; first, that the solver is
+    loaded."""
+    told = {"status": spec.name, "progress": 0.0, "t": 0.0}
+    yield told | {"phase": LOADING}
     simulation.warm()
     shown = 0.0
     while not simulation.finished:
@@ -161,8 +168,8 @@ def _progress(spec: CaseSpec, simulation: Run, writer: DatasetWriter) -> Iterato
             writer.append(frame)
         if monotonic() - shown >= SHOWN_EVERY:
             shown = monotonic()
-            yield {"status": f"{spec.name}: {simulation.phase}", "progress": simulation.progress, "t": simulation.t}
-    yield {"status": spec.name, "progress": 1.0, "t": simulation.t}
+            yield told | {"phase": simulation.phase, "progress": simulation.progress, "t": simulation.t}
+    yield told | {"phase": simulation.phase, "progress": 1.0, "t": simulation.t}
 
 
 def _not_written(path: Path, error: OSError) -> str:

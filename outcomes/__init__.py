@@ -41,28 +41,32 @@ class Outcome(StrEnum):
     NO_CONSISTENT_START = (
         "no_consistent_start",
         "no forces were found with which the rod could start",
-        "let loads and ends begin gently, or use more intervals; a straight rod that is held along its axis at both "
-        "ends needs the method staggered",
+        "let loads and ends begin gently; use more intervals, with a tolerance a smaller one; a straight rod that is "
+        "held along its axis at both ends needs the method staggered",
         "solver",
     )
     STEP_TOO_SMALL = (
         "step_too_small",
         "even the smallest step, dt_max / 2²², was refused: Newton's iteration stalled, or the motion is faster "
         "than the step",
-        "look for a load or an end that jumps, soften the contact law, or use more intervals",
+        "look for a load or an end that jumps, or for ends that pull the rod taut, which cannot stretch: keep them "
+        "nearer to each other than its length; soften the contact law; or use more intervals, with a tolerance a "
+        "smaller one",
         "solver",
     )
     ROD_CROSSED_ITSELF = (
         "rod_crossed_itself",
         "even at the smallest step it could not be ruled out that the rod passed through itself",
-        "use more intervals, a finer contact.spacing, a stiffer contact law, or a smaller dt_max",
+        "use more intervals or a smaller dt_max, with a tolerance a smaller one; or a finer contact.spacing or a "
+        "stiffer contact law",
         "solver",
     )
     MESH_TOO_COARSE = (
         "mesh_too_coarse",
         "the rod bends or twists by more than half a turn from one node to the next, which no longer says how it "
         "lies",
-        "use more intervals, or look for a load or an end that is far too strong for the rod",
+        "use more intervals, with a tolerance a smaller one; or look for a load or an end that is far too strong for "
+        "the rod",
         "solver",
     )
     ROD_STRETCHED = (
@@ -76,8 +80,8 @@ class Outcome(StrEnum):
     ENERGY_MADE = (
         "energy_made",
         "the equations keep energy, but more than a tenth of all that changed its form or hands came from nowhere",
-        "use more intervals where the section varies, a smaller dt_max or increment_tolerance, a smaller rho_inf, "
-        "or the other method",
+        "with a tolerance use a smaller one; else more intervals where the section varies, a smaller dt_max or "
+        "increment_tolerance, a smaller rho_inf, or the other method",
         "solver",
     )
     ENERGY_LOST = (
@@ -85,8 +89,8 @@ class Outcome(StrEnum):
         "the equations keep energy, but at t_end more than a tenth of all that changed its form or hands has gone "
         "nowhere, besides what an end took that was stopped or set going at once: the steps are too long for its "
         "waves",
-        "use a smaller dt_max or increment_tolerance, a larger rho_inf, or more intervals; or give the rod "
-        "damping, if it is to come to rest",
+        "with a tolerance use a smaller one; else a smaller dt_max or increment_tolerance, a larger rho_inf, or more "
+        "intervals; or give the rod damping, if it is to come to rest",
         "solver",
     )
     SHOOTING_LOST_DIGITS = (
@@ -126,19 +130,20 @@ class Outcome(StrEnum):
     WORKER_LOST = (
         "worker_lost",
         "its worker stopped answering, as often as HOCKLE_ATTEMPTS says, without getting any farther",
-        "the case may need more memory than there is; try fewer intervals or frames, and see the worker's log",
+        "the case may need more memory than there is; try fewer frames or intervals, with a tolerance a larger "
+        "one, and see the worker's log",
         "service",
     )
     WALL_TIME_EXCEEDED = (
         "wall_time_exceeded",
         "the job ran for longer than it may",
-        "give it more, or fewer intervals or a larger dt_max",
+        "give it more, or fewer intervals or a larger dt_max, with a tolerance a larger one",
         "worker",
     )
     OUT_OF_MEMORY = (
         "out_of_memory",
         "the job took more memory than it may, or than there is",
-        "use fewer intervals or a longer output.interval",
+        "use a longer output.interval or fewer intervals, with a tolerance a larger one",
         "worker",
     )
     DISK_LIMIT_EXCEEDED = (

@@ -11,7 +11,7 @@ from service.api.description import CASE_BODY, problems
 from service.api.parts import InParts, Reader, Submitter
 from service.api.problems import Problem
 from service.api.requests import SHIPPED, InWanted
-from service.cases import case_schema, check_cost, load_case, shipped_cases
+from service.cases import build_scene, case_schema, check_cost, load_case, shipped_cases, warnings_of
 
 router = APIRouter(prefix="/v1", tags=["cases"])
 
@@ -26,19 +26,29 @@ class CostDocument(BaseModel):
     bytes: int
 
 
+class WarningDocument(BaseModel):
+    """What is likely a slip: where (JSON pointer into the case), what stands there, and what speaks against it."""
+
+    pointer: str
+    value: Any
+    rule: str
+
+
 class Verdict(BaseModel):
-    """A case that could be run: as it was understood, and what it would cost."""
+    """A case that could be run: as it was understood, what it would cost, and what should be looked at again."""
 
     case: dict[str, Any]
     cost: CostDocument
+    warnings: list[WarningDocument]
 
 
 @router.post("/validate", openapi_extra=CASE_BODY, responses=problems(400, 413, 415, 422))
 def validate(_: Submitter, wanted: InWanted, parts: InParts) -> Verdict:
-    """The case as it is understood, and its `cost`: nodes, frames, steps, seconds, bytes. Nothing is run."""
+    """The case as understood, its `cost` (nodes, frames, steps, seconds, bytes) and `warnings`. Nothing is run."""
     cost = check_cost(wanted.spec, parts.settings.longest_run)
     wanted.request.limits.within(parts.settings.limits)
-    return Verdict(case=wanted.spec.document(), cost=CostDocument(**vars(cost)))
+    warnings = [WarningDocument(**vars(warning)) for warning in warnings_of(wanted.spec, build_scene(wanted.spec))]
+    return Verdict(case=wanted.spec.document(), cost=CostDocument(**vars(cost)), warnings=warnings)
 
 
 @router.get("/cases")

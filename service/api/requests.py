@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, Validatio
 
 from service.api.bodies import json_object
 from service.cases import CaseError, CaseSpec, FieldError, apply_settings, load_case, parse_case, shipped_cases
+from service.cases.suggestions import suggested
 from service.jobs import Limits
 from service.jobs.job import LEAST_MEMORY
 from service.meaning import means
@@ -92,7 +93,7 @@ def wanted(body: Annotated[dict[str, Any], Depends(json_object)]) -> Wanted:
     try:
         request = JobRequest.model_validate(body)
     except ValidationError as error:
-        raise CaseError.of(error) from None
+        raise suggested(CaseError.of(error), JobRequest) from None
     if isinstance(request.case, str):
         if request.case not in SHIPPED:  # a name only: never a path
             raise CaseError([FieldError("/case", request.case, f"must be one of {', '.join(SHIPPED)}")])

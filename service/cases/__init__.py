@@ -5,6 +5,7 @@ from service.cases.case import CaseSpec
 from service.cases.cost import Cost, check_cost, estimate
 from service.cases.errors import CaseError, FieldError
 from service.cases.library import apply_settings, case_schema, load_case, parse_case, shipped_cases
+from service.cases.warnings import warnings_of
 
 __all__ = [
     "CaseError",
@@ -19,4 +20,5 @@ __all__ = [
     "load_case",
     "parse_case",
     "shipped_cases",
+    "warnings_of",
 ]

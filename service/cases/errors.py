@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from typing import Any
 
 from pydantic import ValidationError
@@ -28,6 +29,8 @@ _RULES = {
     "model_type": "must be an object",
 }
 _LONGEST_VALUE = 60
+_LARGEST_INTEGER = 10**15
+"""Beyond it an integer is told by its size, not by its digits."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +41,14 @@ class FieldError:
     value: Any
     rule: str
 
+    @property
+    def unknown(self) -> bool:
+        """Whether there is no field of this name."""
+        return self.rule == _RULES["extra_forbidden"]
+
     def __str__(self) -> str:
         fault = f"{self.pointer or 'the case'} {self.rule}"
-        return fault if self.value is None else f"{fault}, got {_short(self.value)}"
+        return fault if self.value is None else f"{fault}, got {short(self.value)}"
 
 
 class CaseError(ValueError):
@@ -69,12 +77,23 @@ def _field_error(detail: ErrorDetails) -> FieldError:
     if kind == "refused":
         at = context["at"]
         there = value.get(at) if isinstance(value, dict) else value
-        return FieldError(pointer + (f"/{at}" if at else ""), context.get("value", there), context["rule"])
+        return FieldError(pointer + (f"/{at}" if at else ""), plain(context.get("value", there)), context["rule"])
     if kind in _RULES:
-        return FieldError(pointer, None if kind == "missing" else value, _RULES[kind].format(**context))
-    return FieldError(pointer, value, detail["msg"].replace("Input should", "must"))
+        return FieldError(pointer, None if kind == "missing" else plain(value), _RULES[kind].format(**context))
+    return FieldError(pointer, plain(value), detail["msg"].replace("Input should", "must"))
 
 
-def _short(value: object) -> str:
-    text = repr(value)
+def short(value: object) -> str:
+    """A value as a message quotes it: large integers as 1e300, long texts by their start."""
+    text = repr(plain(value))
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
+
+
+def plain(value: object) -> object:
+    """The value, but an integer of many digits as a float, or as a text where there is no float so large."""
+    if isinstance(value, bool) or not isinstance(value, int) or abs(value) <= _LARGEST_INTEGER:
+        return value
+    try:
+        return float(value)
+    except OverflowError:
+        return f"{Decimal(value):.0e}".replace("e+", "e")

@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from service.cases.build import build_scene
 from service.cases.case import CaseSpec
 from service.cases.errors import CaseError, FieldError
+from service.cases.suggestions import suggested
 
 RESOLUTION = ("intervals", "dt_max", "increment_tolerance")
 _SHIPPED = files("service.cases") / "shipped"
@@ -59,7 +60,7 @@ def parse_case(raw: Mapping[str, Any]) -> CaseSpec:
     try:
         spec = CaseSpec.model_validate_json(json.dumps(raw))
     except ValidationError as error:
-        raise CaseError.of(error) from None
+        raise suggested(CaseError.of(error), CaseSpec) from None
     except (TypeError, ValueError) as error:
         raise CaseError([FieldError("", None, f"must be plain JSON data: {error}")]) from None
     build_scene(spec)

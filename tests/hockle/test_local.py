@@ -149,3 +149,8 @@ def test_cases_lists_every_shipped_case(capsys: pytest.CaptureFixture[str]):
 def test_a_local_command_does_not_load_the_registry():
     told = "import hockle.cli, sys; hockle.cli.main(['cases']); sys.exit('sqlalchemy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", told], stdout=subprocess.DEVNULL).returncode == 0
+
+
+def test_validate_warns_of_a_slip_and_refuses_nothing(capsys: pytest.CaptureFixture[str]):
+    assert main(["validate", "elastica", "--set", "rod.diameter=30"]) == 0
+    assert "warning: /rod/diameter is more than 3 m: is it given in m?, got 30.0" in capsys.readouterr().err

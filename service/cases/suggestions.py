@@ -1,0 +1,41 @@
+"""What a field that does not exist was meant to be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from typing import Any, get_args
+
+from pydantic import BaseModel
+
+from service.cases.errors import CaseError, FieldError
+
+
+def suggested(error: CaseError, whole: type[BaseModel]) -> CaseError:
+    """The same faults; where a field of `whole` is unknown, with the name that is most like it."""
+    return CaseError([_suggested(fault, whole) for fault in error.errors])
+
+
+def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
+    if not fault.unknown:
+        return fault
+    *path, name = (part.replace("~1", "/").replace("~0", "~") for part in fault.pointer.split("/")[1:])
+    near = get_close_matches(name[:80].lower(), fields_at(whole, path), n=1)
+    return FieldError(fault.pointer, fault.value, f"{fault.rule}: did you mean {near[0]}?") if near else fault
+
+
+def fields_at(whole: type[BaseModel], path: Sequence[str]) -> list[str]:
+    """The names of the fields that an object at this path within a model can have."""
+    models = [whole]
+    for part in path:
+        if not part.isdigit():
+            models = [inner for model in models if part in model.model_fields
+                      for inner in _models(model.model_fields[part].annotation)]
+    return sorted({name for model in models for name in model.model_fields})
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    """The models among the kinds that a field may hold."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return [annotation]
+    return [model for part in get_args(annotation) for model in _models(part)]

@@ -1,0 +1,128 @@
+"""What is likely a slip in a case that can be run: values a hundred times off, and parts that others call for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import chain, pairwise
+from math import hypot, pi
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+from service.cases.case import CaseSpec
+from service.cases.errors import FieldError
+from service.cases.initial import Straight
+from service.cases.quantities import ScheduleTable
+from solver import End, Scene
+
+WIDEST, THICKEST = 3.0, 0.2
+"""Diameter in m, as of the largest pipes, and in rod lengths, beyond which the theory of thin rods says little."""
+MATERIALS = {"density": (10.0, 25e3), "youngs_modulus": (1e3, 2e12), "shear_modulus": (3e2, 1e12)}
+"""kg/m³ and Pa: from foam and soft gels to osmium and diamond; DNA (1,700 kg/m³, 0.3 GPa) is well within."""
+GRAVITY = (1.0, 30.0)
+"""m/s²: less than on the moon, more than on Jupiter."""
+GREENHILL = 8.987
+"""A straight rod with clamped ends buckles at the twist moment GREENHILL EJ/L (Greenhill 1883)."""
+
+
+def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
+    """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
+    return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene), *_frames(spec)]
+
+
+def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    widest = float(np.max(scene.rod.diameter(np.linspace(0.0, spec.rod.length, 201))))
+    if widest > THICKEST * spec.rod.length:
+        rule = f"is more than a fifth of the rod's length of {spec.rod.length:g} m: the rod is not thin"
+        yield FieldError("/rod/diameter", widest, rule)
+    if widest > WIDEST:
+        yield FieldError("/rod/diameter", widest, f"is more than {WIDEST:g} m: is it given in m?")
+
+
+def _materials(spec: CaseSpec) -> Iterator[FieldError]:
+    if spec.rod.density == 1.0:  # units in which the rod's own density is one
+        return
+    for name, (least, most) in MATERIALS.items():
+        value = getattr(spec.rod, name)
+        if value is not None and not least <= value <= most:
+            unit = "kg/m³" if name == "density" else "Pa"
+            yield FieldError(f"/rod/{name}", value, f"is that of no material ({least:g} to {most:g} {unit})")
+
+
+def _gravity(spec: CaseSpec) -> Iterator[FieldError]:
+    gravity = spec.loads.gravity
+    size = hypot(*gravity)
+    if size and not GRAVITY[0] <= size <= GRAVITY[1]:
+        yield FieldError("/loads/gravity", gravity, "is far from 9.81 m/s²")
+    if not any(gravity[:2]) and gravity[2] > 0.0:
+        yield FieldError("/loads/gravity", gravity, "points along +e3, which is upwards in most scenes")
+
+
+def _contact(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """A rod that is twisted past buckling, and can give way, sooner or later touches itself."""
+    if spec.contact is not None or spec.analysis == "static" or not _gives_way(spec, scene):
+        return
+    s = np.linspace(0.0, spec.rod.length, 11)
+    bending, torsion = (float(np.mean(scene.rod.stiffness[i](s))) for i in (0, 2))
+    turned, bearable = _turned(scene), GREENHILL * bending / torsion
+    if turned > bearable:
+        rule = (f"is not given, but the ends twist the rod by {turned / (2 * pi):.3g} turns, and it buckles at "
+                f"{bearable / (2 * pi):.3g}: it would pass through itself")
+        yield FieldError("/contact", None, rule)
+
+
+def _gives_way(spec: CaseSpec, scene: Scene) -> bool:
+    """Whether the rod is slack, or its ends can come nearer to each other."""
+    components = chain(scene.start.translation, scene.end.translation)
+    conditions = [condition for component in components for condition in component]
+    moved = any(condition.kind == "load" or np.any(condition.curve(_times(scene))) for condition in conditions)
+    return moved or not isinstance(spec.initial, Straight)
+
+
+def _turned(scene: Scene) -> float:
+    """The most that the ends are turned against each other about the rod (rad), while neither is free or switched."""
+    start, end = _turn(scene.start, scene), _turn(scene.end, scene)
+    return 0.0 if start is None or end is None else float(np.max(np.abs(end - start)))
+
+
+def _turn(end: End, scene: Scene) -> Any:
+    """How far an end is turned about the rod at `_times`; None where its moment is given."""
+    times = _times(scene)
+    condition, *later = end.rotation[2]
+    value = np.asarray(condition.curve(times))
+    if condition.kind == "load":
+        return None
+    if condition.kind == "rate":
+        steps = 0.5 * (value[1:] + value[:-1]) * np.diff(times)
+        value = np.concatenate([[0.0], np.cumsum(steps)])
+    kept = times <= later[0].since if later else np.full(len(times), True)
+    return np.where(kept, value, value[kept][-1]) - value[0]
+
+
+def _times(scene: Scene) -> Any:
+    return np.linspace(0.0, scene.t_end, 2001)
+
+
+def _frames(spec: CaseSpec) -> Iterator[FieldError]:
+    """Too few frames to see a schedule go up and down."""
+    found = [period for part in ("ends", "loads") for period in _periods(getattr(spec, part), f"/{part}")]
+    shortest, where = min(found, default=(np.inf, ""))
+    if spec.output.interval > shortest:
+        rule = f"is longer than {shortest:.3g} s, in which {where} goes up and down: the frames cannot show it"
+        yield FieldError("/output/interval", spec.output.interval, rule)
+
+
+def _periods(part: Any, pointer: str) -> Iterator[tuple[float, str]]:
+    """The shortest time between two maxima, or two minima, of each schedule below a part; and where it is."""
+    if isinstance(part, ScheduleTable):
+        steps = np.diff(part.value)
+        changing = np.flatnonzero(steps)
+        turns = [part.t[j] for i, j in pairwise(changing) if steps[i] * steps[j] < 0.0]
+        yield from ((late - early, pointer) for early, late in zip(turns, turns[2:], strict=False))
+    elif isinstance(part, BaseModel):
+        for name, inner in part:
+            yield from _periods(inner, f"{pointer}/{name}")
+    elif isinstance(part, tuple):
+        for i, inner in enumerate(part):
+            yield from _periods(inner, f"{pointer}/{i}")

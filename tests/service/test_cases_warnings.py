@@ -1,0 +1,61 @@
+"""Warnings: slips are named, and what is meant is left alone."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from service.cases import apply_settings, build_scene, load_case, parse_case, shipped_cases, warnings_of
+from service.cases.errors import FieldError
+
+DNA = {"rod.length": 3e-7, "rod.diameter": 2e-9, "rod.youngs_modulus": 3e8, "rod.shear_modulus": 1.5e8,
+       "rod.density": 1700.0, "loads.point": []}
+MODEL = {"rod.length": 1.0, "rod.diameter": 0.01, "rod.youngs_modulus": 1.0, "rod.shear_modulus": 0.5,
+         "rod.density": 1.0}
+SAW = {"t": [0.0, 0.1, 0.2, 0.3, 0.4], "value": [0, 1, 0, 1, 0], "interpolation": "linear"}
+
+
+def told(settings: dict[str, Any], name: str = "elastica") -> list[FieldError]:
+    """The warnings of a shipped case with some settings."""
+    spec = parse_case(apply_settings(load_case(name), settings))
+    return warnings_of(spec, build_scene(spec))
+
+
+@pytest.mark.parametrize("name", shipped_cases())
+def test_shipped_cases_are_beyond_doubt(name: str):
+    assert told({}, name) == []
+
+
+@pytest.mark.parametrize("settings", [DNA, MODEL, {"loads.gravity": [0, -9.81, 0]}, {"loads.gravity": [0, 0, -1.62]}])
+def test_other_units_and_worlds_are_left_alone(settings: dict[str, Any]):
+    assert told(settings) == []
+
+
+@pytest.mark.parametrize(("setting", "value", "pointer", "rule"), [
+    ("rod.diameter", 0.3, "/rod/diameter", "a fifth of the rod's length"),
+    ("rod.density", 1.5, "/rod/density", "no material"),
+    ("rod.density", 1.5e6, "/rod/density", "no material"),
+    ("rod.youngs_modulus", 210.0, "/rod/youngs_modulus", "no material"),
+    ("rod.shear_modulus", 1e14, "/rod/shear_modulus", "no material"),
+    ("loads.gravity", [0.0, 0.0, 9.81], "/loads/gravity", "upwards"),
+    ("loads.gravity", [0.0, 0.0, -981.0], "/loads/gravity", "far from 9.81"),
+    ("loads.point", [{"s": 0.5, "force": [SAW, 0, 0]}], "/output/interval", "/loads/point/0/force/0"),
+])  # fmt: skip
+def test_a_slip_is_named_with_its_value(setting: str, value: Any, pointer: str, rule: str):
+    [warning] = told({setting: value, "output.interval": 0.25})
+    assert (warning.pointer, warning.value if pointer == "/output/interval" else 0.25) == (pointer, 0.25)
+    assert rule in warning.rule
+
+
+def test_a_rod_of_30_m_diameter_is_told_to_be_wide_and_thick():
+    assert [warning.value for warning in told({"rod.diameter": 30.0})] == [30.0, 30.0]
+
+
+@pytest.mark.parametrize(("turns", "end", "warned"), [(3.0, "slider", True), (3.0, "clamp", False),
+                                                      (1.0, "slider", False), (3.0, "free", False)])
+def test_a_rod_that_buckles_by_twist_needs_contact(turns: float, end: str, warned: bool):
+    """Of EJ = 1.25 GJ a straight clamped rod buckles at 8.987 * 1.25 / 2 pi = 1.79 turns."""
+    twist = {"t": [0.0, 1.0], "value": [0.0, turns * 6.2832], "interpolation": "linear"}
+    found = told({"ends.start": {"preset": "clamp", "theta3": twist}, "ends.end": end, "t_end": 2.0})
+    assert [warning.pointer for warning in found] == ["/contact"] * warned

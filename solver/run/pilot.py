@@ -106,9 +106,11 @@ class Piloted(Run):
 
     def _begin(self) -> Run:
         """What the resolution is for: a pilot, or the run itself."""
-        if self._resolution.settled:
-            return self._kind(self.chosen, self.statistics)
-        return Pilot(replace(self.chosen, topology=False), self.statistics)
+        settled = self._resolution.settled
+        run = (self._kind(self.chosen, self.statistics) if settled
+               else Pilot(replace(self.chosen, topology=False), self.statistics))  # fmt: skip
+        self.remarks = run.remarks
+        return run
 
     @property
     def s(self) -> Array:

@@ -7,7 +7,19 @@ from dataclasses import asdict, dataclass
 
 @dataclass
 class Remarks:
-    """What a run noticed so far. A value that is not zero becomes an attribute of the dataset, by its name here."""
+    """What a run noticed so far. A value that is not zero becomes an attribute of the dataset, by its name here.
+
+    `crossings`: how often the rod passed through itself where it may, `first_crossing` (s) the frame after the first;
+    `end_hops`: how often a loop hopped over an end; both by Tw + Wr - Lk from frame to frame, so that two of opposite
+    sign between frames cancel, and none is seen without topology. `deepest_overlap` (m) of strands, and the time
+    `deepest_overlap_at` (s) of its frame.
+    """
+
+    crossings: int = 0
+    first_crossing: float = 0.0
+    end_hops: int = 0
+    deepest_overlap: float = 0.0
+    deepest_overlap_at: float = 0.0
 
     def attributes(self) -> dict[str, float | int]:
         """The values that are not zero, by name."""
@@ -15,4 +27,24 @@ class Remarks:
 
     def sentences(self) -> list[str]:
         """What a user is to read, a sentence for each remark."""
-        return []
+        told = []
+        if self.crossings:
+            told.append(
+                f"The rod passed through itself {_times(self.crossings)}, first before "
+                f"t = {self.first_crossing:.6g} s: give contact to hold it apart."
+            )
+        if self.end_hops:
+            told.append(
+                f"A loop hopped over an end of the rod {_times(self.end_hops)}: no crossing, but Tw + Wr differs from "
+                "Lk by 2 turns more for each."
+            )
+        if self.deepest_overlap:
+            told.append(
+                f"Strands overlapped, at the most by {self.deepest_overlap:.3g} m "
+                f"at t = {self.deepest_overlap_at:.6g} s."
+            )
+        return told
+
+
+def _times(number: int) -> str:
+    return "once" if number == 1 else f"{number} times"

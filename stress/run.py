@@ -11,6 +11,7 @@ import numpy as np
 from outcomes import Outcome
 from service.cases import build_scene, parse_case
 from solver import Frame, Run, RunFailed, Scene, Simulation, simulate, warm
+from solver.physics.contact.recipe import spaced
 from stress.books import Books
 from stress.crossing import Crossings
 from stress.ending import FAILURES, Ending, Result, Task
@@ -74,7 +75,8 @@ class Watch:
         self.simulation: Run = simulate(scene)
         self.books = Books(scene)
         contact = scene.contact
-        self._crossings = None if contact is None else Crossings(float(scene.rod.length), contact.skip)
+        skip = None if contact is None else spaced(contact, scene.rod).skip
+        self._crossings = None if skip is None else Crossings(float(scene.rod.length), skip)
         self._last: Frame | None = None
 
     def follow(self, steps: int, until: float) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import radians
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -27,6 +27,10 @@ from solver.physics.loads import floor
 
 MOST_LOADS = 100
 NOTHING: Triple = (0.0, 0.0, 0.0)
+NEEDED = ("k1", "k2", "aperture_deg", "cutoff")
+"""Constants of eq. (6) that are given all, or none."""
+DAMPING = {"k3": 0.0, "k4": 1.0}
+"""Those that may be left out."""
 
 
 class DistributedSpec(Spec):
@@ -121,34 +125,60 @@ class FluidSpec(Spec):
 
 
 class ContactSpec(Spec):
-    """Self-contact of Goyal, Perkins & Lee (2003), eq. (6), between points `spacing` (m) apart."""
+    """Self-contact: `{}`, whose law follows from the rod and its ends, or eq. (6) of Goyal, Perkins & Lee (2003)."""
 
-    k1: Annotated[NotNegative, means("stiffness", "m^(1+k2)/s²")]
-    k2: Annotated[NotNegative, means("how steeply the force grows", "1")]
-    k3: Annotated[NotNegative, means("damping (k3/d) ḋ |ḋ|^k4; it opposes the motion", "m^(1−k4) s^(k4−1)")] = 0.0
-    k4: Annotated[NotNegative, means("its power", "1")] = 1.0
+    k1: Annotated[NotNegative | None, means("stiffness", "m^(1+k2)/s²")] = None
+    k2: Annotated[NotNegative | None, means("how steeply the force grows", "1")] = None
+    k3: Annotated[
+        NotNegative | None,
+        means("damping (k3/d) ḋ |ḋ|^k4; it opposes the motion. 0 in eq. (6) where it is not given",
+              "m^(1−k4) s^(k4−1)"),
+    ] = None  # fmt: skip
+    k4: Annotated[NotNegative | None, means("its power; 1 in eq. (6) where it is not given", "1")] = None
     aperture_deg: Annotated[
-        float,
-        Field(gt=0, le=180, allow_inf_nan=False),
+        Annotated[float, Field(gt=0, le=180, allow_inf_nan=False)] | None,
         means("full angle of the aperture: two points act on each other only if each is in the other's", "degrees"),
-    ]
+    ] = None
     cutoff: Annotated[
-        Positive, means("largest distance that is felt; the force fades over its outer 30 %", "m")
-    ]
-    skip: Annotated[Positive, means("points nearer than this *along* the rod do not act on each other", "m")]
+        Positive | None, means("largest distance that is felt; the force fades over its outer 30 %", "m")
+    ] = None
+    skip: Annotated[
+        Positive | None,
+        means("points nearer than this *along* the rod do not act on each other; 4 D without constants", "m"),
+    ] = None
     spacing: Annotated[
-        Positive,
-        means("distance of the contact points along the rod, independent of `numerics.intervals`", "m"),
-    ]
+        Positive | None,
+        means("distance of the contact points along the rod, independent of `numerics.intervals`; 0.4 D without "
+              "constants", "m"),
+    ] = None  # fmt: skip
     sum: Annotated[
         Literal["density", "grid_points"],
-        means("`density`: the force does not depend on the spacing; `grid_points`: the sum as printed in the paper, "
-              "which does"),
+        means("of eq. (6). `density`: the force does not depend on the spacing; `grid_points`: the sum as printed in "
+              "the paper, which does"),
     ] = "density"  # fmt: skip
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_in(cls, raw: Any) -> Any:
+        """Eq. (6) without damping, unless told."""
+        if isinstance(raw, dict) and any(raw.get(name) is not None for name in NEEDED):
+            return {**raw, **{name: value for name, value in DAMPING.items() if raw.get(name) is None}}
+        return raw
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        given = [name for name in (*NEEDED, *DAMPING) if getattr(self, name) is not None]
+        if given:
+            for name in (*NEEDED, "skip", "spacing"):
+                if getattr(self, name) is None:
+                    raise refusal(name, None, f"is required beside {given[0]}: all constants of eq. (6), or none")
+        elif self.sum != "density":
+            raise refusal("sum", self.sum, "must be density where no constants of eq. (6) are given")
+        return self
 
     def build(self) -> Contact:
         """The solver's contact law."""
+        aperture = None if self.aperture_deg is None else radians(self.aperture_deg)
         return Contact(
-            self.k1, self.k2, self.k3, self.k4,
-            radians(self.aperture_deg), self.cutoff, self.skip, self.spacing, self.sum,
-        )  # fmt: skip
+            self.k1, self.k2, self.k3, self.k4, aperture, self.cutoff, self.skip, self.spacing, self.sum
+        )

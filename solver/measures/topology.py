@@ -49,6 +49,14 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
     return -quarter / pi
 
 
+def writhe_shares(r: Array, start_tangent: Array, end_tangent: Array) -> tuple[float, float]:
+    """The parts of `writhe` (turns) that the pairs of segments have in it, and those with a ray."""
+    columns, outward_start, outward_end = _columns(r, 2), -_unit(start_tangent), _unit(end_tangent)
+    rays = _ray(columns, columns[:, -1], outward_end) - _ray(columns, columns[:, 0], outward_start)
+    rays -= half_area(columns[:, -1] - columns[:, 0], outward_end, -outward_start)
+    return -_segment_pairs(columns, False) / pi, -rays / pi
+
+
 def writhe_of_rod(r: Array, orientation: Array) -> float:
     """Writhe (turns) of a rod's centreline `r` (n, 3), continued along a3 of the `orientation` (n, 4) of its ends."""
     tangent = rotate(orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2))

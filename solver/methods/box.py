@@ -23,6 +23,7 @@ from solver.methods.time.generalized_alpha.guess import force_rate, guess, stret
 from solver.methods.time.generalized_alpha.history import rescale_aux
 from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work, step
 from solver.physics.contact.forces import Touch
+from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
 from solver.physics.elasticity import mean_bending, moments, principal
 from solver.physics.ends import DrivenEnd
@@ -60,7 +61,7 @@ class BoxMethod:
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self.state, correction = _initial_state(scene.initial, self.s, self.section)
         self.section.elastic.kappa0[:] += correction
-        self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=1)
+        self.contact = SelfContact(scene.contact, scene.rod, self.s, 1, foreseen(scene))
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)
         self._scales = Scales(float(scene.rod.length), mean_bending(self.section.elastic))

@@ -24,6 +24,7 @@ from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
 from solver.physics.axial import axial_compliance
 from solver.physics.contact.forces import Touch, keeps_apart
+from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
 from solver.physics.ends import DrivenEnd
 from solver.scene.scene import Scene
@@ -45,7 +46,7 @@ class StaggeredMethod(RadauMethod):
         super().__init__(scene)
         N = scene.numerics.intervals
         chain, state, self._offset = self._lay_out(scene)
-        self.contact = SelfContact(scene.contact, scene.rod, self.s, stages=3)
+        self.contact = SelfContact(scene.contact, scene.rod, self.s, 3, foreseen(scene))
         self._make_records(chain, state, (Stages, Driven, Residuals, Tangents, Factors),
                            Coupling.empty(N if scene.contact is not None else 0))  # fmt: skip
         self.driven.compliance[:] = 0.5 * axial_compliance(scene)

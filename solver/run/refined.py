@@ -8,7 +8,7 @@ may be done, the frames come all the same, with their errors. See docs/decisions
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import astuple, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from solver.run.plan import (
     Excess,
     Trial,
     allowance,
+    chosen,
     following,
     intervals_of,
     longest_step,
@@ -31,6 +32,7 @@ from solver.run.plan import (
     to_come,
 )
 from solver.run.recording import row_of
+from solver.run.remarks import Remarks
 from solver.run.run import Run
 from solver.run.simulation import Simulation
 from solver.run.together import Together
@@ -51,6 +53,8 @@ class Refined(Run):
         self._history: list[tuple[float, ...]] = []
         self._recorded: list[tuple[Array, ...]] = []
         """The rows of each attempt; none where they are not needed any more."""
+        self._noticed: list[tuple[float, ...]] = []
+        """The remarks of each attempt."""
         self._rows: list[Array] = []
         self._excess: tuple[float, ...] = tuple(Excess())
         self._mesh, self._steps = first_mesh(scene), 0
@@ -173,6 +177,7 @@ class Refined(Run):
         complete = OUTCOMES[outcome] is Outcome.COMPLETED
         self._history.append(tuple(Attempt(self._mesh, self._steps, self._work, t, complete, slow, outcome)))
         self._recorded.append(tuple(self._rows))
+        self._noticed.append(astuple(self._run.remarks))
         self._rows, self._before = [], self.statistics.newton_iterations
         together = self._together
         self._recorded = [rows if i in together.needed else () for i, rows in enumerate(self._recorded)]
@@ -183,7 +188,7 @@ class Refined(Run):
         then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
         if then is None:
             self._decided = True
-            self.remarks = self._run.remarks
+            self.remarks = Remarks(*self._noticed[chosen(self._attempts)[0][-1]])  # type: ignore[arg-type]
         else:
             self._mesh, self._steps = then
             self._run = self._begin()

@@ -7,10 +7,21 @@ from dataclasses import asdict, dataclass
 
 @dataclass
 class Remarks:
-    """What a run noticed so far. A value that is not zero becomes an attribute of the dataset, by its name here."""
+    """What a run noticed so far. A value that is not zero becomes an attribute of the dataset, by its name here.
 
+    `crossings`: how often the rod passed through itself where it may, `first_crossing` (s) the frame after the first;
+    `end_hops`: how often a loop hopped over an end; both by Tw + Wr - Lk from frame to frame, so that two of opposite
+    sign between frames cancel, and none is seen without topology. `deepest_overlap` (m) of strands, and the time
+    `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
+    it has to stretch, see `physics.axial`.
+    """
+
+    crossings: int = 0
+    first_crossing: float = 0.0
+    end_hops: int = 0
+    deepest_overlap: float = 0.0
+    deepest_overlap_at: float = 0.0
     axial_stiffness: float = 0.0
-    """EA (N) that the rod was given because it is held so that it has to stretch: see `physics.axial`."""
 
     def attributes(self) -> dict[str, float | int]:
         """The values that are not zero, by name."""
@@ -19,7 +30,28 @@ class Remarks:
     def sentences(self) -> list[str]:
         """What a user is to read, a sentence for each remark."""
         told = []
+        if self.crossings:
+            told.append(
+                f"The rod passed through itself {_times(self.crossings)}, first before "
+                f"t = {self.first_crossing:.6g} s: give contact to hold it apart."
+            )
+        if self.end_hops:
+            told.append(
+                f"A loop hopped over an end of the rod {_times(self.end_hops)}: no crossing, but Tw + Wr differs from "
+                "Lk by 2 turns more for each."
+            )
+        if self.deepest_overlap:
+            told.append(
+                f"Strands overlapped, at the most by {self.deepest_overlap:.3g} m "
+                f"at t = {self.deepest_overlap_at:.6g} s."
+            )
         if self.axial_stiffness:
-            told.append(f"The rod is held so that it has to stretch: it has the axial stiffness EA = "
-                        f"{self.axial_stiffness:.3g} N.")  # fmt: skip
+            told.append(
+                "The rod is held so that it has to stretch: it has the axial stiffness EA = "
+                f"{self.axial_stiffness:.3g} N."
+            )
         return told
+
+
+def _times(number: int) -> str:
+    return "once" if number == 1 else f"{number} times"

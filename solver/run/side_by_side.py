@@ -25,6 +25,7 @@ class SideBySide(Run):
         """`scenes`: the one whose nodes the frames have comes first."""
         super().__init__(scenes[0], statistics)
         self._runs = [kind(scene, self.statistics) for scene in scenes]
+        self.remarks = self._runs[0].remarks
         self._waiting: list[list[Any]] = []  # the values of frames, because a checkpoint holds no frames
 
     @abstractmethod

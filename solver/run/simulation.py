@@ -15,6 +15,7 @@ from solver.run.accounts import Accounts
 from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
 from solver.run.warming import load
+from solver.run.watch import Watch
 from solver.scene.scene import Scene
 
 FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
@@ -42,7 +43,7 @@ class Simulation(Run):
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
         if scene.numerics.method == "staggered":
             self.remarks.axial_stiffness = axial_stiffness(scene)
-        self._turns = 0.0
+        self._watch = Watch(self.remarks, scene.contact is not None)
         self._turn = self._trial_turn = pi
         """The largest rotation (rad) within an interval, of the state and of the trial."""
 
@@ -60,7 +61,7 @@ class Simulation(Run):
     def _first_frame(self) -> Frame:
         frame = self._accounts.frame(0.0)
         self.t = self._begin()
-        self._turns = frame.Tw + frame.Wr - frame.Lk
+        self._watch.see(frame)
         # forces are no part of what is given at t = 0, they follow from it
         frame = replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
         return complete(frame, self.s, self._scene)
@@ -77,10 +78,9 @@ class Simulation(Run):
             raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, told)
         if made < -LARGEST_MADE and output == self._outputs[-1]:  # much of what was at first may be little of all
             raise RunFailed(Outcome.ENERGY_LOST, self.t, self.statistics.steps, told)
-        before, self._turns = self._turns, frame.Tw + frame.Wr - frame.Lk
-        if self._scene.contact is not None and abs(self._turns - before) > 1.0:
-            # a rod that passes through itself makes Tw + Wr - Lk jump by 2
-            raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, "Tw + Wr - Lk jumped")
+        crossed = self._watch.see(frame)
+        if crossed:
+            raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, crossed)
         return complete(frame, self.s, self._scene)
 
     def _begin(self) -> float:
@@ -155,3 +155,5 @@ class Simulation(Run):
         self._turn = self._trial_turn
         self.statistics.steps += 1
         self._accounts.after_step(dt, iterations, flowed)
+        if self._scene.topology:
+            self._watch.follow(self._method.fields)

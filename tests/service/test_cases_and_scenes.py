@@ -78,7 +78,6 @@ OTHER_DEFAULTS = {
     "Rod.laws",  # the coupling that a case gives is none where it is zero
     "Scene.numerics",  # a case's own are resolved by what else it says
     "Numerics.dt_max",  # 0.05 s, where a case says nothing else about its steps
-    "Contact.k3", "Contact.k4",  # the solver has none
     "Condition.since", "Condition.within",  # a condition that a case names has a value
 }  # fmt: skip
 """Where a case has another default than the scene."""

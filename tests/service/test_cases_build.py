@@ -132,3 +132,12 @@ def test_a_rod_whose_natural_shape_is_its_initial_one_stays_at_rest(method):
     unit = float(built.rod.stiffness[0](np.zeros(1))[0]) / built.rod.length
     for frame in simulate(built):
         assert frame.energy_bending + frame.energy_torsion + frame.energy_kinetic < 1e-20 * unit
+
+
+def test_contact_needs_no_constants():
+    raw = load_case("short-loop")
+    assert not build_scene(parse_case(raw)).contact.automatic
+    for given in ({}, {"spacing": 1e-3}):
+        built = build_scene(parse_case(raw | {"contact": given})).contact
+        assert built.automatic
+        assert built.spacing == given.get("spacing")

@@ -302,3 +302,18 @@ def test_a_tolerance_that_is_set_displaces_the_cases_own_resolution_and_back():
 def test_a_case_with_a_tolerance_reads_its_own_document_again():
     spec = parse_case({**load_case("elastica"), "numerics": {"tolerance": 1e-4, "verify": True}})
     assert parse_case(spec.document()) == spec
+
+
+@pytest.mark.parametrize(
+    ("contact", "pointer", "rule"),
+    [
+        ({"k1": 1e-7}, "/contact/k2", r"required beside k1: all constants of eq. \(6\), or none"),
+        ({"cutoff": 0.1, "spacing": 0.01}, "/contact/k1", "required beside cutoff"),
+        ({"k3": 1.0}, "/contact/k1", "required beside k3"),
+        ({"sum": "grid_points"}, "/contact/sum", "must be density where no constants"),
+    ],
+)
+def test_some_constants_of_contact_are_refused(contact: dict[str, Any], pointer: str, rule: str):
+    with pytest.raises(CaseError, match=rule) as refused:
+        parse_case({**load_case("short-loop"), "contact": contact})
+    assert [fault.pointer for fault in refused.value.errors] == [pointer]

@@ -15,6 +15,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, inner, kernel
+from solver.physics.contact.automatic import automatic_force
 from solver.physics.contact.points import Points
 from solver.scene.contact import Contact
 
@@ -27,7 +28,10 @@ LINEAR_BELOW = 0.02
 
 
 class Law(NamedTuple):
-    """Constants of the law: k1 ... k4 of eq. (6), sine of the half aperture, cutoff and skip (m), weight (m)."""
+    """Constants of the law: k1 ... k4 of eq. (6), sine of the half aperture, cutoff and skip (m), weight (m).
+
+    Where it is `automatic`, there is no aperture, the weight is in m^2 and the damping by `relaxation` (s).
+    """
 
     k1: float
     k2: float
@@ -37,13 +41,23 @@ class Law(NamedTuple):
     cutoff: float
     skip: float
     weight: float
+    automatic: bool = False
+    relaxation: float = 0.0
 
     @classmethod
     def of(cls, contact: Contact, spacing: float) -> Law:
         """The law of a scene for points `spacing` apart."""
         weight = spacing if contact.sum == "grid_points" else spacing * spacing / PAPER_SPACING
-        constants = (contact.k1, contact.k2, contact.k3, contact.k4, np.sin(0.5 * contact.aperture))
-        return cls(*(float(x) for x in (*constants, contact.cutoff, contact.skip, weight)))
+        constants = (contact.k1, contact.k2, contact.k3, contact.k4, np.sin(0.5 * (contact.aperture or 0.0)))
+        return cls(*(float(x) for x in (*constants, contact.cutoff, contact.skip, weight)))  # type: ignore[arg-type]
+
+    @classmethod
+    def by_itself(cls, contact: Contact, spacing: float, relaxation: float) -> Law:
+        """The law without constants, between points `spacing` apart: see `automatic`."""
+        everywhere = 2.0  # more than any sine
+        return cls.of(contact, spacing)._replace(
+            sine=everywhere, weight=spacing * spacing, automatic=True, relaxation=relaxation
+        )
 
 
 @inner
@@ -88,6 +102,8 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, g: Array, k: 
     """
     if not sees(law, points, a, b):
         return 0.0, 0.0, 0.0
+    if law.automatic:
+        return automatic_force(law.weight, law.relaxation, points, a, b, n, g, k)
     x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
     d = np.sqrt(x * x + y * y + z * z)
     n[0], n[1], n[2] = x / d, y / d, z / d

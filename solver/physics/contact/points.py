@@ -25,9 +25,9 @@ class Points(NamedTuple):
     """M points at even arclengths.
 
     Fixed: `first` (M,), the first of the four nodes a point hangs on; `weights`, `slopes` (M, 4), their shares in its
-    position and in its tangent; `mass` rho_c A and `diameter` (M,); `spacing` (m). At the current iterate, lab: `p`
-    position, `t` tangent, `w` velocity, each (M, 3). `start` and `checked` (M, 3): positions at the start of the
-    step, and at the last search.
+    position and in its tangent; `mass` (M,), rho_c A in kg/m, or P in N/m^2 where the law is automatic;
+    `diameter` (M,); `spacing` (m). At the current iterate, lab: `p` position, `t` tangent, `w` velocity, each (M, 3).
+    `start` and `checked` (M, 3): positions at the start of the step, and at the last search.
     """
 
     first: Array
@@ -44,8 +44,8 @@ class Points(NamedTuple):
 
 
 def contact_points(contact: Contact, rod: Rod, s: Array) -> Points:
-    """The points of a rod with evenly spaced nodes `s` (n >= 4,)."""
-    count = max(2, round(float(s[-1]) / contact.spacing) + 1)
+    """The points of a rod with evenly spaced nodes `s` (n >= 4,)"""
+    count = max(2, round(float(s[-1]) / (contact.spacing or float(s[-1]))) + 1)
     at = np.linspace(0.0, float(s[-1]), count)
     h, last = float(s[1] - s[0]), len(s) - 1
     interval = np.minimum((at / h).astype(np.int64), last - 1)

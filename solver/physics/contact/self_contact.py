@@ -13,6 +13,7 @@ from solver.physics.contact.forces import Pressing, Touch
 from solver.physics.contact.law import Law
 from solver.physics.contact.links import links_meet, links_reach
 from solver.physics.contact.points import Points, contact_points, place_points
+from solver.physics.contact.recipe import NOTHING, Foreseen, held, spaced
 from solver.physics.contact.search import (
     Pairs,
     find_pairs,
@@ -42,16 +43,15 @@ class SelfContact:
     """The contact of one rod through its run; without `contact` it proves itself absent and costs nothing.
 
     It is told the rod's total bending int |kappa_bending| ds (rad), and the nodes' positions `r` and velocities (n, 3),
-    lab. `stages`: at how many times within a step a method evaluates the forces.
+    lab. `stages`: at how many times within a step a method evaluates the forces; `ends`: for contact without constants.
     """
 
-    def __init__(self, contact: Contact | None, rod: Rod, s: Array, stages: int) -> None:
+    def __init__(self, contact: Contact | None, rod: Rod, s: Array, stages: int, ends: Foreseen = NOTHING) -> None:
         self.present = contact is not None
         """Whether the scene has contact at all."""
         self._nodes, self._stages = len(s), stages
         settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
-        points = contact_points(settings, rod, s)
-        self._law = Law.of(settings, points.spacing)
+        points, self._law = _points_and_law(settings, rod, s, ends)
         # pairs that press, and those whose links may meet
         self._reach = max(self._law.cutoff, links_reach(points))
         self._farthest = (1.0 + SKIN[1]) * self._reach
@@ -154,6 +154,16 @@ class SelfContact:
         pairs, pressing = Pairs.empty(capacity, M, n), Pressing.empty(self._stages, capacity, M, n)
         changes = np.zeros((M, 9)), np.zeros((M, 3)), np.zeros((self._stages, n, 3))
         self.touch = Touch(self.present, self._law, points, pairs, pressing, *changes)
+
+
+def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen) -> tuple[Points, Law]:
+    if not contact.automatic:
+        points = contact_points(contact, rod, s)
+        return points, Law.of(contact, points.spacing)
+    contact = spaced(contact, rod)
+    points = contact_points(contact, rod, s)
+    law = held(rod, ends, np.linspace(0.0, float(s[-1]), len(points.p)))
+    return points._replace(mass=law.strength), Law.by_itself(contact, points.spacing, law.relaxation)
 
 
 @kernel

@@ -1,0 +1,174 @@
+"""The law of contact where no constants are given: from the rod's own data, and from what its ends do to it.
+
+How hard strands press on each other is taken from the plectoneme at rest of Clauvelin, Audoly & Neukirch, Biophys. J.
+96 (2009) 3716: two strands of bending stiffness B = EJ and radius R, wound at the superhelical angle x, under the
+pull F,
+
+    F R^2 / B = sin^3 x (cos x tan 2x - sin x / 2),    p = (8 B / D^3) sin^4 x / cos 2x,
+    M = (2 / sin 2x) (B sin^4 x / (2 R) + R F),    2 pi n = M L / GJ + l sin 2x / D,
+
+p the force of one on the other per length. A pull tells x; where the ends are held instead, the turns n do that they
+put in, of which the length l that the ends give way by takes up what the twist does not. With MARGIN p they rest a few
+per cent of D from touching. As d goes with the log of the pressure, divided by 16 / D, a pressure that is wrong by a
+factor of 3 moves it by 7 % of D.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.physics.contact.automatic import POLE, POWER, REACH
+from solver.physics.elasticity import elasticity_of, principal
+from solver.scene.contact import Contact
+from solver.scene.curve import Curve
+from solver.scene.ends import Component, Condition
+from solver.scene.rod import Rod
+from solver.scene.scene import Scene
+
+SPACING, SKIP = 0.4, 4.0
+"""In D: of the points along the rod; arc below which two of them are neighbours."""
+MARGIN = 3.0
+ANGLES = np.linspace(1e-3, np.radians(40.0), 2000)
+"""Superhelical angles (rad); towards 45 degrees both F and p grow beyond all bounds."""
+SLACK = (0.1, 0.8)
+"""Part of the rod that winds up, at the least and, if nothing holds the ends, at the most."""
+SMALL_PULL = 4.0
+"""In pi^2 EJ / L^2: up to there the turns, not the pull, tell how the strands are wound."""
+SAMPLES = 201
+
+
+class Foreseen(NamedTuple):
+    """What the ends do to the rod: the most turns they put in, the largest pull (N), and by what part of its
+    length they give way."""
+
+    turns: float = 0.0
+    pull: float = 0.0
+    slack: float = SLACK[1]
+
+
+NOTHING = Foreseen()
+
+
+class Held(NamedTuple):
+    """The law: P (N/m^2) at the points (M,), and its relaxation time (s); see `automatic`."""
+
+    strength: Array
+    relaxation: float
+
+
+def spaced(contact: Contact, rod: Rod) -> Contact:
+    """The contact with its `skip`, `spacing` and `cutoff`, and no forces of eq. (6)."""
+    D = np.asarray(rod.diameter(np.linspace(0.0, rod.length, SAMPLES)))
+    skip = contact.skip or min(SKIP * float(D.max()), rod.length)
+    return Contact(0.0, 0.0, 0.0, 0.0, pi, REACH * float(D.max()), skip, contact.spacing or SPACING * float(D.min()))
+
+
+def held(rod: Rod, foreseen: Foreseen, at: Array) -> Held:
+    """The law for points at arclengths `at` (M,)."""
+    D, mass = np.asarray(rod.diameter(at)), np.asarray(rod.mass(at))
+    stiffness = principal(elasticity_of(rod, at))
+    B, GJ = stiffness[:, :2].mean(axis=1), stiffness[:, 2]
+    euler = pi**2 * B / rod.length**2
+    x = np.interp(np.maximum(foreseen.pull, euler) * (D / 2) ** 2 / B, _pull(ANGLES), ANGLES)
+    turns = float(np.mean(B / GJ)) * _moment(ANGLES) + foreseen.slack * np.sin(2 * ANGLES)
+    wound = np.interp(2 * pi * D * foreseen.turns / rod.length, turns, ANGLES)
+    x = np.where(foreseen.pull <= SMALL_PULL * euler, np.maximum(x, wound), x)
+    pressure = MARGIN * 8.0 * B / D**3 * np.sin(x) ** 4 / np.cos(2 * x)
+    steepness = 4 * POWER * pressure / D  # by which a strand's pressure falls as it goes
+    half_critical = float(np.sqrt(0.5 * mass / steepness).min())
+    return Held(pressure / (_width() * D), half_critical)
+
+
+def foreseen(scene: Scene) -> Foreseen:
+    """What the ends of a scene will have done by its end, as far as it can be known before."""
+    if scene.contact is None or not scene.contact.automatic:
+        return Foreseen()
+    t = np.linspace(0.0, scene.t_end, SAMPLES)
+    turns = _turns(scene, t)
+    most = SAMPLES - 1 - int(np.argmax(turns[::-1]))  # the last time of all, if they stay
+    return Foreseen(float(turns[most]), _largest_pull(scene, t), float(_slack(scene, t)[most]))
+
+
+def _pull(x: Array) -> Array:
+    """F R^2 / B of the plectoneme at rest."""
+    return np.asarray(np.sin(x) ** 3 * (np.cos(x) * np.tan(2 * x) - 0.5 * np.sin(x)))
+
+
+def _moment(x: Array) -> Array:
+    """M D / B of the plectoneme at rest."""
+    return np.asarray(2.0 / np.sin(2 * x) * (np.sin(x) ** 4 + 2.0 * _pull(x)))
+
+
+def _width() -> float:
+    """The force of a straight strand on a point of another, D apart, over P D: the integral of f cos along it."""
+    s = np.linspace(-REACH, REACH, 4001)
+    d = np.sqrt(1.0 + s * s)
+    f = np.where(d < REACH, ((REACH - d) / (d - POLE)) ** POWER, 0.0)
+    return float(np.trapezoid(f / d, s))
+
+
+def _turns(scene: Scene, t: Array) -> Array:
+    """The turns that the rod holds at each time: of the ends, by a moment at an end, and at the start."""
+    rod = scene.rod
+    s = np.linspace(0.0, rod.length, SAMPLES)
+    twist = np.asarray(scene.initial.twist(s)) + np.zeros_like(s)
+    at_start = twist[-1] - twist[0] - float(np.trapezoid(np.asarray(rod.kappa0[2](s)) + np.zeros_like(s), s))
+    turned = at_start + _travel(scene.end.rotation[2], t) - _travel(scene.start.rotation[2], t)
+    moment = np.maximum(*(np.abs(_loads(end.rotation[2], t)) for end in (scene.start, scene.end)))
+    GJ = float(principal(elasticity_of(rod, s))[:, 2].min())
+    return np.asarray(np.maximum(np.abs(turned), moment * rod.length / GJ) / (2 * pi))
+
+
+def _slack(scene: Scene, t: Array) -> Array:
+    """By what part of the rod's length the ends give way at each time."""
+    ends = scene.start, scene.end
+    if any(condition.kind == "load" for end in ends for component in end.translation for condition in component):
+        return np.full(len(t), SLACK[1])
+    from_, to = (np.stack([_travel(component, t) for component in end.translation]) for end in ends)
+    places = np.asarray(scene.initial.centreline(np.array([0.0, scene.rod.length])))
+    chord = np.linalg.norm((places[1] - places[0])[:, None] + to - from_, axis=0)
+    return np.asarray(np.clip(1.0 - chord / scene.rod.length, *SLACK))
+
+
+def _travel(component: Component, t: Array) -> Array:
+    """How far an end has gone, or turned, until each time, as far as it is prescribed."""
+    travelled = np.zeros_like(t)
+    for condition, until in _in_turn(component, t[-1]):
+        if condition.kind in ("rate", "position"):
+            curve = condition.curve
+            of: Callable[[float], float] = curve.integral if condition.kind == "rate" else curve.value
+            travelled += [of(min(max(x, condition.since), until)) - of(condition.since) for x in t]
+    return travelled
+
+
+def _in_turn(component: Component, last: float) -> list[tuple[Condition, float]]:
+    """The conditions of a component, with the times (s) until which each holds."""
+    ends = [*(condition.since for condition in component[1:]), max(last, component[-1].since)]
+    return list(zip(component, ends, strict=True))
+
+
+def _loads(component: Component, t: Array) -> Array:
+    """The force or moment that is given for a component at each time; 0 where its motion is."""
+    load = np.zeros_like(t)
+    for condition, until in _in_turn(component, t[-1]):
+        if condition.kind == "load":
+            load = np.where((t >= condition.since) & (t <= until), condition.curve(t), load)
+    return load
+
+
+def _largest_pull(scene: Scene, t: Array) -> float:
+    """The largest force (N) at an end or in a point, or the rod's weight if that is larger."""
+    forces = [np.linalg.norm([_loads(c, t) for c in end.translation], axis=0).max() for end in (scene.start, scene.end)]
+    forces += [np.linalg.norm([_at(c, t) for c in load.force], axis=0).max() for load in scene.points]
+    s = np.linspace(0.0, scene.rod.length, SAMPLES)
+    mass = float(np.trapezoid(np.asarray(scene.rod.mass(s)) + np.zeros_like(s), s))
+    return float(max([*forces, mass * float(np.linalg.norm(scene.gravity))]))
+
+
+def _at(curve: Curve, t: Array) -> Array:
+    return np.asarray(curve(t))

@@ -1,0 +1,74 @@
+"""What a run says of strands that pass through each other, hop over an end, or overlap."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import nan
+
+import numpy as np
+import pytest
+
+from solver import End, Frame, Initial, Numerics, Simulation
+from solver.run.remarks import Remarks
+from solver.run.watch import Watch
+from solver.scene.scene import Scene
+from tests.solver.measures.test_passages import hooked
+from tests.solver.physics.contact.test_self_contact import looped
+from tests.solver.scenes import ROD, last
+
+PLAIN = Scene(
+    rod=ROD, initial=Initial.straight(), start=End.clamp(), end=End.free(), t_end=0.01, output_interval=0.01,
+    numerics=Numerics(intervals=4),
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def frame() -> Frame:
+    return last(PLAIN)
+
+
+def looks(frame: Frame, height: float, reach: float, t: float, turns: float) -> Frame:
+    """A frame with the hooked shape, whose tangents at the ends are e3 and e1."""
+    shape = hooked(height, reach)
+    orientation = np.tile([1.0, 0.0, 0.0, 0.0], (len(shape.r), 1))
+    orientation[-1] = [np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0]
+    return replace(frame, t=t, r=shape.r, orientation=orientation, Tw=0.0, Wr=turns, Lk=0.0, min_gap=nan)
+
+
+def watched(frame: Frame, height: float, holds: bool) -> tuple[str, Remarks]:
+    remarks = Remarks()
+    watch = Watch(remarks, holds)
+    watch.see(looks(frame, height, 0.3, 1.0, 0.0))
+    return watch.see(looks(frame, height, -0.3, 2.0, 2.0)), remarks
+
+
+def test_a_hop_over_an_end_ends_no_run(frame: Frame) -> None:
+    for holds in (True, False):
+        refusal, remarks = watched(frame, -0.52, holds)
+        assert not refusal
+        assert remarks.attributes() == {"end_hops": 1}
+        assert "hopped over an end of the rod once" in remarks.sentences()[0]
+
+
+def test_a_crossing_ends_a_run_with_contact_and_is_told_without(frame: Frame) -> None:
+    assert watched(frame, 0.52, True)[0]
+    refusal, remarks = watched(frame, 0.52, False)
+    assert not refusal
+    assert remarks.attributes() == {"crossings": 1, "first_crossing": 2.0}
+
+
+def test_the_deepest_overlap_is_kept(frame: Frame) -> None:
+    remarks = Remarks()
+    watch = Watch(remarks, True)
+    for t, gap in ((1.0, nan), (2.0, 1e-4), (3.0, -2e-4), (4.0, -1e-4)):
+        watch.see(replace(frame, t=t, min_gap=gap))
+    assert remarks.attributes() == {"deepest_overlap": 2e-4, "deepest_overlap_at": 3.0}
+    assert "overlapped" in remarks.sentences()[0]
+
+
+def test_a_run_without_contact_goes_on_and_says_that_it_crossed() -> None:
+    simulation = Simulation(looped(None, 0.05))
+    times = [frame.t for frame in simulation]
+    assert times[-1] == 1.0
+    assert simulation.remarks.crossings == 1
+    assert 0.0 < simulation.remarks.first_crossing <= 1.0

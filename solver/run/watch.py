@@ -15,7 +15,7 @@ from solver.run.remarks import Remarks
 
 JUMP = 1.0
 """Turns by which Tw + Wr - Lk may change between frames without anything having passed through: half of a jump."""
-EVERY = 4
+EVERY = 10
 """Steps after which a shape between two frames may be kept."""
 FAR = 0.02
 """In rod lengths: how far a node has moved since the last shape that was kept, when another one is."""

@@ -15,7 +15,7 @@ from solver.run.remarks import Remarks
 
 JUMP = 1.0
 """Turns by which Tw + Wr - Lk may change between frames without anything having passed through: half of a jump."""
-EVERY = 4
+EVERY = 10
 """Steps after which a shape between two frames may be kept."""
 FAR = 0.02
 """In rod lengths: how far a node has moved since the last shape that was kept, when another one is."""
@@ -60,9 +60,9 @@ class Watch:
         if len(shapes) < 2 or not abs(turns - before) > JUMP:
             return ""
         seen = np.sum([passages(*two) for two in pairwise(shapes)], axis=0)
-        crossings, hops = abs(int(seen[0])), abs(int(seen[1]))
-        if self._holds and (crossings or not hops):
+        if self._holds and round(0.5 * (turns - before)) != seen[1]:  # not all of it is hops
             return "Tw + Wr - Lk jumped"
+        crossings, hops = 0 if self._holds else abs(int(seen[0])), abs(int(seen[1]))
         if crossings and not self._remarks.crossings:
             self._remarks.first_crossing = frame.t
         self._remarks.crossings += crossings

@@ -73,8 +73,8 @@ class Outcome(StrEnum):
         "rod_stretched",
         "the rod was no longer as long as it is by more than 10 %: its ends pull it so far, or the box method did not "
         "keep the length of an interval",
-        "look for ends that ask for more than the rod's length; by the box method, use more intervals, a smaller "
-        "dt_max or increment_tolerance, or the method staggered",
+        "keep the ends nearer to each other than 1.1 times the rod's length; by the box method, use more intervals, a "
+        "smaller dt_max or increment_tolerance, or the method staggered or a tolerance",
         "solver",
     )
     ENERGY_MADE = (

@@ -21,6 +21,8 @@ from solver.scene.scene import Scene
 
 TAUT = 0.999
 """Distance of the ends, in rod lengths, from which on the rod has to be able to stretch."""
+LARGEST_STRAIN = 0.1
+"""Beyond this the rod that is computed is another one."""
 LOOKED_AT = 201
 """Points along the rod, and in time, that are looked at."""
 

@@ -14,7 +14,8 @@ from solver.measures.topology import writhe_of_rod
 from solver.methods.space.segments.balances import motion_at
 from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.staggered import orientations_at_nodes
-from solver.physics.axial import axial_stiffness
+from solver.outcome import Outcome, RunFailed
+from solver.physics.axial import LARGEST_STRAIN, axial_stiffness
 from solver.run.run import Run
 from solver.scene.ends import End
 from solver.scene.initial import Initial
@@ -88,6 +89,9 @@ class Equilibria(Run):
         """The frame of the point that the path has reached."""
         equations, path, point = self._equations, self._path, self._path.point
         equations.linearise(point)
+        if equations.strain() > LARGEST_STRAIN:
+            told = f"stretched by {equations.strain():.2g} of its length"
+            raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, told)
         fields = self._fields(point)
         stages = equations.stages
         energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], motion_at(stages, 0))

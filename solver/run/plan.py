@@ -20,6 +20,8 @@ OVERHEAD = 60
 """Intervals that take as long as all else in a Newton iteration."""
 MOST_WORK = 1.2e7
 """Newton iterations times (intervals + OVERHEAD), in all, after which nothing is refined: five to ten seconds."""
+IN_CONTACT = 6.0
+"""How many times more work an iteration is where strands press on each other."""
 FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 LOOSEST = -4
@@ -100,7 +102,7 @@ def allowance(history: Sequence[Attempt], trial: Trial) -> float:
     """The work that an attempt may take before it is given up as slow."""
     complete = [attempt for attempt in history if attempt.complete]
     if not complete:
-        return MOST_WORK * FIRST_PART if trial.steps > LOOSEST else inf
+        return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else 1.0)
     left = MOST_WORK - _work(history)
     if len({attempt.mesh for attempt in complete}) < 2 and trial.mesh > complete[0].mesh:
         return max(left, 8.0 * expected(complete, trial))  # without a second mesh nothing is known
@@ -140,7 +142,7 @@ def following(history: Sequence[Attempt], excess: Excess, first_mesh: int, most_
 def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> Trial | None:
     last = history[-1]
     if last.slow:
-        return Trial(last.mesh, max(last.steps - 2, LOOSEST))
+        return Trial(last.mesh, max(last.steps - 2, LOOSEST)) if last.steps > LOOSEST else None
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
     if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > MOST_WORK:

@@ -19,6 +19,7 @@ from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import Accuracy, judge
 from solver.run.first_mesh import first_mesh
 from solver.run.plan import (
+    IN_CONTACT,
     OVERHEAD,
     Attempt,
     Excess,
@@ -58,7 +59,7 @@ class Refined(Run):
         self._rows: list[Array] = []
         self._excess: tuple[float, ...] = tuple(Excess())
         self._mesh, self._steps = first_mesh(scene), 0
-        self._before, self._progress, self._decided = 0, 0.0, False
+        self._work, self._progress, self._decided = 0.0, 0.0, False
         self._detail = ""
         self._run = self._begin()
 
@@ -114,7 +115,7 @@ class Refined(Run):
         self._run = self._begin()
         super().restore(checkpoint)
 
-    def _begin(self) -> Run:
+    def _begin(self) -> Simulation:
         numerics = replace(
             self._scene.numerics, tolerance=None, verify=False, intervals=intervals_of(self._mesh),
             dt_max=longest_step(self._steps, self._scene.output_interval), small_motion=SMALL_MOTION,
@@ -136,11 +137,6 @@ class Refined(Run):
         return min(self._scene.numerics.most_intervals, MOST_ROWS // (len(self._outputs) + 1))
 
     @property
-    def _work(self) -> float:
-        """Of the attempt under way."""
-        return (self.statistics.newton_iterations - self._before) * (intervals_of(self._mesh) + OVERHEAD)
-
-    @property
     def _together(self) -> Together:
         return Together(self._scene, self._attempts, self._recorded)
 
@@ -160,12 +156,15 @@ class Refined(Run):
 
     def _go_on(self) -> None:
         """Take a step of the attempt under way; where it ends, decide what follows."""
+        before = self.statistics.newton_iterations
         try:
             frame = self._run.advance()
         except RunFailed as failure:
             self._detail = failure.detail
             self._ended(failure.t, OUTCOMES.index(failure.outcome), slow=False)
             return
+        each = (intervals_of(self._mesh) + OVERHEAD) * (IN_CONTACT if self._run.presses else 1.0)
+        self._work += (self.statistics.newton_iterations - before) * each
         if frame is not None:
             self._rows.append(row_of(frame))
         if self._run.finished:
@@ -178,7 +177,7 @@ class Refined(Run):
         self._history.append(tuple(Attempt(self._mesh, self._steps, self._work, t, complete, slow, outcome)))
         self._recorded.append(tuple(self._rows))
         self._noticed.append(astuple(self._run.remarks))
-        self._rows, self._before = [], self.statistics.newton_iterations
+        self._rows, self._work = [], 0.0
         together = self._together
         self._recorded = [rows if i in together.needed else () for i, rows in enumerate(self._recorded)]
         excess = together.excess()

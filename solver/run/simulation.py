@@ -10,7 +10,7 @@ from solver.measures.frame import Frame, Statistics, complete
 from solver.methods.registry import discretized, tolerated_increment
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
-from solver.physics.axial import axial_stiffness
+from solver.physics.axial import LARGEST_STRAIN, axial_stiffness
 from solver.run.accounts import Accounts
 from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
@@ -21,8 +21,6 @@ from solver.scene.scene import Scene
 FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
 """Outcomes that a shorter step does not avert."""
 
-LARGEST_STRAIN = 0.1
-"""Beyond this the rod that is computed is another one."""
 LARGEST_MADE = 0.1
 """Part of the energy that changed its form or hands: a run that made or lost more of it says nothing of the rod."""
 
@@ -51,6 +49,11 @@ class Simulation(Run):
     def s(self) -> Array:
         """Arclengths of the nodes (n,), m."""
         return self._method.s
+
+    @property
+    def presses(self) -> bool:
+        """Whether parts of the rod press on each other."""
+        return self._method.pressing() > 0
 
     def warm(self) -> None:
         """Have every kernel compiled."""

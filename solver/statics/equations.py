@@ -153,6 +153,17 @@ class Equations:
         """What takes the force at an end to how far what holds it is from the rod's end (3, 3): see `physics.axial`."""
         return np.asarray((2.0 * side - 1.0) * self._compliance * np.outer(R[:, 2], R[:, 2]))
 
+    def _stretch_by_rotation(self, side: int, R: Array, F: Array) -> Array:
+        """How that times the force (3,) changes with a rotation of the end's frame (3, 3): the tangent turns."""
+        turned = np.column_stack([-R[:, 1], R[:, 0], np.zeros(3)])
+        changed = turned * (R[:, 2] @ F) + np.outer(R[:, 2], F @ turned)
+        return np.asarray((2.0 * side - 1.0) * self._compliance * changed)
+
+    def strain(self) -> float:
+        """How far the ends are stretched, in rod lengths, of the point evaluated last."""
+        forces, tangents = self.stages.F[0, [0, -1]], self.stages.R[0, [0, -1], :, 2]
+        return float(self._compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
+
     def _follower(self, side: int) -> Array:
         """Forces (3,) that follow an end's frame."""
         return self._driven.values[0, side, :3]
@@ -204,8 +215,9 @@ class Equations:
             D[a, PSI, PSI][end.held[3:]] = one[end.held[3:]] * self._unit(PSI)
             D[a, X, X][end.held[:3]] = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
             force = upper[0] if side == 0 else D[-1]
-            stretch = end.axes.T @ self._stretch(side, R[a]) * self._unit(X) / self.units[3]
-            force[X, FORCE][end.held[:3]] = stretch[end.held[:3]]
+            rows = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
+            force[X, FORCE][end.held[:3]] = rows @ self._stretch(side, R[a])
+            D[a, X, PSI][end.held[:3]] = rows @ self._stretch_by_rotation(side, R[a], self.stages.F[0, a])
         scale = self._rows[:, None] * self.units
         return D * scale, lower * scale, upper * scale
 

@@ -198,11 +198,10 @@ def test_a_rod_that_cannot_move_as_told_is_singular() -> None:
     assert caught.value.t == 0.0
 
 
-@pytest.mark.parametrize("method", ["box", "staggered"])
-def test_a_rod_held_along_its_axis_is_told_so_where_a_load_hides_it(method: Literal["box", "staggered"]) -> None:
+def test_a_rod_held_along_its_axis_is_told_so_where_a_load_hides_it() -> None:
     """Rounding makes the force along the axis look determined: what is said must still be what to do."""
     across = (PointLoad(0.3, force=(Curve.constant(1.0), ZERO, ZERO)),)
-    scene = cantilever(end=End.pin(), points=across, numerics=Numerics(method=method, intervals=15))
+    scene = cantilever(end=End.pin(), points=across, numerics=Numerics(method="box", intervals=15))
     with pytest.raises(RunFailed, match="along its axis at both ends") as caught:
         list(simulate(scene))
     assert caught.value.t == 0.0

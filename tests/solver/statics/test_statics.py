@@ -213,8 +213,8 @@ def test_a_rod_pulled_beyond_its_length_ends_by_name() -> None:
     pulled = End((FIXED, FIXED, (Condition("position", ramp(0.5)),)), (FIXED,) * 3, frame="lab")
     with pytest.raises(RunFailed) as failure:
         list(simulate(static(rod=ARC_ROD, initial=ARC, end=pulled)))
-    assert failure.value.outcome == Outcome.EQUILIBRIUM_LOST
-    assert 0.0 < failure.value.t < 1.0
+    assert failure.value.outcome == Outcome.ROD_STRETCHED
+    assert 0.0 < failure.value.t <= 1.0
 
 
 def test_a_branch_that_leads_back_past_the_start_ends_by_name() -> None:
@@ -245,10 +245,9 @@ def test_motion_at_the_start_is_refused() -> None:
         static(initial=Initial.straight(velocity=(1.0, 0.0, 0.0)))
 
 
-@pytest.mark.parametrize("ends", [(End.clamp(), End.clamp()), (End.free(), End.free())], ids=["held twice", "loose"])
-def test_a_rod_without_a_single_equilibrium_ends_by_name(ends: tuple[End, End]) -> None:
+def test_a_rod_without_a_single_equilibrium_ends_by_name() -> None:
     with pytest.raises(RunFailed) as failure:
-        list(simulate(static(start=ends[0], end=ends[1])))
+        list(simulate(static(start=End.free(), end=End.free())))
     assert failure.value.outcome == Outcome.SINGULAR_SYSTEM
 
 

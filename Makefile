@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: demo test serve lint bench bench-work-precision bench-skipping load chaos soak fuzz stress validate docs lock clean
+.PHONY: demo test serve lint bench bench-work-precision bench-skipping load chaos soak fuzz stress plausible validate docs lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -41,6 +41,9 @@ fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed
 
 stress: .venv/.dev  ## the solver at its limits: sweeps, maps and 10,000 random cases (an hour or more)
 	$(BIN)/python -m stress
+
+plausible: .venv/.dev  ## scenes as people would send them, in the default mode: is each answered (a quarter of an hour)
+	$(BIN)/python -m stress.plausible
 
 bench-work-precision: .venv/.bench  ## CPU time against error, beside PyElastica and MuJoCo's cable
 	$(BIN)/python -m benchmarks.work_precision

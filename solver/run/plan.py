@@ -24,6 +24,8 @@ IN_CONTACT = 6.0
 """How many times more work an iteration is where strands press on each other."""
 FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
+LAST_PART = 4.0
+"""MOST_WORK that a run with the longest steps may take, where no other came to its end."""
 LOOSEST = -4
 """The longest steps that are tried: their error does not count."""
 SAME_TIME = 0.02
@@ -102,7 +104,7 @@ def allowance(history: Sequence[Attempt], trial: Trial) -> float:
     """The work that an attempt may take before it is given up as slow."""
     complete = [attempt for attempt in history if attempt.complete]
     if not complete:
-        return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else 1.0)
+        return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else LAST_PART)
     left = MOST_WORK - _work(history)
     if len({attempt.mesh for attempt in complete}) < 2 and trial.mesh > complete[0].mesh:
         return max(left, 8.0 * expected(complete, trial))  # without a second mesh nothing is known
@@ -145,7 +147,7 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> T
         return Trial(last.mesh, max(last.steps - 2, LOOSEST)) if last.steps > LOOSEST else None
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
-    if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > MOST_WORK:
+    if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > LAST_PART * MOST_WORK:
         return None
     return Trial(last.mesh + 1, last.steps)
 

@@ -121,7 +121,7 @@ class Refined(Run):
             dt_max=longest_step(self._steps, self._scene.output_interval), small_motion=SMALL_MOTION,
             increment_tolerance=step_tolerance(self._steps, self._scene.numerics.tolerance or 1.0),
         )  # fmt: skip
-        return Simulation(replace(self._scene, numerics=numerics), self.statistics)
+        return Simulation(replace(self._scene, numerics=numerics), self.statistics, goes_on=True)
 
     @property
     def _attempts(self) -> list[Attempt]:

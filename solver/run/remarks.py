@@ -13,7 +13,8 @@ class Remarks:
     `end_hops`: how often a loop hopped over an end; both by Tw + Wr - Lk from frame to frame, so that two of opposite
     sign between frames cancel, and none is seen without topology. `deepest_overlap` (m) of strands, and the time
     `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
-    it has to stretch, see `physics.axial`.
+    it has to stretch, see `physics.axial`. `energy_lost`: the part of all energy that changed its form or hands which
+    went nowhere, if that is more than a tenth.
     """
 
     crossings: int = 0
@@ -22,6 +23,7 @@ class Remarks:
     deepest_overlap: float = 0.0
     deepest_overlap_at: float = 0.0
     axial_stiffness: float = 0.0
+    energy_lost: float = 0.0
 
     def attributes(self) -> dict[str, float | int]:
         """The values that are not zero, by name."""
@@ -44,6 +46,11 @@ class Remarks:
             told.append(
                 f"Strands overlapped, at the most by {self.deepest_overlap:.3g} m "
                 f"at t = {self.deepest_overlap_at:.6g} s."
+            )
+        if self.energy_lost:
+            told.append(
+                f"Of all energy that changed its form or hands {self.energy_lost:.0%} went nowhere: the steps are too "
+                "long for the waves that had it."
             )
         if self.axial_stiffness:
             told.append(

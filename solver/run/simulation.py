@@ -27,8 +27,10 @@ LARGEST_MADE = 0.1
 class Simulation(Run):
     """Motion, by steps in time."""
 
-    def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
+    def __init__(self, scene: Scene, statistics: Statistics | None = None, goes_on: bool = False) -> None:
+        """`goes_on`: energy that went nowhere is a remark, and does not end the run by `energy_lost`."""
         super().__init__(scene, statistics)
+        self._goes_on = goes_on
         self._method = discretized(scene)
         self._accounts = Accounts(scene, self._method)
         ends = self._method.start.corners() + self._method.end.corners()
@@ -80,7 +82,9 @@ class Simulation(Run):
         if made > LARGEST_MADE:
             raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, told)
         if made < -LARGEST_MADE and output == self._outputs[-1]:  # much of what was at first may be little of all
-            raise RunFailed(Outcome.ENERGY_LOST, self.t, self.statistics.steps, told)
+            self.remarks.energy_lost = -made
+            if not self._goes_on:
+                raise RunFailed(Outcome.ENERGY_LOST, self.t, self.statistics.steps, told)
         crossed = self._watch.see(frame)
         if crossed:
             raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, crossed)

@@ -71,7 +71,7 @@ def fetch(told: argparse.Namespace) -> int:
 def _sentence(job: dict[str, Any]) -> str:
     told = f"{job['id']}: {job['status']}"
     if job["status"] == "running":
-        told += f", {job['progress']:.0%} done, t = {job['t']:.2f} s"
+        told += f", {job['phase'] or 'starting'}, {job['progress']:.0%} done, t = {job['t']:.2f} s"
     if job["outcome"] not in ("", "completed"):
         told += f", {job['outcome']}"
     if job["message"]:

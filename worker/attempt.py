@@ -82,7 +82,7 @@ class Attempt:
             message = " ".join([message, *simulation.notes()]).strip()
             published = self._with_room(lambda: writer.publish(outcome.value, message, simulation))
         dataset = Dataset(self._path.name, published.sha256, published.bytes)
-        return Ending(status, outcome, message, dataset, self._drift(spec))
+        return Ending(status, outcome, message, dataset, self._drift(spec), simulation.attributes())
 
     def publish(self) -> None:
         """Have the dataset lie where all can read it. Raises whatever ends a run."""
@@ -90,6 +90,7 @@ class Attempt:
 
     def _compute(self, simulation: Run, writer: DatasetWriter) -> None:
         self._due = time.monotonic() + self._interval
+        self._tell(simulation)
         under_way = False
         while not simulation.finished:
             frame = simulation.advance()
@@ -100,7 +101,7 @@ class Attempt:
                 self._keep(writer, frame)
             steps = simulation.statistics.steps
             self._lock.mark(steps)
-            self._lease.tell(Reached(simulation.progress, simulation.t, steps, self._redone))
+            self._tell(simulation)
             try:
                 stopping.check()
             except stopping.Stopping:
@@ -108,6 +109,9 @@ class Attempt:
                 raise
             if time.monotonic() >= self._due:
                 self._save(simulation, writer)
+
+    def _tell(self, run: Run) -> None:
+        self._lease.tell(Reached(run.progress, run.t, run.statistics.steps, self._redone, phase=run.phase))
 
     def _keep(self, writer: DatasetWriter, frame: Frame) -> None:
         try:

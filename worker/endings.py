@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import logging
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from outcomes import Outcome
@@ -26,13 +26,15 @@ class OutOfDisk(Exception):
 
 @dataclass(frozen=True)
 class Ending:
-    """The status, the outcome, a sentence for the owner, and the dataset if there is one, with its drift."""
+    """The status, the outcome, a sentence for the owner, and the dataset if there is one, with its drift and with what
+    it says of the run as a whole."""
 
     status: Status
     outcome: Outcome
     message: str
     dataset: Dataset | None = None
     drift: Drift | None = None
+    attributes: dict[str, float | int | str] = field(default_factory=dict)
 
 
 DISMISSED = Ending(Status.DISMISSED, Outcome.CANCELLED, CANCELLED)

@@ -30,7 +30,9 @@ class LimitsDocument(BaseModel):
 
 
 class JobDocument(BaseModel):
-    """A job. `progress` goes from 0 to 1, `t` is simulated seconds; `message` says what to do next."""
+    """A job. `progress` goes from 0 to 1, `t` is simulated seconds, `remaining` the seconds that are left if it goes on
+    as so far; `message` says what to do next, `attributes` what the run as a whole says, as its dataset does: its
+    errors, whether the tolerance is met, crossings and the like."""
 
     id: str
     owner: str
@@ -38,7 +40,9 @@ class JobDocument(BaseModel):
     title: str
     label: str
     priority: int
+    phase: str
     progress: float
+    remaining: float | None
     t: float
     outcome: str
     message: str
@@ -48,6 +52,7 @@ class JobDocument(BaseModel):
     started: datetime | None
     finished: datetime | None
     case_sha256: str
+    attributes: dict[str, float | int | str]
     limits: LimitsDocument
     dataset: DatasetDocument | None
     links: dict[str, str]
@@ -70,11 +75,11 @@ def document(job: Job) -> JobDocument:
         dataset = DatasetDocument(href=links["dataset"], sha256=job.dataset.sha256, bytes=job.dataset.bytes)
     return JobDocument(
         id=job.id, owner=job.owner, status=job.status, title=job.title, label=job.label, priority=job.priority,
-        progress=job.progress, t=job.t, outcome=job.outcome,
+        phase=job.phase, progress=job.progress, remaining=job.remaining, t=job.t, outcome=job.outcome,
         message=job.message, cancel_requested=job.cancel_requested, attempts=job.attempts,
         created=_instant(job.created), started=job.started and _instant(job.started),
         finished=job.finished and _instant(job.finished), case_sha256=job.case_sha256,
-        limits=LimitsDocument(**vars(job.limits)), dataset=dataset, links=links,
+        attributes=job.attributes, limits=LimitsDocument(**vars(job.limits)), dataset=dataset, links=links,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -73,7 +73,8 @@ class HeldJob:
 
         Returns whether the owner wants it cancelled; None if the job is another's now.
         """
-        moved = case((jobs.c.steps != reached.steps, 1), else_=0)
+        seen = (jobs.c.steps != reached.steps) | (jobs.c.phase != reached.phase)
+        moved = case((seen, 1), else_=0)
         with self.database.writing() as transaction:
             kept = transaction.change(*self._mine, lease_until=transaction.now + lease,
                                       version=jobs.c.version + moved, **asdict(reached))
@@ -91,7 +92,7 @@ class HeldJob:
             ))  # fmt: skip
 
     def finish(self, status: Status, outcome: str, message: str, dataset: Dataset | None, reached: Reached,
-               drift: Drift | None = None) -> Status | None:
+               drift: Drift | None = None, attributes: Mapping[str, float | int | str] | None = None) -> Status | None:
         """Write how the job ended: as told, or dismissed and without a dataset if its owner has cancelled it meanwhile.
 
         Returns with which status it has ended; None if it is another's now, and nothing was written. It may be tried
@@ -99,6 +100,7 @@ class HeldJob:
         """
         columns = {f"dataset_{name}": value for name, value in asdict(dataset).items()} if dataset else {}
         columns |= {f"drift_{name}": value for name, value in asdict(drift).items()} if drift else {}
+        columns["attributes"] = json.dumps(attributes or {})
         with self.database.writing() as transaction:
             (
                 transaction.change(*self._mine, ~jobs.c.cancel_requested, event="ended", status=status,

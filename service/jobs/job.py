@@ -39,6 +39,8 @@ class Drift:
     energy: float | None = None
 
 
+LEAST_PROGRESS = 0.01
+"""The part of a run that must be done before its remaining time is told."""
 LEAST_MEMORY = 64_000_000
 """Bytes; below, the libraries that compile and solve end the process themselves, without a name for it."""
 
@@ -86,13 +88,14 @@ class NewJob:
 @dataclass(frozen=True)
 class Reached:
     """How far a run has come: the part done (0 to 1), simulated seconds, steps of the solver that count
-    and that were lost with their worker and computed again, and seconds of running."""
+    and that were lost with their worker and computed again, seconds of running, and what it is doing, in words."""
 
     progress: float = 0.0
     t: float = 0.0
     steps: int = 0
     steps_redone: int = 0
     wall: float = 0.0
+    phase: str = ""
 
 
 @dataclass(frozen=True)
@@ -101,7 +104,8 @@ class Job:
 
     `version` grows with every change that a reader can see. `epoch` grows with every claim and when a
     lost job is taken back: a writer that holds an older one has lost the job. `attempts` counts the
-    claims, but for those handed back; `fruitless` those since the last new checkpoint.
+    claims, but for those handed back; `fruitless` those since the last new checkpoint. `attributes`: what its run
+    says of itself as a whole, by the names that its dataset has for it.
     """
 
     id: str
@@ -126,6 +130,7 @@ class Job:
     worker: str
     limits: Limits
     dataset: Dataset | None
+    attributes: dict[str, float | int | str]
 
     @property
     def progress(self) -> float:
@@ -136,6 +141,19 @@ class Job:
     def t(self) -> float:
         """How far the run has come, in simulated seconds."""
         return self.reached.t
+
+    @property
+    def phase(self) -> str:
+        """What its run is doing, in a few words; nothing where it does not run."""
+        return self.reached.phase if self.status is Status.RUNNING else ""
+
+    @property
+    def remaining(self) -> float | None:
+        """Seconds that the rest of the run takes if it goes on as so far; None where that cannot be known."""
+        done = self.reached.progress
+        if self.status is not Status.RUNNING or done < LEAST_PROGRESS:
+            return None
+        return self.reached.wall * (1.0 - done) / done
 
 
 def new_id() -> str:

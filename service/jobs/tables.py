@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -41,6 +43,7 @@ jobs = Table(
     Column("steps", BigInteger, nullable=False, default=0),
     Column("steps_redone", BigInteger, nullable=False, default=0),
     Column("wall", Double, nullable=False, default=0.0),
+    Column("phase", Text, nullable=False, default=""),
     Column("outcome", String(64), nullable=False, default=""),
     Column("message", Text, nullable=False, default=""),
     Column("cancel_requested", Boolean, nullable=False, default=False),
@@ -60,6 +63,7 @@ jobs = Table(
     Column("dataset_file", Text),
     Column("dataset_sha256", String(64)),
     Column("dataset_bytes", BigInteger),
+    Column("attributes", Text, nullable=False, default="{}"),
     Column("drift_method", String(16)),
     Column("drift_topology", Double),
     Column("drift_energy", Double),
@@ -131,6 +135,7 @@ webhooks = Table(
     Column("answer", Text, nullable=False, default=""),
 )
 
+REACHED = tuple(field.name for field in dataclasses.fields(Reached))
 NOT_OF_THE_JOB = ("case_json", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
 JOB_COLUMNS = [column for column in jobs.columns if column.name not in NOT_OF_THE_JOB]
 FRESH = {column.name: column.default.arg if isinstance(column.default, ColumnDefault) else None
@@ -141,9 +146,9 @@ FRESH = {column.name: column.default.arg if isinstance(column.default, ColumnDef
 def job_of(row: Mapping[Any, Any]) -> Job:
     """The job that a row of JOB_COLUMNS tells of."""
     fields = dict(row)
-    reached = Reached(*(fields.pop(name) for name in ("progress", "t", "steps", "steps_redone", "wall")))
+    reached = Reached(*(fields.pop(name) for name in REACHED))
     limits = Limits(*(fields.pop(f"limit_{name}") for name in ("wall", "memory", "disk")))
     file, sha256, size = (fields.pop(f"dataset_{name}") for name in ("file", "sha256", "bytes"))
     dataset = Dataset(file, sha256, size) if file is not None else None
     return Job(**fields | {"status": Status(fields["status"]), "reached": reached, "limits": limits,
-                           "dataset": dataset})
+                           "dataset": dataset, "attributes": json.loads(fields["attributes"])})

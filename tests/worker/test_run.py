@@ -76,6 +76,15 @@ def test_a_job_ends_with_a_dataset_whose_hash_its_row_tells(job, registry, setti
     assert left_over(settings) == [path]
 
 
+def test_a_job_says_what_its_dataset_says_of_the_run(registry, settings, case):
+    numerics = {name: value for name, value in case["numerics"].items() if name in ("method", "rho_inf")}
+    case |= {"numerics": {**numerics, "tolerance": 0.02}}
+    done = ended(registry.submit(NewJob(case)), registry, settings)
+    with open_dataset(settings.datasets / done.dataset.file) as dataset:
+        assert {name: dataset.attrs[name] for name in done.attributes} == done.attributes
+    assert done.attributes["tolerance"] == 0.02 and "tolerance_met" in done.attributes and "error_r" in done.attributes
+
+
 def test_the_registry_learns_how_far_a_run_has_drifted(registry, settings, case):
     ended(registry.submit(NewJob(case)), registry, settings)
     told = measure(registry.database, 1.0, 0.0)

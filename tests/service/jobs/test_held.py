@@ -115,6 +115,21 @@ def test_a_run_that_came_farther_has_a_new_version_and_a_bare_renewal_has_not(re
     assert (moved.progress, moved.t, moved.reached.steps) == (0.5, 1.0, 7)
 
 
+def test_what_a_run_is_doing_is_told_while_it_runs(registry):
+    job = held(registry)
+    assert registry.get(job.job.id).phase == ""
+    job.renew(LEASE, Reached(0.25, 1.0, wall=2.0, phase="run 1: 16 intervals"))
+    one = registry.get(job.job.id)
+    job.renew(LEASE, Reached(0.25, 1.0, wall=3.0, phase="run 2: 16 intervals"))
+    two = registry.get(job.job.id)
+    assert (one.phase, two.phase, two.remaining) == ("run 1: 16 intervals", "run 2: 16 intervals", 9.0)
+    assert two.version > one.version
+    attributes = {"tolerance_met": "no", "error_r": 2e-3, "crossings": 1}
+    job.finish(Status.SUCCESSFUL, "completed", "", None, Reached(1.0, phase="run 3"), attributes=attributes)
+    done = registry.get(job.job.id)
+    assert (done.phase, done.remaining, done.attributes) == ("", None, attributes)
+
+
 def test_a_renewal_tells_that_the_owner_cancels(registry):
     job = held(registry)
     assert registry.cancel(job.job.id).status is Status.RUNNING

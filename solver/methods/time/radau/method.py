@@ -50,7 +50,7 @@ class RadauMethod(ABC):
         self.applied = loads_on_segments(scene, self.s, STAGES, axis)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
-        self._newton_part = NEWTON_PART * tolerance if tolerance < 1.0 else 0.0
+        self._newton_part = NEWTON_PART * min(tolerance, 1.0) if tolerance < inf else 0.0
         # no shorter step has an error below what Newton's iteration leaves
         self._small_motion = max(scene.numerics.small_motion, TOLERANCE / tolerance)
         self._last_dt = 0.0

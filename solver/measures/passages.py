@@ -13,6 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.rotation import rotate
+from solver.measures.frame import Fields
 from solver.measures.topology import writhe_shares
 
 DIVISIONS = 8
@@ -28,6 +30,11 @@ class Shape(NamedTuple):
 
     r: Array
     tangents: Array
+
+
+def shape_of(fields: Fields) -> Shape:
+    """The centreline of a state."""
+    return Shape(fields.r, rotate(fields.orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2)))
 
 
 class Passages(NamedTuple):

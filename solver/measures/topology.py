@@ -51,10 +51,15 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
 
 def writhe_shares(r: Array, start_tangent: Array, end_tangent: Array) -> tuple[float, float]:
     """The parts of `writhe` (turns) that the pairs of segments have in it, and those with a ray."""
+    return -_segment_pairs(_columns(r, 2), False) / pi, share_of_rays(r, start_tangent, end_tangent)
+
+
+def share_of_rays(r: Array, start_tangent: Array, end_tangent: Array) -> float:
+    """The part of `writhe` (turns) that the pairs with a ray have in it."""
     columns, outward_start, outward_end = _columns(r, 2), -_unit(start_tangent), _unit(end_tangent)
     rays = _ray(columns, columns[:, -1], outward_end) - _ray(columns, columns[:, 0], outward_start)
     rays -= half_area(columns[:, -1] - columns[:, 0], outward_end, -outward_start)
-    return -_segment_pairs(columns, False) / pi, -rays / pi
+    return -float(rays) / pi
 
 
 def writhe_of_rod(r: Array, orientation: Array) -> float:

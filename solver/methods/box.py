@@ -12,6 +12,7 @@ from solver.kernels.handed import Handed, Reference
 from solver.kernels.rotation import relative_rotation, rotate_back, tangents_of
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
+from solver.measures.passages import Shape
 from solver.methods.linear.registry import linear_solver_of
 from solver.methods.schemes import BACKWARD_EULER, Scheme, c0_of
 from solver.methods.space.box.energies import energies
@@ -167,6 +168,12 @@ class BoxMethod:
             kappa=kappa, q=moments(self.section.elastic, kappa), r=self.state.r.copy(),
             orientation=quaternion.copy(),
         )  # fmt: skip
+
+    def centreline(self) -> Shape:
+        """The state's centreline."""
+        tangents = np.empty((2, 3))
+        tangents_of(self.state.quaternion[[0, -1]], tangents)
+        return Shape(self.state.r.copy(), tangents)
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""

@@ -7,6 +7,7 @@ from typing import Protocol
 from solver.arrays import Array
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
+from solver.measures.passages import Shape
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.scene.scene import Scene
@@ -67,6 +68,9 @@ class Method(Protocol):
 
     def fields(self) -> Fields:
         """The state along the rod."""
+
+    def centreline(self) -> Shape:
+        """The state's centreline."""
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""

@@ -8,6 +8,7 @@ from solver.arrays import Array
 from solver.kernels.dispatch import enter
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
+from solver.measures.passages import Shape, shape_of
 from solver.methods.linear import one_axis
 from solver.methods.linear import stages as linear
 from solver.methods.linear.one_axis import Factors
@@ -77,6 +78,10 @@ class OneAxisMethod(RadauMethod):
             kappa=axis.about(bend - self._offset), q=axis.about(elastic.K * (bend - elastic.kappa0)),
             r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
         )  # fmt: skip
+
+    def centreline(self) -> Shape:
+        """The state's centreline."""
+        return shape_of(self.fields())
 
     def energies(self) -> Energies:
         """The energies of the state."""

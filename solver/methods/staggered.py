@@ -9,6 +9,7 @@ from solver.kernels.dispatch import enter
 from solver.kernels.rotation import matrix_of, rotate_back
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
+from solver.measures.passages import Shape
 from solver.methods.linear import segments_contact, tridiagonal
 from solver.methods.linear import stages as linear
 from solver.methods.linear.segments_contact import Coupling, place_nodes
@@ -113,6 +114,10 @@ class StaggeredMethod(RadauMethod):
             f=rotate_back(orientation, self.state.F), kappa=bend / self.chain.span[:, None] - self._offset, q=q,
             r=self._nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
+
+    def centreline(self) -> Shape:
+        """The state's centreline."""
+        return Shape(self._nodes[0].copy(), self._R[[0, -1], :, 2])
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""

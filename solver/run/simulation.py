@@ -162,5 +162,5 @@ class Simulation(Run):
         self._turn = self._trial_turn
         self.statistics.steps += 1
         self._accounts.after_step(dt, iterations, flowed)
-        if self._scene.topology:
-            self._watch.follow(self._method.fields)
+        if self._scene.topology and self._scene.contact is not None:
+            self._watch.follow(self._method.centreline())

@@ -1,78 +1,64 @@
-"""What is seen from frame to frame of a run that touches or passes through itself."""
+"""What is seen of a run whose rod touches or passes through itself."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from itertools import pairwise
-
-import numpy as np
-
 from solver.arrays import Array
-from solver.kernels.rotation import rotate
-from solver.measures.frame import Fields, Frame
-from solver.measures.passages import Shape, passages
+from solver.measures.frame import Frame
+from solver.measures.passages import Shape, passages, shape_of
+from solver.measures.topology import share_of_rays
 from solver.run.remarks import Remarks
 
 JUMP = 1.0
 """Turns by which Tw + Wr - Lk may change between frames without anything having passed through: half of a jump."""
-EVERY = 10
-"""Steps after which a shape between two frames may be kept."""
-FAR = 0.02
-"""In rod lengths: how far a node has moved since the last shape that was kept, when another one is."""
-MOST = 200
-"""Shapes that are kept; of more, every second one."""
 
 
 class Watch:
-    """Enters what it sees in `remarks`: at frames only, so that what is undone before the next one is not seen.
+    """Enters what it sees in `remarks`: crossings and overlaps at frames only, so that what is undone before the next
+    one is not seen.
 
-    Where strands are held apart it also keeps shapes between frames, to tell which way the rod went.
+    Where strands are held apart it looks at the rays of the ends after every step: what jumps there is a hop over an
+    end, and what is left of the jumps of Tw + Wr - Lk is a crossing.
     """
 
     def __init__(self, remarks: Remarks, holds: bool) -> None:
         """`holds`: the scene has contact."""
         self._remarks, self._holds = remarks, holds
-        self._turns = 0.0
-        self._steps = 0
-        self._r: list[Array] = []
-        self._tangents: list[Array] = []
+        self._turns, self._share = 0.0, 0.0
+        self._hops = 0
+        """Over an end since the last frame, with signs."""
+        self._last: tuple[Array, ...] = ()
+        """The parts of the last shape, if there is one."""
 
-    def follow(self, fields: Callable[[], Fields]) -> None:
-        """After each step: keep the shape, if it is another one than the last that was kept."""
-        self._steps += 1
-        if not self._holds or self._steps % EVERY or not self._r:
-            return
-        now, last = fields(), self._r[-1]
-        length = float(np.sqrt(((last[1:] - last[:-1]) ** 2).sum(axis=1)).sum())
-        if np.abs(now.r - last).max() > FAR * length:
-            self._keep(now)
-            if len(self._r) > MOST:
-                self._r, self._tangents = self._r[::2], self._tangents[::2]
+    def follow(self, shape: Shape) -> None:
+        """After each step of a rod whose strands are held apart."""
+        share = share_of_rays(shape.r, shape.tangents[0], shape.tangents[1])
+        if self._last and abs(share - self._share) > JUMP:
+            self._hops += passages(Shape(*self._last), shape).hops
+        self._last, self._share = tuple(shape), share
 
     def see(self, frame: Frame) -> str:
         """Enter the next frame. Why the run must end, or nothing."""
         self._see_overlap(frame)
-        turns, before = frame.Tw + frame.Wr - frame.Lk, self._turns
+        shape, turns = shape_of(frame), frame.Tw + frame.Wr - frame.Lk
+        jump = turns - self._turns
         self._turns = turns
-        self._keep(frame)
-        shapes = [Shape(*one) for one in zip(self._r, self._tangents, strict=True)]
-        self._r, self._tangents = self._r[-1:], self._tangents[-1:]
-        if len(shapes) < 2 or not abs(turns - before) > JUMP:
-            return ""
-        seen = np.sum([passages(*two) for two in pairwise(shapes)], axis=0)
-        if self._holds and round(0.5 * (turns - before)) != seen[1]:  # not all of it is hops
-            return "Tw + Wr - Lk jumped"
-        crossings, hops = 0 if self._holds else abs(int(seen[0])), abs(int(seen[1]))
-        if crossings and not self._remarks.crossings:
-            self._remarks.first_crossing = frame.t
-        self._remarks.crossings += crossings
-        self._remarks.end_hops += hops
+        if self._holds:
+            self.follow(shape)
+            hops, self._hops = self._hops, 0
+            self._remarks.end_hops += abs(hops)
+            return "Tw + Wr - Lk jumped" if abs(jump - 2.0 * hops) > JUMP else ""
+        if self._last and abs(jump) > JUMP:
+            self._enter(*passages(Shape(*self._last), shape), frame.t)
+        self._last = tuple(shape)
         return ""
 
-    def _keep(self, now: Fields) -> None:
-        self._r.append(now.r)
-        self._tangents.append(rotate(now.orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2)))
+    def _enter(self, crossings: int, hops: int, t: float) -> None:
+        if crossings and not self._remarks.crossings:
+            self._remarks.first_crossing = t
+        self._remarks.crossings += abs(crossings)
+        self._remarks.end_hops += abs(hops)
 
     def _see_overlap(self, frame: Frame) -> None:
         if -frame.min_gap > self._remarks.deepest_overlap:  # NaN is not
             self._remarks.deepest_overlap, self._remarks.deepest_overlap_at = -frame.min_gap, frame.t
+

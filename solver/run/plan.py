@@ -8,7 +8,7 @@ both are below the tolerance or the work is done that may be.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from math import ceil, inf, log2
 from typing import NamedTuple
 
@@ -26,8 +26,10 @@ FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 LAST_PART = 4.0
 """MOST_WORK that a run with the longest steps may take, where no other came to its end."""
+PATIENCE = 8.0
+"""How many times the work that is expected of it the first run on a second mesh, or with other steps, may take."""
 LOOSEST = -4
-"""The longest steps that are tried: their error does not count."""
+"""The longest steps that are tried: their error hardly counts."""
 SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
 
@@ -69,7 +71,7 @@ def intervals_of(mesh: int) -> int:
 
 def step_tolerance(steps: int, tolerance: float) -> float:
     """The largest error of a step relative to its motion."""
-    return inf if steps <= LOOSEST else FIRST_STEPS * tolerance / 4.0**steps
+    return FIRST_STEPS * tolerance / 4.0**steps
 
 
 def longest_step(steps: int, interval: float) -> float:
@@ -94,10 +96,12 @@ def chosen(attempts: Sequence[Attempt]) -> tuple[list[int], list[int]]:
 
 
 def step_series(attempts: Sequence[Attempt]) -> list[int]:
-    """The complete attempts on the coarsest mesh, those with the longest steps first."""
+    """The complete attempts on the mesh that has most of them, the coarsest if there are several, those with the
+    longest steps first."""
     complete = [i for i, attempt in enumerate(attempts) if attempt.complete]
-    coarsest = min((attempts[i].mesh for i in complete), default=0)
-    return sorted((i for i in complete if attempts[i].mesh == coarsest), key=lambda i: attempts[i].steps)
+    meshes = sorted(attempts[i].mesh for i in complete)
+    most = max(meshes, key=meshes.count, default=0)
+    return sorted((i for i in complete if attempts[i].mesh == most), key=lambda i: attempts[i].steps)
 
 
 def allowance(history: Sequence[Attempt], trial: Trial) -> float:
@@ -106,8 +110,9 @@ def allowance(history: Sequence[Attempt], trial: Trial) -> float:
     if not complete:
         return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else LAST_PART)
     left = MOST_WORK - _work(history)
-    if len({attempt.mesh for attempt in complete}) < 2 and trial.mesh > complete[0].mesh:
-        return max(left, 8.0 * expected(complete, trial))  # without a second mesh nothing is known
+    meshes = {attempt.mesh for attempt in complete}
+    if len(complete) == 1 or (len(meshes) == 1 and trial.mesh not in meshes):
+        return max(left, PATIENCE * expected(complete, trial))  # without it nothing is known of the error
     return max(left, 0.0)
 
 
@@ -119,26 +124,42 @@ def expected(complete: Sequence[Attempt], trial: Trial) -> float:
 
 
 def following(history: Sequence[Attempt], excess: Excess, first_mesh: int, most_intervals: int) -> Trial | None:
-    """What to try next; None if what there is must be, or is, enough."""
+    """What to try next; None if what there is must be, or is, enough. Nothing is tried twice."""
     if not history:
         return Trial(first_mesh, 0)
+    tried = {(attempt.mesh, attempt.steps) for attempt in history}
+    for trial in _wishes(history, excess, most_intervals):
+        if trial is None or trial not in tried:
+            return trial
+    return None
+
+
+def _wishes(history: Sequence[Attempt], excess: Excess, most_intervals: int) -> Iterator[Trial | None]:
+    """What might come next, what is wanted most first."""
     complete = [attempt for attempt in history if attempt.complete]
     if not complete:
-        return _until_one_is_complete(history, most_intervals)
-    coarsest = min(attempt.mesh for attempt in complete)
-    shortest = max(attempt.steps for attempt in complete if attempt.mesh == coarsest)
-    shorter = Trial(coarsest, shortest + 1)
-    if len([attempt for attempt in complete if attempt.mesh == coarsest]) == 1:
-        return shorter if _is_for(history, shorter, most_intervals) else Trial(coarsest, shortest - 1)
-    steps = shortest - 1
+        yield _until_one_is_complete(history, most_intervals)
+        return
+    series = [history[i] for i in step_series(history)]
+    mesh, shortest = series[-1].mesh, series[-1].steps
+    shorter = Trial(mesh, shortest + 1)
+    if len(series) == 1:
+        if _is_for(history, shorter, most_intervals):
+            yield shorter
+        yield Trial(mesh, shortest - 1)
+    steps = shortest - 1 if len(series) > 1 else shortest
     if excess.at < 0:
-        trial = Trial(max(attempt.mesh for attempt in history) + 1, steps)
-        return trial if trial.mesh <= coarsest + 2 and intervals_of(trial.mesh) <= most_intervals else None
+        finer = Trial(max(attempt.mesh for attempt in history) + 1, steps)
+        coarser = Trial(mesh - 1, shortest)
+        if coarser.mesh >= 0 and not _is_for(history, finer, most_intervals):
+            yield coarser
+        yield finer if finer.mesh <= mesh + 2 and intervals_of(finer.mesh) <= most_intervals else None
+        return
     short = excess.steps > STEP_SHARE and (excess.steps >= 0.5 * excess.mesh or excess.mesh < 1.0 - STEP_SHARE)
-    again = Trial(max(excess.at, coarsest), steps + 1)
+    again = Trial(max(excess.at, mesh), steps + 1)
     if short and _is_for(history, shorter, most_intervals) and _is_for(history, again, most_intervals):
-        return shorter
-    return _finer(history, complete, Trial(coarsest, steps), excess, most_intervals)
+        yield shorter
+    yield _finer(history, complete, Trial(mesh, steps), excess, most_intervals)
 
 
 def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> Trial | None:

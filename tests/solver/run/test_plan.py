@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
+import numpy as np
 import pytest
 
 from solver.run.plan import MOST_WORK, Attempt, Excess, Trial, chosen, following, step_tolerance
@@ -39,6 +40,9 @@ def slow(mesh: int, steps: int) -> Attempt:
         ([failed(0, 0.5)], Excess(), Trial(1, 0)),
         ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2)], Excess(), None),
         ([slow(0, 0)], Excess(), Trial(0, -2)),
+        ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK)], Excess(), Trial(2, -5)),
+        ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK), ran(2, -5)], Excess(inf, 9.0), Trial(1, -4)),
+        ([ran(2, -4, 3 * MOST_WORK), ran(2, -5), ran(1, -4)], Excess(9.0, 9.0, 2), None),
         ([ran(0, 0), ran(0, 1), failed(1, 0.2)], Excess(), Trial(2, 0)),
     ],
 )
@@ -59,6 +63,21 @@ def test_where_nothing_is_complete_the_last_two_that_went_on_count() -> None:
     assert chosen([slow(0, 0), failed(0, 0.2), failed(1, 0.3), failed(2, 0.3)]) == ([2, 3], [])
 
 
-def test_the_longest_steps_are_as_long_as_newton_lets_them_be() -> None:
-    assert step_tolerance(-4, 1e-3) == inf
+def test_a_step_shorter_has_a_quarter_of_the_error() -> None:
     assert step_tolerance(2, 1e-3) == 1e-3
+    assert step_tolerance(3, 1e-3) == 0.25e-3
+
+
+@pytest.mark.parametrize("seed", range(300))
+def test_it_comes_to_an_end_and_tries_nothing_twice(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    first, history, excess = int(rng.integers(0, 5)), [], Excess()
+    chances = rng.dirichlet([3, 1, 1])
+    while (trial := following(history, excess, first, 1024)) is not None:
+        kind, work = rng.choice(3, p=chances), float(10 ** rng.uniform(-3, 0.5)) * MOST_WORK
+        history.append(Attempt(*trial, work, float(rng.uniform()), complete=kind == 0, slow=kind == 1))
+        known = max((attempt.mesh for attempt in history if attempt.complete), default=-1)
+        at = known if rng.uniform() < 0.8 and len({a.mesh for a in history if a.complete}) > 1 else -1
+        excess = Excess(*(10 ** rng.uniform(-2, 2, 2)), at)
+        assert len(history) < 60
+    assert len({attempt[:2] for attempt in history}) == len(history)

@@ -36,6 +36,7 @@ def _number(name: str) -> int:
 
 R, KAPPA, ORIENTATION = column("r"), column("kappa"), column("orientation")
 TWIST, WRITHE, BALANCE = _number("Tw"), _number("Wr"), _number("energy_balance")
+CURVATURE = _number("max_curvature")
 BENDING, TORSION = _number("energy_bending"), _number("energy_torsion")
 KINETIC, ADDED_MASS = _number("energy_kinetic"), _number("energy_added_mass")
 

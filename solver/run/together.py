@@ -12,6 +12,8 @@ from solver.run.accuracy import errors_of, excess, sizes
 from solver.run.plan import Attempt, Excess, chosen, intervals_of, step_series
 from solver.run.recording import (
     BALANCE,
+    CURVATURE,
+    KAPPA,
     NUMBERS,
     ORIENTATION,
     WIDTH,
@@ -27,6 +29,8 @@ from solver.run.verify import VerifiedFrame, unseen
 from solver.scene.scene import Scene
 
 UNVERIFIED = np.array([not output.verified for output in NUMBERS])
+BESIDE = 3
+"""Frames before and after one whose errors count for it."""
 AT_ONCE = 50_000
 """Nodes times frames that are looked at together."""
 
@@ -59,27 +63,29 @@ class Together:
         return np.linspace(0.0, float(self._scene.rod.length), intervals_of(self.finest.mesh) + 1)
 
     def frame(self, i: int) -> VerifiedFrame:
-        """Frame number i."""
-        here = slice(i, i + 1)
-        value, mesh = self._of_mesh(here)
-        steps = self._of_steps(self._steps, self._shorter, here, value.along.shape[1])
-        along, numbers = mesh.along[0] + steps.along[0], mesh.numbers[0] + steps.numbers[0]
+        """Frame number i.
+
+        Its errors are the largest of those of the frames beside it: those of a wave pass through zero now and then.
+        """
+        first = max(i - BESIDE, 1) if i > 0 else 0  # of what is given at the start none is in error
+        here = slice(first, i + BESIDE + 1) if i > 0 else slice(0, 1)
+        value, error = self._of_frames(here)
+        along, numbers = error.along.max(axis=0), error.numbers.max(axis=0)
+        value = Columns(value.along[i - first], value.numbers[i - first])
         lost = max(abs(number_of(row, BALANCE)) for row in self._recorded[self._meshes[-1]][: i + 1])
         for name, least in unseen(self._scene.rod, self.s, lost).items():
             along[:, column(name)] = np.maximum(along[:, column(name)], least)
-        numbers = np.where(UNVERIFIED, value.numbers[0], numbers)
+        curvature = float(np.linalg.norm(along[:, KAPPA], axis=-1).max())
+        numbers[0, CURVATURE] = max(numbers[0, CURVATURE], curvature)
+        numbers[0, BALANCE] = max(numbers[0, BALANCE], abs(value.numbers[0, BALANCE]))  # of the solution it is none
+        numbers = np.where(UNVERIFIED, value.numbers, numbers)
         t = float(self._recorded[self._meshes[-1]][i][0])
-        error = frame_of(t, Columns(along, numbers))
-        return VerifiedFrame(**vars(frame_of(t, Columns(value.along[0], value.numbers[0]))), error=error)
+        return VerifiedFrame(**vars(frame_of(t, value)), error=frame_of(t, Columns(along, numbers)))
 
     def errors(self) -> Array:
         """The errors of the quantities of a tolerance (frames, 4), relative; see `accuracy`."""
-        size, told = self._sizes(), []
-        for here in self._pieces():
-            value, mesh = self._of_mesh(here)
-            steps = self._of_steps(self._steps, self._shorter, here, value.along.shape[1])
-            told.append(errors_of(Columns(mesh.along + steps.along, mesh.numbers + steps.numbers), size))
-        return np.concatenate(told)
+        size = self._sizes()
+        return np.concatenate([errors_of(self._of_frames(here)[1], size) for here in self._pieces()])
 
     def excess(self) -> Excess:
         """The error of the finest mesh, and that of the last steps but one on the coarsest, over the tolerance."""
@@ -104,6 +110,12 @@ class Together:
     def _sizes(self) -> Array:
         return sizes(self._scene, (columns_of(self._recorded[self._meshes[-1]][here]) for here in self._pieces()))
 
+    def _of_frames(self, here: slice) -> tuple[Columns, Columns]:
+        """The values and their errors."""
+        value, mesh = self._of_mesh(here)
+        steps = self._of_steps(self._steps, self._shorter, here, value.along.shape[1])
+        return value, Columns(mesh.along + steps.along, mesh.numbers + steps.numbers)
+
     def _of_mesh(self, here: slice) -> tuple[Columns, Columns]:
         """The values and their errors by the mesh."""
         told = [columns_of(self._recorded[k][here]) for k in self._meshes]
@@ -119,7 +131,7 @@ class Together:
     def _of_steps(self, series: Sequence[int], shorter: bool, here: slice, nodes: int) -> Columns:
         """The error by the steps at `nodes` nodes, as attempts with different steps tell it."""
         if len(series) < 2:
-            many = here.stop - here.start
+            many = min(here.stop, self.frames) - here.start
             return Columns(np.zeros((many, nodes, WIDTH)), np.zeros((many, 1, len(NUMBERS))))
         told = [columns_of(self._recorded[k][here]) for k in series]
         along, numbers = zip(*(_aligned(columns, told[-1]) for columns in told), strict=True)

@@ -35,6 +35,7 @@ def _number(name: str) -> int:
 
 
 R, KAPPA, ORIENTATION = column("r"), column("kappa"), column("orientation")
+OMEGA, FORCE = column("omega"), column("f")
 TWIST, WRITHE, BALANCE = _number("Tw"), _number("Wr"), _number("energy_balance")
 CURVATURE = _number("max_curvature")
 BENDING, TORSION = _number("energy_bending"), _number("energy_torsion")

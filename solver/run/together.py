@@ -9,12 +9,14 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.run.accuracy import errors_of, excess, sizes
-from solver.run.plan import Attempt, Excess, chosen, intervals_of, step_series
+from solver.run.plan import Attempt, Excess, chosen, intervals_of, step_series, step_tolerance
 from solver.run.recording import (
     BALANCE,
     CURVATURE,
+    FORCE,
     KAPPA,
     NUMBERS,
+    OMEGA,
     ORIENTATION,
     WIDTH,
     WRITHE,
@@ -31,6 +33,9 @@ from solver.scene.scene import Scene
 UNVERIFIED = np.array([not output.verified for output in NUMBERS])
 BESIDE = 3
 """Frames before and after one whose errors count for it."""
+UNFOLLOWED = 0.02
+"""Part of the tolerance of a step: by what of their largest value omega and f are in error at least, because of the
+waves that no attempt follows and none therefore shows."""
 AT_ONCE = 50_000
 """Nodes times frames that are looked at together."""
 
@@ -71,6 +76,10 @@ class Together:
         here = slice(first, i + BESIDE + 1) if i > 0 else slice(0, 1)
         value, error = self._of_frames(here)
         along, numbers = error.along.max(axis=0), error.numbers.max(axis=0)
+        tolerated = step_tolerance(self.finest.steps, self._scene.numerics.tolerance or 1.0)
+        for rows in (OMEGA, FORCE):
+            largest = np.linalg.norm(value.along[..., rows], axis=-1).max()
+            along[:, rows] = np.maximum(along[:, rows], UNFOLLOWED * min(tolerated, 1.0) * largest)
         value = Columns(value.along[i - first], value.numbers[i - first])
         lost = max(abs(number_of(row, BALANCE)) for row in self._recorded[self._meshes[-1]][: i + 1])
         for name, least in unseen(self._scene.rod, self.s, lost).items():

@@ -10,6 +10,7 @@ import uvicorn
 
 from service.access import has_keys
 from service.api.app import create_app
+from service.api.connections import bounded, bounds_here
 from service.api.listening import listen, on_loopback
 from service.logs import write_json
 from service.settings import Settings, from_environment
@@ -26,7 +27,8 @@ def main() -> None:
     listening = _socket(told, settings)
     app = create_app(settings, keyed=settings.require_keys or not on_loopback(listening))
     write_json()
-    config = uvicorn.Config(app, log_config=None, log_level="warning", access_log=False, server_header=False)
+    config = uvicorn.Config(app, log_config=None, log_level="warning", access_log=False, server_header=False,
+                            http=bounded(bounds_here()), ws="none")
     uvicorn.Server(config).run(sockets=[listening])
 
 

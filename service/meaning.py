@@ -6,6 +6,9 @@ from typing import Any
 
 from pydantic import Field
 
+NO_CONTROL = r"^[^\x00-\x1f\x7f]*$"
+"""A text of one line; PostgreSQL, for one, takes no NUL."""
+
 
 def means(text: str, unit: str = "") -> Any:
     """The meaning and the unit of a field, for its JSON schema; the guide's tables are written from that."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Literal
 
@@ -12,19 +13,23 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.api.parts import InParts
 
-POLICY = "default-src 'self'; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
+POLICY = "default-src 'self'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; frame-ancestors 'none'"
+LEAST_FREE = 50_000_000
+"""Bytes of free disk, below which no job is sure to be kept."""
 DASHBOARD = Path(__file__).parent.parent / "dashboard" / "index.html"
 router = APIRouter()
 
 Reached = Literal["ok", "unreachable"]
+Room = Literal["ok", "full"]
 
 
 class Readiness(BaseModel):
-    """State of database and broker. Without a broker jobs wait; without a database nothing works."""
+    """State of database, broker and disk. Without a broker jobs wait; without a database or disk nothing works."""
 
     status: Literal["ok", "degraded"]
     database: Reached
     broker: Reached
+    disk: Room
 
 
 @router.get("/", include_in_schema=False)
@@ -40,9 +45,9 @@ async def alive() -> Literal["ok"]:
 
 
 @router.get("/healthz", include_in_schema=False)
-@router.get("/readyz", tags=["service"], responses={503: {"model": Readiness, "description": "No database"}})
+@router.get("/readyz", tags=["service"], responses={503: {"model": Readiness, "description": "No database, no room"}})
 def ready(parts: InParts, response: Response) -> Readiness:
-    """Whether jobs can be taken: 200 with a database, 503 without; a missing broker is told of."""
+    """Whether jobs can be taken: 200 with a database and a disk with room, else 503; a missing broker is told."""
     database: Reached = "ok"
     try:
         parts.registry.page(1)
@@ -50,5 +55,8 @@ def ready(parts: InParts, response: Response) -> Readiness:
         database = "unreachable"
         response.status_code = 503
     broker: Reached = "ok" if parts.doorbell.reachable() else "unreachable"
-    status: Literal["ok", "degraded"] = "ok" if (database, broker) == ("ok", "ok") else "degraded"
-    return Readiness(status=status, database=database, broker=broker)
+    disk: Room = "ok" if shutil.disk_usage(parts.settings.data).free >= LEAST_FREE else "full"
+    if disk == "full":
+        response.status_code = 503
+    status: Literal["ok", "degraded"] = "ok" if (database, broker, disk) == ("ok", "ok", "ok") else "degraded"
+    return Readiness(status=status, database=database, broker=broker, disk=disk)

@@ -50,6 +50,8 @@ class Gate:
             await self._app(scope, receive, _telling(send, grant) if grant else send)
 
     def _let_in(self, scope: Scope, headers: Headers) -> Grant | None:
+        if len(headers.getlist("host")) != 1:
+            raise Problem(400, "one_host", "a request must have one Host header")
         self._check_host(headers.get("host", ""))
         _check_origin(scope["method"], headers.get("host", ""), headers.get("origin"))
         if scope["path"] in OPEN_TO_ALL:

@@ -16,6 +16,7 @@ from service.api.numbers import WHOLE
 from service.api.parts import Jobs, OwnJobs, Reader, Submitter, matches
 from service.api.problems import Problem
 from service.jobs import Selection, Status
+from service.meaning import NO_CONTROL
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
@@ -39,8 +40,9 @@ class Listing(BaseModel):
     limit: Annotated[int, Field(ge=1, le=200), WHOLE] = 50
     after: str | None = Field(None, pattern="^[0-9a-z]{26}$", description="only jobs older than this id")
     status: Status | None = None
-    label: str | None = Field(None, max_length=100)
-    owner: str | None = Field(None, max_length=64, description="another than oneself needs the scope operate")
+    label: str | None = Field(None, max_length=100, pattern=NO_CONTROL)
+    owner: str | None = Field(None, max_length=64, pattern=NO_CONTROL,
+                              description="another than oneself needs the scope operate")
     since: Instant | None = Field(None, description="submitted at this time or later")
     until: Instant | None = Field(None, description="submitted before this time")
 

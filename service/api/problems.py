@@ -11,15 +11,19 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError
+from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
-from service.cases import CaseError
+from service.cases import MOST_TOLD, CaseError
 from service.jobs import UnknownJob
 from service.jobs.submission import KeyReused, QuotaReached
 from service.jobs.submissions import InFlight
 
 LONGEST_VALUE = 200
+AWAY = (OperationalError, InterfaceError)
+"""What a database says that is away, locked, full or read-only."""
 SOON = "10"  # s: when a job will end is not known
 METHODS = ("DELETE", "GET", "HEAD", "PATCH", "POST", "PUT")
 log = logging.getLogger(__name__)
@@ -52,6 +56,8 @@ def install(app: FastAPI) -> None:
     app.exception_handler(KeyReused)(_key_reused)
     app.exception_handler(InFlight)(_in_flight)
     app.exception_handler(QuotaReached)(_quota)
+    app.exception_handler(DBAPIError)(_database)
+    app.exception_handler(PoolTimeout)(_database)
     app.exception_handler(Exception)(_bug)
 
 
@@ -87,13 +93,13 @@ def _allowed(request: Request) -> str:
 
 async def _parameters(_: Request, error: RequestValidationError) -> JSONResponse:
     errors = [{"parameter": ".".join(map(str, fault["loc"][1:])), "value": shown(fault.get("input")),
-               "rule": fault["msg"]} for fault in error.errors()]
+               "rule": fault["msg"]} for fault in error.errors()[:MOST_TOLD]]
     return Problem(422, "invalid_parameters", _told("parameter", errors), errors=errors).response()
 
 
 async def _case(_: Request, error: CaseError) -> JSONResponse:
     errors = [{"pointer": e.pointer, "value": shown(e.value), "rule": e.rule} for e in error.errors]
-    return Problem(422, "invalid_case", _told("pointer", errors), errors=errors).response()
+    return Problem(422, "invalid_case", _told("pointer", errors, error.more), errors=errors).response()
 
 
 async def _unknown_job(_: Request, error: Exception) -> JSONResponse:
@@ -115,11 +121,19 @@ async def _quota(_: Request, error: Exception) -> JSONResponse:
     return Problem(429, "quota_reached", detail, {"Retry-After": SOON}).response()
 
 
+async def _database(request: Request, error: Exception) -> JSONResponse:
+    if isinstance(error, DBAPIError) and not isinstance(error, AWAY):
+        return await _bug(request, error)
+    log.error("%s %s: the database does not answer: %s", request.method, request.url.path, error)
+    detail = "the database does not answer, or has no room: nothing was changed; try again later"
+    return Problem(503, "database_unreachable", detail, {"Retry-After": SOON}).response()
+
+
 async def _bug(request: Request, error: Exception) -> JSONResponse:
     log.error("%s %s failed", request.method, request.url.path, exc_info=error)
     return Problem(500, "internal_error", "hockle itself failed; its log says where").response()
 
 
-def _told(where: str, errors: list[dict[str, Any]]) -> str:
-    first = "; ".join(f"{e[where] or 'the whole'}: {e['rule']}" for e in errors[:3])
-    return first if len(errors) <= 3 else f"{first}; and {len(errors) - 3} more"
+def _told(where: str, errors: list[dict[str, Any]], untold: int = 0) -> str:
+    first, more = "; ".join(f"{e[where] or 'the whole'}: {e['rule']}" for e in errors[:3]), len(errors) - 3 + untold
+    return first if more <= 0 else f"{first}; and {more} more"

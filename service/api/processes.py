@@ -7,16 +7,15 @@ from datetime import datetime
 from importlib.metadata import version
 from typing import Annotated, Any, Literal, NoReturn
 
-from fastapi import APIRouter, Depends, Query, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.api.bodies import json_object
+from service.api.bodies import at_leisure, json_object
 from service.api.description import EXECUTE_BODY, problems
 from service.api.documents import JobDocument, document
 from service.api.numbers import WHOLE
 from service.api.parts import InParts, Jobs, OwnJobs, Reader, Submitter
 from service.api.problems import Problem
-from service.api.requests import wanted
 from service.api.submitting import requested
 from service.cases import CaseError, FieldError
 from service.jobs import ENDED, Job, Selection, Status
@@ -127,7 +126,7 @@ def process(process_id: str, _: Reader) -> dict[str, Any]:
 
 @router.post("/processes/{process_id}/execution", status_code=201, openapi_extra=EXECUTE_BODY,
              responses=problems(400, 404, 409, 413, 415, 422))
-async def execute(process_id: str, caller: Submitter, parts: InParts, response: Response,
+async def execute(request: Request, process_id: str, caller: Submitter, parts: InParts, response: Response,
                   body: Annotated[dict[str, Any], Depends(json_object)]) -> StatusInfo:
     """Accept a case to be run, as POST /v1/jobs does: a job of one's own that has run it is the answer instead of a new
     one, unless `reuse` is false."""
@@ -136,10 +135,10 @@ async def execute(process_id: str, caller: Submitter, parts: InParts, response: 
     if not isinstance(case, dict):
         raise CaseError([FieldError("/inputs/case", case, "must be an object: a case, or a shipped one with settings")])
     try:
-        submission = requested(wanted(case), case, parts, caller, "")
+        submission = await at_leisure(request.state.body_size, requested, case, parts, caller, "")
     except CaseError as error:
         inside = [FieldError(f"/inputs/case{fault.pointer}", fault.value, fault.rule) for fault in error.errors]
-        raise CaseError(inside) from None
+        raise CaseError(inside, error.more) from None
     with parts.submissions.put(submission) as future:
         job = await asyncio.wrap_future(future)
     response.headers["Location"] = f"/ogc/jobs/{job.id}"

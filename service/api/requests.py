@@ -13,7 +13,7 @@ from service.cases import CaseError, CaseSpec, FieldError, apply_settings, load_
 from service.cases.suggestions import suggested
 from service.jobs import Limits
 from service.jobs.job import LEAST_MEMORY
-from service.meaning import means
+from service.meaning import NO_CONTROL, means
 
 SHIPPED = tuple(shipped_cases())
 
@@ -57,7 +57,7 @@ class JobRequest(BaseModel):
     case: Annotated[CaseOrName, means("a whole case, or the name of a shipped one")]
     set: Annotated[dict[str, Any], means("values to change in it, by dotted key")] = {}
     label: Annotated[
-        str, Field(max_length=100, pattern=r"^[^\x00-\x1f\x7f]*$"), means("a word of yours to find the job by")
+        str, Field(max_length=100, pattern=NO_CONTROL), means("a word of yours to find the job by")
     ] = ""
     priority: Annotated[int, Field(ge=-100, le=100), means("of your own waiting jobs the highest goes first")] = 0
     webhook: Annotated[
@@ -102,7 +102,7 @@ def wanted(body: Annotated[dict[str, Any], Depends(json_object)]) -> Wanted:
         return Wanted(parse_case(apply_settings(request.case, request.set)), request)
     except CaseError as error:
         inside = [FieldError(f"/case{fault.pointer}", fault.value, fault.rule) for fault in error.errors]
-        raise CaseError(inside) from None
+        raise CaseError(inside, error.more) from None
 
 
 InWanted = Annotated[Wanted, Depends(wanted)]

@@ -7,16 +7,16 @@ import hashlib
 import json
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Response
+from fastapi import APIRouter, Depends, Header, Request, Response
 
 from service.access import Caller
-from service.api.bodies import json_object
+from service.api.bodies import at_leisure, json_object
 from service.api.description import CASE_BODY, problems
 from service.api.documents import JobDocument, answer
 from service.api.parts import InParts, Parts, Submitter
 from service.api.preferences import wait_preferred
 from service.api.problems import Problem
-from service.api.requests import Wanted, wanted
+from service.api.requests import wanted
 from service.cases import check_cost
 from service.jobs import ENDED, Job, NewJob
 from service.jobs.submission import Submission
@@ -35,7 +35,7 @@ ANSWERS: dict[int | str, dict[str, Any]] = {
 @router.post("", status_code=202, response_model=JobDocument, openapi_extra=CASE_BODY,
              responses={**ANSWERS, **problems(400, 409, 413, 415, 422)})
 async def submit(
-    parts: InParts, caller: Submitter, body: Annotated[dict[str, Any], Depends(json_object)],
+    request: Request, parts: InParts, caller: Submitter, body: Annotated[dict[str, Any], Depends(json_object)],
     idempotency_key: IdempotencyKey = None,
     prefer: Annotated[str | None, Header(alias="Prefer", description="`wait=SECONDS`, up to 60")] = None,
 ) -> Response:
@@ -45,7 +45,8 @@ async def submit(
     job for a day. A job of one's own that has run the same case is the answer instead of a new one, unless `reuse` is
     false.
     """
-    submission = requested(wanted(body), body, parts, caller, idempotency_key or "")
+    size = request.state.body_size
+    submission = await at_leisure(size, requested, body, parts, caller, idempotency_key or "")
     with parts.submissions.put(submission) as future:
         job = await asyncio.wrap_future(future)
     seconds = wait_preferred(prefer)
@@ -54,9 +55,11 @@ async def submit(
     return answer(job, 200 if job.status in ENDED else 202, headers)
 
 
-def requested(wanted: Wanted, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
-    """What the registry is asked for. Raises CaseError for its cost or its limits, Problem for its webhook."""
-    spec, request = wanted.spec, wanted.request
+def requested(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
+    """What the registry is asked for by a body. Raises CaseError for its case, cost or limits, Problem for its
+    webhook."""
+    understood = wanted(body)
+    spec, request = understood.spec, understood.request
     check_cost(spec, parts.settings.longest_run)
     if request.webhook is not None and not caller.key:
         raise Problem(422, "webhook_needs_key", "a webhook is signed with the API key that asks for it: send one")

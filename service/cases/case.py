@@ -13,7 +13,7 @@ from service.cases.initial import InitialSpec
 from service.cases.quantities import Positive, Spec
 from service.cases.rod import RodSpec
 from service.cases.surroundings import ContactSpec, FluidSpec, LoadsSpec
-from service.meaning import means
+from service.meaning import NO_CONTROL, means
 from solver import Numerics
 from solver.measures.frame import OUTPUTS
 from solver.methods.linear.registry import LINEAR_SOLVERS
@@ -162,7 +162,7 @@ class CaseSpec(Spec):
         Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=80),
         means("small letters, digits and hyphens, at most 80; names the output file"),
     ] = "unnamed"
-    title: Annotated[str, Field(max_length=200), means("for people: at most 200 characters")] = ""
+    title: Annotated[str, Field(max_length=200, pattern=NO_CONTROL), means("for people: at most 200 characters")] = ""
     description: Annotated[str, Field(max_length=5000), means("for people: at most 5000 characters")] = ""
     rod: Annotated[RodSpec, means("length and section")]
     initial: Annotated[InitialSpec, means("shape and motion at t = 0")]

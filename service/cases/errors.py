@@ -28,6 +28,9 @@ _RULES = {
     "tuple_type": "must be a list",
     "model_type": "must be an object",
 }
+MOST_TOLD = 100
+"""Faults of a case that are told one by one."""
+LONGEST_POINTER = 300
 _LONGEST_VALUE = 60
 _LARGEST_INTEGER = 10**15
 """Beyond it an integer is told by its size, not by its digits."""
@@ -52,16 +55,18 @@ class FieldError:
 
 
 class CaseError(ValueError):
-    """A case that cannot be run, with every fault that was found."""
+    """A case that cannot be run: the first faults that were found, and how many `more` there are."""
 
-    def __init__(self, errors: Sequence[FieldError]) -> None:
-        self.errors = list(errors)
-        super().__init__("\n".join(str(error) for error in self.errors))
+    def __init__(self, errors: Sequence[FieldError], more: int = 0) -> None:
+        self.errors, self.more = list(errors[:MOST_TOLD]), more + max(len(errors) - MOST_TOLD, 0)
+        told = [str(error) for error in self.errors]
+        super().__init__("\n".join([*told, f"and {self.more} more faults"] if self.more else told))
 
     @classmethod
     def of(cls, error: ValidationError) -> CaseError:
         """The same faults as pydantic found them, in the words of this package."""
-        return cls([_field_error(detail) for detail in error.errors(include_url=False)])
+        found = error.errors(include_url=False)
+        return cls([_field_error(detail) for detail in found[:MOST_TOLD]], max(len(found) - MOST_TOLD, 0))
 
 
 def refusal(at: str, value: object, rule: str) -> PydanticCustomError:
@@ -73,6 +78,8 @@ def _field_error(detail: ErrorDetails) -> FieldError:
     context = detail.get("ctx", {})
     parts = [str(part) for part in detail["loc"] if not str(part).startswith("<")]
     pointer = "".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts)
+    if len(pointer) > LONGEST_POINTER:
+        pointer = pointer[:LONGEST_POINTER] + "..."
     kind, value = detail["type"], detail["input"]
     if kind == "refused":
         at = context["at"]

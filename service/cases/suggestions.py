@@ -13,7 +13,7 @@ from service.cases.errors import CaseError, FieldError
 
 def suggested(error: CaseError, whole: type[BaseModel]) -> CaseError:
     """The same faults; where a field of `whole` is unknown, with the name that is most like it."""
-    return CaseError([_suggested(fault, whole) for fault in error.errors])
+    return CaseError([_suggested(fault, whole) for fault in error.errors], error.more)
 
 
 def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:

@@ -75,6 +75,7 @@ class Registry:
 
     def get(self, job_id: str) -> Job:
         """One job, by a point read. Raises UnknownJob."""
+        _check(job_id)
         with self.database.reading() as connection:
             row = connection.execute(ONE_JOB, {"job_id": job_id}).mappings().first()
         if row is None or self.owner not in (None, row["owner"]):
@@ -83,6 +84,7 @@ class Registry:
 
     def case(self, job_id: str) -> dict[str, Any]:
         """The case of a job. Raises UnknownJob."""
+        _check(job_id)
         with self.database.reading() as connection:
             text = connection.scalar(select(jobs.c.case_json).where(jobs.c.id == job_id, self._seen))
         if text is None:
@@ -107,6 +109,7 @@ class Registry:
 
     def cancel(self, job_id: str, actor: Actor | None = None) -> Job:
         """Dismiss a job that waits; tell the worker of one that runs. Raises UnknownJob."""
+        _check(job_id)
         with self.database.writing() as transaction:
             this = (jobs.c.id == job_id, self._seen)
             open_ = jobs.c.status.in_([Status.ACCEPTED, Status.RUNNING])
@@ -155,3 +158,9 @@ def insert_jobs(transaction: Transaction, new: Sequence[NewJob]) -> list[Job]:
     connection.execute(insert(events), [{"job_id": job.id, "seq": 1, "time": transaction.now, "kind": "accepted",
                                          "data": first} for job in new])  # fmt: skip
     return [job_of({name: row.get(name, unwritten) for name, unwritten in FRESH.items()}) for row in rows]
+
+
+def _check(job_id: str) -> None:
+    """PostgreSQL takes no NUL in a text."""
+    if "\0" in job_id:
+        raise UnknownJob(job_id)

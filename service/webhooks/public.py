@@ -9,6 +9,8 @@ from typing import Any
 
 import httpcore
 
+COMPATIBLE = ipaddress.ip_network("::/96")
+"""IPv4 in IPv6 as it was once written, ::192.0.2.1; :: and ::1 lie there too."""
 NAT64 = ipaddress.ip_network("64:ff9b::/32")
 
 
@@ -20,7 +22,7 @@ def is_public(address: str) -> bool:
     """Whether an address is of the public internet, and so is what it wraps (IPv4 in IPv6)."""
     ip = ipaddress.ip_address(address.partition("%")[0])
     if isinstance(ip, ipaddress.IPv6Address):
-        if ip in NAT64 or ip.sixtofour is not None or ip.teredo is not None or ip.is_site_local:
+        if ip in COMPATIBLE or ip in NAT64 or ip.sixtofour is not None or ip.teredo is not None or ip.is_site_local:
             return False
         if ip.ipv4_mapped is not None:
             ip = ip.ipv4_mapped

@@ -6,8 +6,11 @@ import json
 from typing import Any
 
 import pytest
+from sqlalchemy.exc import InterfaceError, OperationalError
 
-from service.api.bodies import LARGEST_BODY
+from service.api import bodies
+from service.api.bodies import LARGEST_BODY, parse
+from service.api.problems import Problem
 from service.cases import CaseError
 
 JSON = {"Content-Type": "application/json"}
@@ -177,3 +180,61 @@ def test_faults_of_a_case_are_those_of_its_validation(case):
 
     with pytest.raises(CaseError):
         parse_case(case | {"t_end": -1})
+
+
+def test_a_body_with_a_key_twice_is_refused_however_many_there_are():
+    for many in (10, 100_000):
+        pairs = ",".join(f'"k{i}":1' for i in range(many))
+        with pytest.raises(Problem, match="stands twice" if many == 10 else "at most 1000 members"):
+            parse(f'{{{pairs},"k{many - 1}":2}}'.encode())
+
+
+def test_reading_an_object_looks_at_each_key_once():
+    class Counted(str):
+        compared = 0
+        __hash__ = str.__hash__
+
+        def __eq__(self, other):
+            Counted.compared += 1
+            return str.__eq__(self, other)
+
+    pairs = [(Counted(f"k{i}"), 1) for i in range(900)]
+    with pytest.raises(ValueError, match="stands twice"):
+        bodies._without_doubles([*pairs, (Counted("k899"), 2)])
+    assert Counted.compared < 3 * len(pairs)
+
+
+def test_of_many_faults_the_first_are_told_and_how_many_more(client, case):
+    faulty = case | {f"x{i}": "y" * 100 for i in range(900)} | {"z" * 2000: 1}
+    answer = client.post("/v1/jobs", json=faulty)
+    assert answer.status_code == 422 and len(answer.content) < 60_000
+    told = answer.json()
+    assert len(told["errors"]) == 100
+    assert told["detail"].endswith("and 898 more")
+
+
+@pytest.mark.parametrize("query", ["label=a%00b", "owner=%00"])
+def test_no_filter_has_a_nul(client, query):
+    assert client.get(f"/v1/jobs?{query}").status_code == 422
+
+
+@pytest.mark.parametrize("field", ["title", "label"])
+def test_no_text_of_a_submission_has_control_characters(client, case, field):
+    body = {"case": case | {"title": "a\0b"}} if field == "title" else {"case": case, "label": "a\0b"}
+    assert client.post("/v1/jobs", json=body).status_code == 422
+
+
+def test_a_request_has_one_host(client):
+    twice = [("Host", "127.0.0.1:8000"), ("Host", "evil.example")]
+    assert client.get("/livez", headers=twice).json()["type"] == "urn:hockle:problem:one_host"
+
+
+@pytest.mark.parametrize("error", [OperationalError, InterfaceError])
+def test_a_database_that_is_away_or_full_is_told_with_when_to_come_back(client, monkeypatch, error):
+    def away(*_, **__):
+        raise error("INSERT", {}, Exception("database or disk is full"))
+
+    monkeypatch.setattr("service.jobs.Registry.page", away)
+    answer = client.get("/v1/jobs")
+    assert (answer.status_code, answer.headers["Retry-After"]) == (503, "10")
+    assert answer.json()["type"] == "urn:hockle:problem:database_unreachable"

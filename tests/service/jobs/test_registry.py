@@ -93,3 +93,9 @@ def test_a_status_read_is_a_point_read_by_the_primary_key(registry):
     with registry.database.reading() as connection:
         plan = connection.execute(text("EXPLAIN QUERY PLAN SELECT status FROM jobs WHERE id = 'x'")).all()
     assert "SEARCH jobs USING INDEX" in str(plan)
+
+
+@pytest.mark.parametrize("ask", [Registry.get, Registry.case, Registry.cancel])
+def test_an_id_with_a_nul_is_of_no_job(registry, ask):
+    with pytest.raises(UnknownJob):
+        ask(registry, "a\0b")

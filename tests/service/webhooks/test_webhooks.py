@@ -159,7 +159,8 @@ def test_the_notifier_refuses_a_private_address_for_good_and_never_connects(data
 @pytest.mark.parametrize("address", [
     "127.0.0.1", "10.0.0.1", "172.16.0.1", "192.168.1.1", "169.254.169.254", "100.64.0.1", "0.0.0.0", "224.0.0.1",
     "255.255.255.255", "::1", "::", "fe80::1", "fe80::1%eth0", "fd00::1", "::ffff:127.0.0.1", "::ffff:10.0.0.1",
-    "fec0::2", "64:ff9b::7f00:1", "2002:7f00:1::", "2001:0:4136:e378:8000:63bf:3fff:fdd2", "ff02::1", "192.0.2.1",
+    "fec0::2", "::127.0.0.1",
+    "::10.0.0.1", "64:ff9b::7f00:1", "2002:7f00:1::", "2001:0:4136:e378:8000:63bf:3fff:fdd2", "ff02::1", "192.0.2.1",
 ])  # fmt: skip
 def test_an_address_that_is_not_public_is_told(address):
     assert not is_public(address)

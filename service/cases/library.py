@@ -17,6 +17,8 @@ from service.cases.errors import CaseError, FieldError
 from service.cases.suggestions import suggested
 
 RESOLUTION = ("intervals", "dt_max", "increment_tolerance")
+DEEPEST = 20
+"""Parts of a dotted key; no field of a case lies half as deep."""
 _SHIPPED = files("service.cases") / "shipped"
 
 
@@ -51,7 +53,10 @@ def apply_settings(raw: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[
     changed = deepcopy(dict(raw))
     _displace(changed.get("numerics"), settings)
     for key, value in settings.items():
-        _set(changed, key.split("."), value)
+        path = key.split(".")
+        if len(path) > DEEPEST:
+            raise CaseError([FieldError("", key, f"must be a key of at most {DEEPEST} parts")])
+        _set(changed, path, value)
     return changed
 
 

@@ -107,6 +107,12 @@ def test_a_faulty_reference_to_a_shipped_case_is_refused(client, body, pointer):
     assert pointer in [error["pointer"] for error in problem["errors"]]
 
 
+def test_a_key_that_leads_deeper_than_any_field_is_refused(client):
+    answer = client.post("/v1/jobs", json={"case": "hanging-cable", "set": {".".join("a" * 5000): 1}})
+    assert answer.status_code == 422 and "at most 20 parts" in answer.json()["detail"]
+    assert len(answer.content) < 1000
+
+
 def test_several_faults_are_told_together(client, case):
     case["t_end"], case["rod"]["length"], case["colour"] = -1, "x", 1
     problem = assert_problem(client.post("/v1/validate", json=case), 422)

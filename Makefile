@@ -42,8 +42,9 @@ fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed
 stress: .venv/.dev  ## the solver at its limits: sweeps, maps and 10,000 random cases (an hour or more)
 	$(BIN)/python -m stress
 
-plausible: .venv/.dev  ## scenes as people would send them, in the default mode: is each answered (a quarter of an hour)
+plausible: .venv/.dev  ## scenes as people would send them, in the default mode: is each answered, is its error true (an hour)
 	$(BIN)/python -m stress.plausible
+	$(BIN)/python -m stress.plausible.judge
 
 bench-work-precision: .venv/.bench  ## CPU time against error, beside PyElastica and MuJoCo's cable
 	$(BIN)/python -m benchmarks.work_precision

@@ -85,7 +85,7 @@ def misses(
     frames: list[VerifiedFrame], truth: Sequence[Frame], names: Sequence[str] = NAMES
 ) -> dict[str, tuple[int, int]]:
     """By variable: how many values lie farther from the truth than 3 times the estimate, and of how many."""
-    intervals = len(frames[0].r) - 1
+    intervals = min(len(frames[0].r), len(truth[0].r)) - 1
     energy = float(np.nanmax([np.abs(series(truth, name, intervals)).max() for name in ENERGIES]))  # works NaN at rest
     found = {}
     for name in names:

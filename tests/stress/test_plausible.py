@@ -7,6 +7,8 @@ import pytest
 from service.cases import build_scene, parse_case
 from stress.plausible.__main__ import written
 from stress.plausible.bank import EACH, KINDS, scene
+from stress.plausible.judge import judge
+from stress.plausible.judge import written as judgement
 from stress.plausible.run import ANSWERED, LATE, run
 
 
@@ -33,3 +35,12 @@ def test_a_scene_is_answered_with_its_errors_and_one_without_time_is_told() -> N
     assert 0.0 < answered.attributes["error_r"] < 1e-2
     table = "\n".join(written([answered, late]))
     assert "Answered: 50.0%" in table
+
+
+def test_an_answer_is_judged_by_a_finer_run_and_by_fixed_ones() -> None:
+    verdict = judge("towed", 1)
+    assert not verdict.unjudged
+    assert verdict.outside <= 0.05
+    assert 0.0 < verdict.error < 3.0 and verdict.error_of_truth < 0.5
+    assert 0.0 < verdict.fixed
+    assert "of 1 scenes" in "\n".join(judgement([verdict]))

@@ -1,0 +1,186 @@
+"""`python -m stress.plausible.judge`: are the error bars of the bank's answers true, and what would fixed meshes cost?
+
+The truth of a scene is a run of its own to TRUTH of the tolerance, with WORK times the work. An answer's true error is
+that of r, kappa, the energies, Tw and Wr in the measures of a tolerance (`solver.run.accuracy`), the largest of them.
+The cheapest fixed run is the one of FIXED meshes and step tolerances that takes least CPU time of those with an error
+no larger than the answer's, or than SMALL of the tolerance.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, replace
+from multiprocessing import get_context
+from statistics import median
+from time import process_time
+
+import numpy as np
+
+from service.cases import build_scene, parse_case
+from solver import Frame, RunFailed, Scene
+from solver.run import plan
+from solver.run.accuracy import errors_of, excess, sizes
+from solver.run.recording import Columns, columns_of, row_of
+from solver.run.refined import Refined
+from solver.run.simulation import Simulation
+from solver.run.verify import VerifiedFrame
+from stress.plausible.__main__ import PROCESSES, RESULTS
+from stress.plausible.bank import KINDS, scene
+from stress.report import table
+from validation.error_bars import MISSED, missed, misses
+from validation.provenance import provenance
+
+TRUTH, WORK, SMALL = 0.02, 12.0, 0.1
+FIXED = [(intervals, tolerated) for intervals in (16, 32, 64, 128, 256, 512, 1024) for tolerated in (0.1, 0.01, 1e-3, 1e-4)]
+LONGEST = 300.0
+"""Seconds of CPU time after which a truth is given up."""
+HEADER = ("kind", "scenes", "values outside 3 bars", "largest", "CPU s, median", "over the cheapest fixed run, median",
+          "largest")  # fmt: skip
+
+
+@dataclass
+class Verdict:
+    """Of an answer: its `cpu` (s), the part of its values `outside` three bars and which variables they are of, its
+    true `error` over the tolerance and that of the truth as that tells it, and `fixed`, the CPU time (s) of the
+    cheapest fixed run (NaN if none is as good). `unjudged`: why there is none."""
+
+    kind: str
+    number: int
+    unjudged: str = ""
+    cpu: float = 0.0
+    outside: float = 0.0
+    by_variable: dict[str, float] = field(default_factory=dict)
+    error: float = 0.0
+    error_of_truth: float = 0.0
+    fixed: float = float("nan")
+
+
+def judge(kind: str, number: int) -> Verdict:
+    """Run a scene, its truth and fixed runs."""
+    told = build_scene(parse_case(scene(kind, number)))
+    verdict = Verdict(kind, number)
+    if not told.numerics.tolerance or told.analysis == "static":
+        verdict.unjudged = "statics have no tolerance"
+        return verdict
+    try:
+        answer, verdict.cpu, _ = _refined(told)
+        truth, _, verdict.error_of_truth = _true(told)
+    except (RunFailed, TimeoutError) as error:
+        verdict.unjudged = str(error)[:80]
+        return verdict
+    found = misses(answer, truth)
+    verdict.outside = missed(found)
+    verdict.by_variable = {name: round(far / many, 3) for name, (far, many) in found.items() if far > MISSED * many}
+    verdict.error = _error(told, answer, truth)
+    for fixed in FIXED:
+        with suppress(RunFailed, TimeoutError):
+            frames, cpu = _fixed(told, *fixed, verdict.fixed)
+            if _error(told, frames, truth) <= max(verdict.error, SMALL):
+                verdict.fixed = cpu
+    return verdict
+
+
+def _refined(told: Scene) -> tuple[list[VerifiedFrame], float, float]:
+    """Its frames, its CPU time (s), and its error over the tolerance as it tells it."""
+    begun = Refined(told)
+    begun.warm()
+    started, frames = process_time(), []
+    while not begun.finished:
+        frame = begun.advance()
+        if isinstance(frame, VerifiedFrame):
+            frames.append(frame)
+        if process_time() - started > LONGEST:
+            raise TimeoutError("no answer in time")
+    accuracy = begun.accuracy
+    return frames, process_time() - started, max(accuracy.errors.values()) / accuracy.target if accuracy else np.nan
+
+
+def _true(told: Scene) -> tuple[list[VerifiedFrame], float, float]:
+    tolerance, work = told.numerics.tolerance or 0.0, plan.MOST_WORK
+    plan.MOST_WORK = WORK * work
+    try:
+        frames, cpu, error = _refined(replace(told, numerics=replace(told.numerics, tolerance=TRUTH * tolerance)))
+    finally:
+        plan.MOST_WORK = work
+    return frames, cpu, TRUTH * error
+
+
+def _fixed(told: Scene, intervals: int, tolerated: float, most: float) -> tuple[list[Frame], float]:
+    """The frames of a fixed run and its CPU time (s). Raises TimeoutError after `most` s."""
+    numerics = replace(told.numerics, tolerance=None, method="staggered", intervals=intervals,
+                       dt_max=told.output_interval, increment_tolerance=tolerated)  # fmt: skip
+    begun = Simulation(replace(told, numerics=numerics), goes_on=True)
+    begun.warm()
+    started, frames = process_time(), []
+    most = LONGEST if np.isnan(most) else most
+    while not begun.finished:
+        frame = begun.advance()
+        if frame is not None:
+            frames.append(frame)
+        if process_time() - started > most:
+            raise TimeoutError
+    return frames, process_time() - started
+
+
+def _error(told: Scene, frames: Sequence[Frame], truth: Sequence[Frame]) -> float:
+    """The true error over the tolerance."""
+    mine, exact = (columns_of([row_of(frame) for frame in series]) for series in (frames, truth))
+    many = [columns.along.shape[1] - 1 for columns in (mine, exact)]
+    strides = [each // min(many) for each in many]
+    along = mine.along[:, :: strides[0]] - exact.along[:, :: strides[1]]
+    apart = Columns(np.abs(along), np.abs(mine.numbers - exact.numbers))
+    return excess(told.numerics.tolerance or 1.0, errors_of(apart, sizes(told, [exact])))
+
+
+def main() -> int:
+    """Judge so many scenes of each kind; write the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--each", type=int, default=3, help="scenes of each kind")
+    parser.add_argument("--kinds", default=",".join(KINDS), help="by name, with commas")
+    told = parser.parse_args()
+    tasks = [(kind, number) for kind in told.kinds.split(",") for number in range(told.each)]
+    verdicts = []
+    with ProcessPoolExecutor(PROCESSES, get_context("spawn")) as pool:
+        for done in as_completed([pool.submit(judge, *task) for task in tasks]):
+            verdicts.append(done.result())
+            print(json.dumps(asdict(verdicts[-1])), flush=True)
+    verdicts.sort(key=lambda verdict: (verdict.kind, verdict.number))
+    text = "\n".join([f"Measured with {'; '.join(provenance())}.", "", *written(verdicts)])
+    print(text)
+    (RESULTS / "judged.md").write_text(f"# Are the answers' errors true, and what do they cost\n\n{text}\n")
+    (RESULTS / "judged.json").write_text(json.dumps([asdict(verdict) for verdict in verdicts], indent=1) + "\n")
+    return 0
+
+
+def written(verdicts: Sequence[Verdict]) -> list[str]:
+    """The table by kinds, and what all say."""
+    judged = [verdict for verdict in verdicts if not verdict.unjudged]
+    rows = [_row(kind, [one for one in judged if one.kind == kind]) for kind in sorted({one.kind for one in judged})]
+    true = sum(one.outside <= MISSED for one in judged) / max(len(judged), 1)
+    ratios = _ratios(judged)
+    return [
+        *table(HEADER, rows), "",
+        f"- At least {1 - MISSED:.0%} of the values within three bars: in {true:.1%} of {len(judged)} scenes "
+        "(aim 95 %).",
+        f"- CPU time over that of the cheapest fixed run with an error no larger, of {len(ratios)} scenes: median "
+        f"{np.median(ratios):.2f} (aim 2), 95 % within {np.quantile(ratios, 0.95):.1f} (aim 6).",
+        *(f"- Not judged: {one.kind} {one.number}, {one.unjudged}" for one in verdicts if one.unjudged),
+    ]  # fmt: skip
+
+
+def _ratios(verdicts: Sequence[Verdict]) -> list[float]:
+    return [one.cpu / one.fixed for one in verdicts if one.fixed > 0.0] or [float("nan")]
+
+
+def _row(name: str, verdicts: Sequence[Verdict]) -> list[str]:
+    outside, ratios = [one.outside for one in verdicts], _ratios(verdicts)
+    return [name, str(len(verdicts)), f"{median(outside):.3f}", f"{max(outside):.3f}",
+            f"{median(one.cpu for one in verdicts):.2f}", f"{median(ratios):.2f}", f"{max(ratios):.1f}"]  # fmt: skip
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

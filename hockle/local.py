@@ -119,8 +119,14 @@ def _trust(last: Dataset) -> str:
     """What a dynamic run's last frame says of its error, or a static one's of its stability."""
     if "negative_modes" not in last:
         return f"balance {float(last.energy_balance):.2g} J"
-    modes = int(last.negative_modes)
-    return f"parameter {float(last.parameter):g} s, " + (f"unstable in {modes} directions" if modes else "stable")
+    falling, neutral = int(last.negative_modes), int(last.neutral_modes)
+    verdict = f"unstable in {falling} {_directions(falling)}" if falling else "stable"
+    verdict += f", free to move in {neutral} {_directions(neutral)}" if neutral else ""
+    return f"parameter {float(last.parameter):g} s, {verdict}"
+
+
+def _directions(many: int) -> str:
+    return "direction" if many == 1 else "directions"
 
 
 def _spec(told: argparse.Namespace) -> CaseSpec:

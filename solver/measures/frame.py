@@ -78,6 +78,9 @@ class Frame(Fields):
     negative_modes: Annotated[
         int, Output("1", "directions in which the energy falls, 0 if stable", statics=True, verified=False)
     ] = -1
+    neutral_modes: Annotated[
+        int, Output("1", "directions in which the energy stays the same", statics=True, verified=False)
+    ] = -1
     max_curvature: Annotated[
         float, Output("rad m-1", "largest curvature of the centreline along the rod", of=_max_curvature)
     ] = FOLLOWS

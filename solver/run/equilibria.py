@@ -24,7 +24,7 @@ from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 from solver.statics.equations import Equations, Point
 from solver.statics.path import Path
-from solver.statics.stability import negative_modes
+from solver.statics.stability import negative_modes, neutral_modes
 
 
 class Equilibria(Run):
@@ -104,6 +104,7 @@ class Equilibria(Run):
             min_gap=nan, contacts=0,
             dt=path.last_dq * self._scene.t_end, newton_iterations=path.last_iterations,
             parameter=equations.time(point.q), negative_modes=path.modes,
+            neutral_modes=neutral_modes(equations),
         )  # fmt: skip
         return complete(frame, self.s, self._scene)
 

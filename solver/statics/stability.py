@@ -13,18 +13,38 @@ from scipy.linalg import eigvalsh, solve_banded
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
-from solver.statics.equations import PSI, SOFTEST, Equations, X, levers
+from solver.statics.equations import PSI, Equations, X, levers
 
 BAND = 5
+NEUTRAL = 1e-7
+"""Stiffness, in EJ/L shared by all segments as `SOFTEST` is, that makes a direction one of rising or falling energy:
+below it the energy stays the same, as where a rod spins about its own axis or an arch swings about its pins."""
 
 
 def negative_modes(equations: Equations) -> int:
     """Directions of falling energy at the point that `equations` has linearised last; loads are held as they are."""
+    return _count(equations, _least(equations))
+
+
+def neutral_modes(equations: Equations) -> int:
+    """Directions, besides those, in which the energy stays the same."""
+    least = _least(equations)
+    return _count(equations, -least) - _count(equations, least)
+
+
+def _least(equations: Equations) -> float:
+    """NEUTRAL, and as much as a spin costs because kappa0 is shifted by what the mesh makes of the initial shape."""
+    shift, bend = (float(np.abs(x).max()) for x in (equations.offset, equations.stages.bend[0]))
+    return NEUTRAL + shift * bend / equations.chain.h * float(equations.s[-1]) ** 2
+
+
+def _count(equations: Equations, softest: float) -> int:
+    """Directions of falling energy where every rotation has as much stiffness more."""
     if equations.tangents.K.any():
-        return _with_place(equations)
+        return _with_place(equations, softest)
     chain, n, length = equations.chain, len(equations.start.quaternion), float(equations.s[-1])
     T, R = equations.tangents, equations.stages.R[0]
-    bands = _second_variation(T.stiff, T.behind, equations) * (length / equations.stiffness)
+    bands = _second_variation(T.stiff, T.behind, equations, softest) * (length / equations.stiffness)
     held = [end.axes[:, end.held[:3]] for end in equations.ends]
     G, W = np.zeros((3 * n, 3 + held[0].shape[1] + held[1].shape[1])), np.zeros((0, 0))
     G[:, 3 + held[0].shape[1] :] = (-2.0 / length * levers(R, chain.h) @ held[1]).reshape(3 * n, -1)
@@ -39,13 +59,13 @@ def negative_modes(equations: Equations) -> int:
     return int(_negative_pivots(bands.copy())) + falling - int(ties.shape[1])
 
 
-def _with_place(equations: Equations) -> int:
+def _with_place(equations: Equations, softest: float) -> int:
     """The same where loads depend on the place: of the whole system, from block to block.
 
     Rotations, displacements and forces are kept. The forces are the multipliers of as many conditions, each of which
     has one negative eigenvalue. The start, whose place stands in no balance of its own, goes with the first segment.
     """
-    D, lower, upper = equations.blocks()
+    D, lower, upper = equations.blocks(softest)
     D[:, X, PSI] = 0.0  # forces that turn with the rod are held as they are
     n, size = len(D), D.shape[1]
     for side, end in enumerate(equations.ends):
@@ -64,10 +84,10 @@ def _with_place(equations: Equations) -> int:
     return count - 3 * (n - 1)
 
 
-def _second_variation(stiff: Array, behind: Array, equations: Equations) -> Array:
+def _second_variation(stiff: Array, behind: Array, equations: Equations, softest: float) -> Array:
     """H's symmetric part in lower bands (6, 3 n); rotations that are held count as stiff."""
     n, unit = len(stiff), equations.stiffness / float(equations.s[-1])
-    soft = SOFTEST * unit * equations.chain.h / float(equations.s[-1])
+    soft = softest * unit * equations.chain.h / float(equations.s[-1])
     D = 0.5 * (stiff + stiff.transpose(0, 2, 1)) + soft * np.eye(3)
     B = np.zeros_like(D)
     B[:-1] = 0.5 * (behind[:-1] + equations.tangents.before[1:].transpose(0, 2, 1))

@@ -30,7 +30,7 @@ from solver import (
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.statics.equations import FORCE, PSI, Equations, X, levers
-from tests.solver.scenes import ARC, ARC_ROD, DENSITY, DIAMETER, EJ, GJ, LENGTH, ROD, last, turned_clamp
+from tests.solver.scenes import ARC, ARC_ROD, DENSITY, DIAMETER, EJ, GJ, LENGTH, ROD, arc, last, turned_clamp
 
 N = 16
 ZERO = Curve.constant(0.0)
@@ -265,6 +265,19 @@ def test_both_counts_of_falling_directions_agree(thrust: float) -> None:
     point = equations.start
     point.F[:, 2] = -thrust * EJ / LENGTH**2
     equations.linearise(point)
-    assert stability.negative_modes(equations) == stability._with_place(equations)
+    for softest in (stability.NEUTRAL, -stability.NEUTRAL):
+        assert stability._count(equations, softest) == stability._with_place(equations, softest)
     # pi^2/4, 9 pi^2/4, 25 pi^2/4, each in two planes
     assert stability.negative_modes(equations) == 2 * sum(thrust > (k * np.pi / 2.0) ** 2 for k in (1, 3, 5))
+
+
+@pytest.mark.parametrize(("weight", "modes"), [(0.0, (0, 2)), (1.0, (0, 1)), (-0.1, (1, 1))])
+def test_free_spin_and_free_swing_are_neutral_and_not_unstable(weight: float, modes: tuple[int, int]) -> None:
+    """A rod bent between two pins may spin about its axis; it swings about the line of its pins, with its weight in
+    the plane of its bow stably if it hangs and unstably if it stands."""
+    start, middle, end = arc(np.array([0.0, 0.5 * LENGTH, LENGTH]))
+    down = middle - 0.5 * (start + end)
+    mass = DENSITY * pi / 4.0 * DIAMETER**2
+    gravity = weight * EJ / LENGTH**3 / mass * down / np.linalg.norm(down)
+    rest = last(static(initial=ARC, start=End.pin(), end=End.pin(), gravity=tuple(gravity)))
+    assert (rest.negative_modes, rest.neutral_modes) == modes

@@ -36,8 +36,8 @@ from validation.provenance import provenance
 
 TRUTH, WORK, SMALL = 0.02, 12.0, 0.1
 FIXED = [(16 * 2**mesh, 0.1**steps) for mesh in range(7) for steps in range(1, 5)]
-LONGEST = 300.0
-"""Seconds of CPU time after which a truth is given up."""
+LONGEST, DEAR = 300.0, 2.0
+"""Seconds of CPU time after which a truth is given up; and how many times the answer's a fixed run may take."""
 HEADER = ("kind", "scenes", "values outside 3 bars", "largest", "CPU s, median", "over the cheapest fixed run, median",
           "largest")  # fmt: skip
 
@@ -46,7 +46,7 @@ HEADER = ("kind", "scenes", "values outside 3 bars", "largest", "CPU s, median",
 class Verdict:
     """Of an answer: its `cpu` (s), the part of its values `outside` three bars and which variables they are of, its
     true `error` over the tolerance and that of the truth as that tells it, and `fixed`, the CPU time (s) of the
-    cheapest fixed run (NaN if none is as good). `unjudged`: why there is none."""
+    cheapest fixed run (NaN if none is as good for twice the answer's). `unjudged`: why there is none."""
 
     kind: str
     number: int
@@ -78,7 +78,7 @@ def judge(kind: str, number: int) -> Verdict:
     verdict.error = _error(told, answer, truth)
     for fixed in FIXED:
         with suppress(RunFailed, TimeoutError):
-            frames, cpu = _fixed(told, *fixed, verdict.fixed)
+            frames, cpu = _fixed(told, *fixed, np.nanmin([verdict.fixed, DEAR * verdict.cpu]))
             if _error(told, frames, truth) <= max(verdict.error, SMALL):
                 verdict.fixed = cpu
     return verdict
@@ -116,7 +116,6 @@ def _fixed(told: Scene, intervals: int, tolerated: float, most: float) -> tuple[
     begun = Simulation(replace(told, numerics=numerics), goes_on=True)
     begun.warm()
     started, frames = process_time(), []
-    most = LONGEST if np.isnan(most) else most
     while not begun.finished:
         frame = begun.advance()
         if frame is not None:

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 READING = ("GET", "HEAD", "OPTIONS")
 OPEN_TO_ALL = frozenset({"/", "/healthz", "/livez", "/readyz", "/v1/openapi.json"})
+SHARED = "/v1/shared/"
+"""Below it no key is asked for: the address itself lets in."""
 log = logging.getLogger(__name__)
 
 
@@ -52,7 +54,7 @@ class Gate:
     def _let_in(self, scope: Scope, headers: Headers) -> Grant | None:
         self._check_host(headers.get("host", ""))
         _check_origin(scope["method"], headers.get("host", ""), headers.get("origin"))
-        if scope["path"] in OPEN_TO_ALL:
+        if is_open(scope["path"]):
             return None
         parts: Parts = scope["app"].state.parts
         scope["caller"] = caller = _caller(headers.get("authorization"), parts, self._keyed)
@@ -70,6 +72,11 @@ class Gate:
             return
         told = "a name of this service (HOCKLE_HOSTS)" if self._keyed else "a loopback address"
         raise Problem(421, "foreign_host", f"Host must be {told}, got {host[:80]!r}")
+
+
+def is_open(path: str) -> bool:
+    """Whether no key is asked for at this path."""
+    return path in OPEN_TO_ALL or path.startswith(SHARED)
 
 
 def _check_origin(method: str, host: str, origin: str | None) -> None:

@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: demo test serve lint bench bench-work-precision bench-skipping load chaos soak fuzz stress plausible validate docs lock clean
+.PHONY: client demo test serve lint bench bench-work-precision bench-skipping load chaos soak fuzz stress plausible validate docs lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -57,6 +57,9 @@ validate: .venv/.runtime  ## published scenes, and what they must show
 
 docs: .venv/.runtime  ## the documents' tables, from the code and the kept results
 	$(BIN)/python -m docs
+
+client: .venv/.runtime  ## the parts of the client that follow from others
+	cd client && ../$(BIN)/python -m generate
 
 lock:  ## after a change of a requirements*.in (needs uv)
 	$(LOCK) requirements.in requirements-build.in -o requirements.txt

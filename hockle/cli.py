@@ -10,7 +10,8 @@ from importlib.metadata import version
 
 from hockle.failure import Failure
 
-COMMANDS = ("hockle.local", "hockle.plots", "hockle.serving", "hockle.keys", "hockle.remote", "hockle.demo")
+COMMANDS = ("hockle.local", "hockle.plots", "hockle.serving", "hockle.keys", "hockle.remote",
+            "hockle.jobs", "hockle.demo")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -6,15 +6,17 @@ import argparse
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
+from time import sleep
 from typing import TYPE_CHECKING, Any
 
 from hockle.failure import Failure
 
 if TYPE_CHECKING:
-    from hockle.client import Client
     from hockle.supervisor import Services
+    from hockle_client import Client, Job
 
 CASE = "goyal-2003"
+LOOK = 0.3  # s
 
 
 def register(subparsers: Any) -> None:
@@ -27,8 +29,8 @@ def register(subparsers: Any) -> None:
 def demo(told: argparse.Namespace) -> int:
     """Serve, submit, wait, fetch, compare, draw, and stop everything again."""
     from hockle import plots
-    from hockle.client import Client
     from hockle.supervisor import Services, stop_on_signals
+    from hockle_client import Client
     from service.settings import Settings
 
     stop_on_signals()
@@ -48,19 +50,19 @@ def demo(told: argparse.Namespace) -> int:
 
 def _run(services: Services, client: Client, path: Path) -> None:
     from hockle.progress import show
-    from service.cases import load_case
 
-    job = client.submit(load_case(CASE), again=True)
-    print(f"submitted {CASE}: {services.address}/v1/jobs/{job['id']}", flush=True)
+    job = client.submit(CASE, again=True)
+    print(f"submitted {CASE}: {services.address}/v1/jobs/{job.id}", flush=True)
     print("(the very first run compiles the solver before it starts, which takes about a minute)", flush=True)
-    job = show(_looked_after(services, client, job["id"]))
-    if job["status"] != "successful":
-        raise Failure(f"the job ended {job['status']}: {job['message']}")
-    size = client.fetch(job["id"], path)
+    show(_looked_after(services, job))
+    if job.status != "successful":
+        raise Failure(f"the job ended {job.status}: {job.message}")
+    size = job.fetch(path)
     print(f"fetched {path} ({size / 1e6:.1f} MB)", flush=True)
 
 
-def _looked_after(services: Services, client: Client, job_id: str) -> Iterator[dict[str, Any]]:
-    for job in client.follow(job_id):
+def _looked_after(services: Services, job: Job) -> Iterator[dict[str, Any]]:
+    while not job.ended:
+        sleep(LOOK)
         services.look_after()
-        yield job
+        yield job.refresh().state.model_dump()

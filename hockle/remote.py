@@ -1,11 +1,13 @@
-"""hockle submit, status, fetch: the commands that talk to a server."""
+"""hockle submit, status, fetch: one job on a server."""
 
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import Any
+
+from hockle.connection import add_server, connected, follow, sentence
+from hockle.failure import Failure
 
 
 def register(subparsers: Any) -> None:
@@ -26,54 +28,39 @@ def register(subparsers: Any) -> None:
     fetch_parser.add_argument("id", metavar="ID")
     fetch_parser.add_argument("-o", "--output", type=Path, help="default ID.nc")
     fetch_parser.set_defaults(run=fetch)
-    for parser in (submit_parser, status_parser, fetch_parser):
-        parser.add_argument("--server", metavar="URL", help="default HOCKLE_SERVER, or http://127.0.0.1:8000")
+    add_server(submit_parser, status_parser, fetch_parser)
 
 
 def submit(told: argparse.Namespace) -> int:
     """Hand in a case and print the job's id."""
-    from hockle.client import Client
-    from hockle.progress import show
     from hockle.settings import read_case
 
     case = read_case(told.case, told.settings)
-    with Client(told.server) as client:
-        job = client.submit(case, told.label, told.again)
-        print(job["id"], flush=True)
+    with connected(told.server) as client:
+        job = client.submit(case, label=told.label, again=told.again)
+        print(job.id, flush=True)
         if not told.wait:
             return 0
-        job = show(client.follow(job["id"]))
-    print(_sentence(job))
-    return 0 if job["status"] == "successful" else 1
+        ended = follow(client, job.id)
+    print(sentence(ended))
+    return 0 if ended.status == "successful" else 1
 
 
 def status(told: argparse.Namespace) -> int:
     """Print how a job is doing."""
-    from hockle.client import Client
-
-    with Client(told.server) as client:
-        job = client.job(told.id)
-    print(json.dumps(job, indent=2) if told.json else _sentence(job))
+    with connected(told.server) as client:
+        job = client.job(told.id).state
+    print(job.model_dump_json(indent=2) if told.json else sentence(job))
     return 0
 
 
 def fetch(told: argparse.Namespace) -> int:
     """Write a job's dataset to a file."""
-    from hockle.client import Client
-
     path = told.output or Path(f"{told.id}.nc")
-    with Client(told.server) as client:
-        size = client.fetch(told.id, path)
+    with connected(told.server) as client:
+        try:
+            size = client.job(told.id).fetch(path)
+        except OSError as error:
+            raise Failure(f"cannot write {path}: {error}") from None
     print(f"{path} ({size / 1e6:.1f} MB)")
     return 0
-
-
-def _sentence(job: dict[str, Any]) -> str:
-    told = f"{job['id']}: {job['status']}"
-    if job["status"] == "running":
-        told += f", {job['phase'] or 'starting'}, {job['progress']:.0%} done, t = {job['t']:.2f} s"
-    if job["outcome"] not in ("", "completed"):
-        told += f", {job['outcome']}"
-    if job["message"]:
-        told += f": {job['message']}"
-    return told

@@ -14,7 +14,7 @@ from starlette.responses import MalformedRangeHeader, RangeNotSatisfiable
 
 from service.api.description import NOT_MODIFIED, problems
 from service.api.numbers import WHOLE
-from service.api.parts import InParts, Jobs, matches
+from service.api.parts import InParts, Jobs, Parts, matches
 from service.api.problems import Problem
 from service.jobs import ENDED, Dataset, Job
 from service.results import StoreUnreachable, SubsetTooLarge, UnknownVariable, subset
@@ -62,13 +62,17 @@ class DatasetFile(FileResponse):
 def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Response:
     """The NetCDF file, whole or by byte ranges; its ETag is its sha256. xarray opens it by this address with
     #mode=bytes."""
-    job = jobs.get(job_id)
-    published = _published(job)
+    return whole(jobs.get(job_id), request, parts)
+
+
+def whole(job: Job, request: Request, parts: Parts) -> Response:
+    """A job's file as an answer. Raises Problem."""
+    published = dataset_of(job)
     headers = {"ETag": f'"{published.sha256}"', "Cache-Control": "private, immutable"}
     if matches(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
-    headers["Content-Disposition"] = f'attachment; filename="{job_id}.nc"'
-    with _there(job):
+    headers["Content-Disposition"] = f'attachment; filename="{job.id}.nc"'
+    with there(job):
         place = parts.datasets.find(published.file)
         if isinstance(place, Bucket):
             return _object(place, published, request, headers)
@@ -79,8 +83,8 @@ def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Respon
 def data(job_id: str, part: Annotated[Part, Query()], parts: InParts, jobs: Jobs) -> dict[str, Any]:
     """Some variables over a range of time and arclength, as JSON: at most a million values."""
     job = jobs.get(job_id)
-    published = _published(job)
-    with _there(job):
+    published = dataset_of(job)
+    with there(job):
         path = parts.datasets.file(published.file, published.bytes, published.sha256)
     arguments = part.model_dump()
     names = [name.strip() for name in arguments.pop("variables").split(",")]
@@ -112,7 +116,7 @@ def _one_range(request: Request, etag: str, size: int) -> tuple[int, int] | None
     return ranges[0] if len(ranges) == 1 else None
 
 
-def _published(job: Job) -> Dataset:
+def dataset_of(job: Job) -> Dataset:
     """What the job has published. Raises Problem 404 or 409."""
     if job.dataset is not None:
         return job.dataset
@@ -123,7 +127,7 @@ def _published(job: Job) -> Dataset:
 
 
 @contextmanager
-def _there(job: Job) -> Iterator[None]:
+def there(job: Job) -> Iterator[None]:
     """While its dataset is looked for. Raises Problem 404 or 503."""
     try:
         yield

@@ -24,6 +24,8 @@ PARAMETERS = {
     "job_id": "The id that the submission was answered with",
     "process_id": "`simulate`: there is no other",
     "name": "A shipped case",
+    "link_id": "A link, as the list of them names it",
+    "token": "What the link was answered with",
     "Idempotency-Key": "The same key and body give the same job for a day, also if the first answer was lost",
     "Last-Event-ID": "The version of the job that was seen last: what came after it is sent",
     "limit": "At most so many on a page",

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 READING = ("GET", "HEAD", "OPTIONS")
 OPEN_TO_ALL = frozenset({"/", "/healthz", "/livez", "/readyz", "/v1/openapi.json"})
+SHARED = "/v1/shared/"
+"""Below it no key is asked for: the address itself lets in."""
 log = logging.getLogger(__name__)
 
 
@@ -54,7 +56,7 @@ class Gate:
             raise Problem(400, "one_host", "a request must have one Host header")
         self._check_host(headers.get("host", ""))
         _check_origin(scope["method"], headers.get("host", ""), headers.get("origin"))
-        if scope["path"] in OPEN_TO_ALL:
+        if is_open(scope["path"]):
             return None
         parts: Parts = scope["app"].state.parts
         scope["caller"] = caller = _caller(headers.get("authorization"), parts, self._keyed)
@@ -72,6 +74,11 @@ class Gate:
             return
         told = "a name of this service (HOCKLE_HOSTS)" if self._keyed else "a loopback address"
         raise Problem(421, "foreign_host", f"Host must be {told}, got {host[:80]!r}")
+
+
+def is_open(path: str) -> bool:
+    """Whether no key is asked for at this path."""
+    return path in OPEN_TO_ALL or path.startswith(SHARED)
 
 
 def _check_origin(method: str, host: str, origin: str | None) -> None:

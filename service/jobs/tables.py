@@ -113,6 +113,17 @@ api_keys = Table(
     Column("revoked", Double),
 )
 
+links = Table(
+    "links",  # by which a dataset is read without a key; of a secret only its hash is kept
+    metadata,
+    Column("id", String(12), primary_key=True),
+    Column("job_id", String(26), ForeignKey("jobs.id", ondelete="CASCADE"), nullable=False, index=True),
+    Column("sha256", String(64), nullable=False),
+    Column("created", Double, nullable=False),
+    Column("expires", Double, nullable=False),
+    Column("revoked", Double),
+)
+
 audit = Table(
     "audit",  # who did what; rows are only ever added
     metadata,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from service.results.schema import COORDINATES, ERRORS, LABELS, VARIABLES, Variable
 
-_ONE_AT_A_TIME = Lock()
+ONE_AT_A_TIME = Lock()
 """The HDF5 library is not thread-safe."""
 
 
@@ -52,7 +52,7 @@ def subset(
     for name, stride in (("time_stride", time_stride), ("s_stride", s_stride)):
         if stride < 1:
             raise ValueError(f"{name} must be >= 1, got {stride}")
-    with _ONE_AT_A_TIME, netCDF4.Dataset(path) as dataset:
+    with ONE_AT_A_TIME, netCDF4.Dataset(path) as dataset:
         dataset.set_auto_mask(False)
         chosen = [_variable(dataset, name) for name in variables]
         parts = {

@@ -20,7 +20,7 @@ import solver
 from chaos.campaign import free_port
 from chaos.postgres import Postgres, binaries, postgres
 from hockle.broker import redis_binary
-from hockle.client import Client
+from hockle_client import Client
 from service.cases import apply_settings, load_case
 
 QUICK = {"t_end": 0.5, "output.interval": 0.1, "numerics.intervals": 20}
@@ -87,11 +87,12 @@ def alive(pid: int) -> bool:
 
 
 @contextmanager
-def serving(data: Path, tree: Path | None = None, **told: str) -> Iterator[Server]:
+def serving(data: Path, tree: Path | None = None, port: int = 0, **told: str) -> Iterator[Server]:
     """A server that keeps what is its own in `data`, of the packages in `tree` if one is named; `told` are more
     environment variables."""
     solver.warm()  # else the first worker may compile for longer than a test waits
-    command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", str(data)]
+    command = [sys.executable, "-m", "hockle", "serve", "--port", str(port), "--workers", "1",
+               "--data", str(data)]
     environment = {**os.environ, **SHORT_LEASES, "REDIS_URL": "", **told}
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                env=environment, cwd=tree)  # fmt: skip

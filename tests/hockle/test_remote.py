@@ -1,4 +1,4 @@
-"""submit, status and fetch: what they print, and what they say when they cannot."""
+"""submit, status, fetch, jobs, cancel, watch: what they print, and what they say when they cannot."""
 
 from __future__ import annotations
 
@@ -84,3 +84,35 @@ def test_a_dataset_that_cannot_be_written_is_told_so(capsys, case_file, tmp_path
     assert main(["submit", case_file, "--wait"]) == 0
     job_id = capsys.readouterr().out.split()[0]
     assert "cannot write" in refusal(capsys, "fetch", job_id, "-o", str(tmp_path / "none" / "x.nc"))
+
+
+def test_jobs_are_listed_newest_first_by_status_and_label(case_file, capsys):
+    for t_end in ("0.2", "0.3"):
+        assert main(["submit", case_file, "--set", f"t_end={t_end}", "--label", "listed", "--wait"]) == 0
+    made = [line.split(":")[0] for line in capsys.readouterr().out.splitlines() if "successful" in line]
+    assert main(["jobs", "--label", "listed", "--status", "successful"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[:3] for line in lines] == [[job_id, "successful", "100%"] for job_id in made[::-1]]
+    assert main(["jobs", "--label", "listed", "-n", "1"]) == 0
+    assert capsys.readouterr().out.splitlines() == lines[:1]
+    assert main(["jobs", "--label", "nothing"]) == 0
+    assert capsys.readouterr().out == ""
+
+
+def test_a_job_is_watched_and_cancelled(slow, quick, tmp_path, capsys):
+    ids = []
+    for case in (slow, quick):
+        (tmp_path / "case.json").write_text(json.dumps(case))
+        assert main(["submit", str(tmp_path / "case.json")]) == 0
+        ids.append(capsys.readouterr().out.strip())
+    assert main(["cancel", ids[0]]) == 0
+    assert capsys.readouterr().out.startswith(f"{ids[0]}: ")
+    assert main(["watch", ids[1]]) == 0
+    assert capsys.readouterr().out == f"{ids[1]}: successful\n"
+    assert main(["watch", ids[0]]) == 1
+    assert f"{ids[0]}: dismissed" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", [["cancel", "nobody"], ["watch", "nobody"]])
+def test_what_is_not_there_is_neither_cancelled_nor_watched(capsys, command):
+    assert "there is no job 'nobody'" in refusal(capsys, *command)

@@ -16,7 +16,7 @@ from sqlalchemy import text
 
 import solver
 from chaos.cases import digest, undisturbed
-from hockle.client import Client
+from hockle_client import Client
 from service.cases import apply_settings
 from service.jobs import Database, Registry, Status
 from service.results import open_dataset
@@ -92,13 +92,13 @@ def runs_on(server, job) -> bool:
 
 
 def end_of(client, job_id: str) -> tuple[str, int]:
-    *_, last = client.follow(job_id)
-    return last["status"], last["attempts"]
+    ended = client.job(job_id).wait().state
+    return ended.status, ended.attempts
 
 
 def fetched(client, job_id: str, path: Path) -> tuple[str, str]:
     """The version that a job's dataset names, and the digest of its values."""
-    client.fetch(job_id, path)
+    client.job(job_id).fetch(path)
     with open_dataset(path) as opened:
         return opened.attrs["hockle_version"], digest(path)
 
@@ -119,7 +119,7 @@ def test_hosts_are_upgraded_one_by_one_while_jobs_run(
 
     with ExitStack() as while_b_runs:
         with start(tmp_path / "a", **shared) as a, Client(a.address) as at_a:
-            first = at_a.submit(slow)["id"]
+            first = at_a.submit(slow).id
             until(lambda: under_way(a, first), "the old version runs a job")
             b = while_b_runs.enter_context(start(tmp_path / "b", **upgraded))
             until(lambda: schema(registry) == "9999", "the new version has upgraded the tables")
@@ -127,12 +127,12 @@ def test_hosts_are_upgraded_one_by_one_while_jobs_run(
 
             at_b = while_b_runs.enter_context(Client(b.address))
             assert versions(a, b) == [OLD, NEW]
-            second = at_a.submit(slow, again=True)["id"]
+            second = at_a.submit(slow, again=True).id
             until(lambda: under_way(b, second), "the other host, which is free, runs what the old version accepted")
             assert end_of(at_a, first) == once
-            third = at_a.submit(quick)["id"]
+            third = at_a.submit(quick).id
             assert end_of(at_b, third) == once
-            fourth = at_b.submit(slow, again=True)["id"]
+            fourth = at_b.submit(slow, again=True).id
             until(lambda: under_way(a, fourth), "the old version, which is free, runs what the new one accepted")
 
         handed_back = registry.get(fourth).reached.steps
@@ -142,9 +142,9 @@ def test_hosts_are_upgraded_one_by_one_while_jobs_run(
 
         with start(tmp_path / "a", **upgraded) as a, Client(a.address) as at_a:
             assert versions(a, b) == [NEW, NEW]
-            last = {at_b.submit(quick, again=True)["id"], at_a.submit(quick, again=True)["id"]}
+            last = {at_b.submit(quick, again=True).id, at_a.submit(quick, again=True).id}
             while_b_runs.close()
-            last.add(at_a.submit(quick, again=True)["id"])
+            last.add(at_a.submit(quick, again=True).id)
             assert {end_of(at_a, job_id) for job_id in last} == {once}
             assert listed(a) == {first, second, third, fourth} | last
             got = {job_id: fetched(at_a, job_id, tmp_path / f"{job_id}.nc") for job_id in listed(a)}

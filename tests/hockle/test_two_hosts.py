@@ -12,7 +12,7 @@ import pytest
 
 from chaos.campaign import free_port
 from chaos.cases import digest, undisturbed
-from hockle.client import Client
+from hockle_client import Client
 from service.cases import apply_settings
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
@@ -80,24 +80,24 @@ def test_a_host_that_is_cut_off_loses_its_job_to_the_other_and_is_back_later(
                         "REDIS_URL": f"redis://127.0.0.1:{links[1].port}/0"}  # fmt: skip
     stays = shared | {"HOCKLE_DATABASE": postgresql.url(), "REDIS_URL": f"redis://127.0.0.1:{broker}/0"}
     with start(tmp_path / "a", **cut_off) as a, Client(a.address) as at_a:
-        long = at_a.submit(slow)["id"]
-        until(lambda: at_a.job(long)["progress"] > 0.02, "the job runs on the one host")
+        long = at_a.submit(slow).id
+        until(lambda: at_a.job(long).progress > 0.02, "the job runs on the one host")
         for link in links:
             link.break_off()
         with start(tmp_path / "b", **stays) as b, Client(b.address) as at_b:
-            short = at_b.submit(quick)["id"]
-            ends = {job_id: list(at_b.follow(job_id))[-1] for job_id in (short, long)}
-            assert {job_id: (end["status"], end["attempts"]) for job_id, end in ends.items()} == \
+            short = at_b.submit(quick).id
+            ends = {job_id: at_b.job(job_id).wait() for job_id in (short, long)}
+            assert {job_id: (end.status, end.state.attempts) for job_id, end in ends.items()} == \
                 {short: ("successful", 1), long: ("successful", 2)}  # fmt: skip
             until(lambda: not a.ready, "the host that is cut off says so")
             for link in links:
                 link.cut = False
             until(lambda: a.ready, "it is back")
             for client, name in ((at_a, "a.nc"), (at_b, "b.nc")):
-                client.fetch(long, tmp_path / name)
+                client.job(long).fetch(tmp_path / name)
             assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
-            again = at_a.submit(quick | {"description": "once more"})["id"]
-            assert list(at_b.follow(again))[-1]["status"] == "successful"
+            again = at_a.submit(quick | {"description": "once more"}).id
+            assert at_b.job(again).wait().status == "successful"
     for link in links:
         link.close()
     assert digest(tmp_path / "b.nc") == undisturbed(slow)

@@ -9,7 +9,7 @@ from fastapi.testclient import TestClient
 
 from service.access import KeyStore, Scope
 from service.api.app import ROUTERS, create_app
-from service.api.gate import OPEN_TO_ALL
+from service.api.gate import is_open
 from service.api.listening import listen
 from service.jobs import Database
 from service.jobs.audit import trail
@@ -22,7 +22,7 @@ OPERATORS = {"/metrics", "/v1/audit"}
 
 def operations() -> list[tuple[str, str]]:
     """Every route of the interface that needs a key, and how it is asked, those that its description leaves out too."""
-    routes = [route for router in ROUTERS for route in router.routes if route.path not in OPEN_TO_ALL]
+    routes = [route for router in ROUTERS for route in router.routes if not is_open(route.path)]
     return [(method, route.path) for route in routes for method in sorted(route.methods)]
 
 
@@ -60,8 +60,9 @@ def alices(keyed, key, case) -> str:
 
 def ask(client, method, path, headers, job_id="0" * 26, case=None):
     path = path.replace("{job_id}", job_id).replace("{name}", "elastica").replace("{process_id}", "simulate")
-    path += "?variables=Tw" if path.endswith("/data") else ""
-    return client.request(method, path, headers=headers, json=case if method == "POST" else None)
+    path = path.replace("{link_id}", "0" * 12)
+    path += "?variables=Tw" if path.endswith("/data") else f"?variables=Tw&jobs={job_id}" if "scalars" in path else ""
+    return client.request(method, path, headers=headers, json=(case or {}) if method == "POST" else None)
 
 
 def refused(answer, status, name):

@@ -1,0 +1,1 @@
+"""Writes the parts of the client that follow from others: the types of cases, and the client without await."""

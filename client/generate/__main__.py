@@ -1,0 +1,20 @@
+"""`make client`: write hockle_client/schema.py from the schema of cases, synchronous.py from asynchronous.py."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from generate.schema import types_of
+from generate.sync import without_await
+from service.cases import case_schema
+
+HERE = Path(__file__).parent.parent / "hockle_client"
+WRITTEN: dict[str, Callable[[], str]] = {
+    "schema.py": lambda: types_of(case_schema()),
+    "synchronous.py": lambda: without_await((HERE / "asynchronous.py").read_text(encoding="utf-8")),
+}
+
+if __name__ == "__main__":
+    for name, write in WRITTEN.items():
+        (HERE / name).write_text(write(), encoding="utf-8")

@@ -1,0 +1,113 @@
+"""What the server says, as it says it. What a newer server says beside is left out."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict
+
+Status = Literal["accepted", "running", "successful", "failed", "dismissed"]
+ENDED = ("successful", "failed", "dismissed")
+
+
+class Document(BaseModel):
+    """A part of an answer."""
+
+    model_config = ConfigDict(frozen=True, extra="ignore")
+
+
+class DatasetInfo(Document):
+    """A dataset that can be fetched."""
+
+    href: str
+    sha256: str
+    bytes: int
+
+
+class Limits(Document):
+    """What a job may use: seconds of running, bytes of memory and of disk."""
+
+    wall: float
+    memory: int
+    disk: int
+
+
+class JobState(Document):
+    """A job. `phase` is what its run is doing, `progress` goes from 0 to 1, `remaining` is the seconds that are left, `t`
+    is simulated seconds; `message` says what to do next, `attributes` what the run as a whole says of its errors."""
+
+    id: str
+    owner: str
+    status: Status
+    title: str
+    label: str
+    priority: int
+    phase: str = ""  # an older server does not say it, nor what follows
+    progress: float
+    remaining: float | None = None
+    t: float
+    outcome: str
+    message: str
+    cancel_requested: bool
+    attempts: int
+    created: datetime
+    started: datetime | None
+    finished: datetime | None
+    case_sha256: str
+    attributes: dict[str, float | int | str] = {}
+    limits: Limits
+    dataset: DatasetInfo | None
+    links: dict[str, str]
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing will change any more."""
+        return self.status in ENDED
+
+
+class Cost(Document):
+    """An estimate made before the run: `seconds` of one core, `bytes` before compression."""
+
+    nodes: int
+    frames: int
+    steps: int
+    seconds: float
+    bytes: int
+
+
+class CaseWarning(Document):
+    """What is likely a slip: where (JSON pointer into the case), what stands there, and what speaks against it."""
+
+    pointer: str
+    value: Any
+    rule: str
+
+
+class Verdict(Document):
+    """A case that could be run: as it was understood, what it would cost, and what should be looked at again."""
+
+    case: dict[str, Any]
+    cost: Cost
+    warnings: list[CaseWarning]
+
+
+class Event(Document):
+    """What happened to a job: `kind` as the server names it, `data` by kind."""
+
+    id: int
+    kind: str
+    data: dict[str, Any]
+
+
+class Link(Document):
+    """An address by which anybody reads one dataset, until it expires or is revoked.
+
+    `url` is told once, when the link is made.
+    """
+
+    id: str
+    url: str | None
+    created: datetime
+    expires: datetime
+    revoked: datetime | None

@@ -1,0 +1,321 @@
+"""The service as a Python program sees it.
+
+Written by `make client` from asynchronous.py: change that one.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import time
+import uuid
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import httpx
+from typing_extensions import Self
+
+from hockle_client.case import CaseLike, request_of
+from hockle_client.documents import Cost, Event, JobState, Link, Status, Verdict
+from hockle_client.handle import JobFacts
+from hockle_client.problems import HockleError, Unreachable, problem_of
+from hockle_client.reading import assembled, opened
+from hockle_client.retrying import Retries
+from hockle_client.schema import Setting
+from hockle_client.showing import Line
+from hockle_client.streaming import Download, Events
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+SILENCE = 45.0
+"""Seconds without a sign of life after which a connection is taken for dead; a stream of events has one every 15."""
+FIRST_POLL, LONGEST_POLL = 0.05, 1.0
+"""Seconds between looks at a job that is waited for."""
+SCALARS_AT_ONCE = 100
+
+
+class Client:
+    """One server. Requests that meet a lost connection or a busy server are made again; that runs no case twice."""
+
+    def __init__(self, url: str | None = None, key: str | None = None, patience: float = 60.0) -> None:
+        """`url` as http://127.0.0.1:8000, `key` as `hockle keys create` prints it; else HOCKLE_SERVER and HOCKLE_KEY.
+
+        `patience`: for how long one request is made again, s.
+        """
+        self.url = (url or os.environ.get("HOCKLE_SERVER") or "http://127.0.0.1:8000").rstrip("/")
+        key = key or os.environ.get("HOCKLE_KEY")
+        self.patience = patience
+        headers = {"Authorization": f"Bearer {key}"} if key else {}
+        self._http = httpx.Client(base_url=self.url, headers=headers, timeout=SILENCE, trust_env=False)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the connections."""
+        self._http.close()
+
+    def submit(self, case: CaseLike, *, set: Mapping[Setting, Any] | Mapping[str, Any] = {}, label: str = "",
+               priority: int = 0, limits: Mapping[str, float] = {}, again: bool = False,
+               idempotency_key: str | None = None) -> Job:
+        """Hand in a case, with some values `set` by dotted keys; gives the job that runs it, or has run the same case.
+
+        `again`: run it even so. `limits`: `wall` (s), `memory`, `disk` (bytes), less than the service's. Submissions
+        with one `idempotency_key` are one job, also of several programs. Raises Problem.
+        """
+        body = request_of(case, set, label=label, priority=priority, reuse=not again, limits=dict(limits))
+        headers = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
+        response = self._ask("POST", "/v1/jobs", body=body, headers=headers)
+        return Job(self, JobState.model_validate_json(response.content))
+
+    def validate(self, case: CaseLike, *, set: Mapping[Setting, Any] | Mapping[str, Any] = {}) -> Verdict:
+        """The case as the server understands it, its cost and warnings; nothing is run. Raises Problem."""
+        response = self._ask("POST", "/v1/validate", body=request_of(case, set))
+        return Verdict.model_validate_json(response.content)
+
+    def cost(self, case: CaseLike, *, set: Mapping[Setting, Any] | Mapping[str, Any] = {}) -> Cost:
+        """What the case would cost. Raises Problem."""
+        verdict = self.validate(case, set=set)
+        return verdict.cost
+
+    def shipped(self) -> dict[str, str]:
+        """Name and title of each case that comes with hockle."""
+        titles: dict[str, str] = (self._ask("GET", "/v1/cases")).json()
+        return titles
+
+    def shipped_case(self, name: str) -> dict[str, Any]:
+        """A case that comes with hockle. Raises Problem."""
+        case: dict[str, Any] = (self._ask("GET", f"/v1/cases/{_safe(name)}")).json()
+        return case
+
+    def job(self, job_id: str) -> Job:
+        """One job. Raises Problem."""
+        return Job(self, self._state(job_id))
+
+    def jobs(self, *, status: Status | None = None, label: str | None = None, owner: str | None = None,
+             since: datetime | None = None, until: datetime | None = None) -> Iterator[Job]:
+        """All jobs that meet what is given, newest first; `since` and `until` are aware times. Raises Problem."""
+        told = {"limit": "200", "status": status, "label": label, "owner": owner,
+                "since": since and since.isoformat(), "until": until and until.isoformat()}
+        query = {name: value for name, value in told.items() if value is not None}
+        page = (self._ask("GET", "/v1/jobs", params=query)).json()
+        while True:
+            for state in page["jobs"]:
+                yield Job(self, JobState.model_validate(state))
+            if page["next"] is None:
+                return
+            page = (self._ask("GET", page["next"])).json()
+
+    def wait(self, jobs: Iterable[Job], timeout: float | None = None,
+             progress: bool = False) -> list[Job]:
+        """The jobs when all have ended, however. Raises TimeoutError after so many seconds."""
+        deadline = None if timeout is None else time.monotonic() + timeout
+        waited = list(jobs)
+        for job in waited:
+            job.wait(None if deadline is None else max(0.0, deadline - time.monotonic()), progress)
+        return waited
+
+    def scalars(self, jobs: Iterable[Job | str], *variables: str) -> list[dict[str, Any]]:
+        """The last values of variables in time of many jobs: a record of each, with its id, label, status and outcome.
+
+        pandas.DataFrame takes the records as they are. A value is None where a job has no dataset. Raises Problem.
+        """
+        ids = [job if isinstance(job, str) else job.id for job in jobs]
+        records: list[dict[str, Any]] = []
+        for start in range(0, len(ids), SCALARS_AT_ONCE):
+            query = {"jobs": ",".join(ids[start : start + SCALARS_AT_ONCE]), "variables": ",".join(variables)}
+            told = (self._ask("GET", "/v1/scalars", params=query)).json()["jobs"]
+            records += [{**{name: value for name, value in one.items() if name != "values"}, **one["values"]}
+                        for one in told]
+        return records
+
+    def _state(self, job_id: str) -> JobState:
+        response = self._ask("GET", f"/v1/jobs/{_safe(job_id)}")
+        return JobState.model_validate_json(response.content)
+
+    def _ask(self, method: str, path: str, *, params: Mapping[str, Any] | None = None,
+             body: bytes | None = None, headers: Mapping[str, str] = {}) -> httpx.Response:
+        """The answer to one request, made again while that may help. Raises Problem, Unreachable."""
+        retries = Retries(self.patience)
+        headers = {**headers, **({} if body is None else {"Content-Type": "application/json"})}
+        while True:
+            try:
+                response = self._http.request(method, path, params=params, content=body, headers=headers)
+            except httpx.TransportError as error:
+                refused: HockleError = Unreachable(self.url, error)
+            else:
+                if response.is_success:
+                    return response
+                refused = problem_of(response)
+            time.sleep(retries.after(refused))
+
+    def _events(self, job_id: str, seen: int) -> Iterator[Event]:
+        path, retries = f"/v1/jobs/{_safe(job_id)}/events", Retries(self.patience)
+        while True:
+            try:
+                with self._http.stream("GET", path, headers={"Last-Event-ID": str(seen)}) as response:
+                    if response.status_code == 204:
+                        return
+                    if response.status_code != 200:
+                        response.read()
+                        raise problem_of(response)
+                    retries.begin()
+                    events = Events()
+                    for line in response.iter_lines():
+                        event = events.take(line)
+                        if event is not None:
+                            seen = event.id
+                            yield event
+                refused: HockleError = Unreachable(self.url, httpx.ReadError("the events broke off"))
+            except httpx.TransportError as error:
+                refused = Unreachable(self.url, error)
+            except HockleError as error:
+                refused = error
+            time.sleep(retries.after(refused))
+
+    def _download(self, job_id: str, file: BinaryIO) -> int:
+        path, retries, download = f"/v1/jobs/{_safe(job_id)}/dataset", Retries(self.patience), Download(file)
+        while True:
+            try:
+                with self._http.stream("GET", path, headers=download.headers) as response:
+                    if not response.is_success:
+                        response.read()
+                        raise problem_of(response)
+                    download.begin(response)
+                    for chunk in response.iter_bytes():
+                        download.take(chunk)
+                download.check()
+                return download.size
+            except httpx.TransportError as error:
+                refused: HockleError = Unreachable(self.url, error)
+            except HockleError as error:
+                refused = error
+            time.sleep(retries.after(refused))
+
+
+class Job(JobFacts):
+    """One job on a server."""
+
+    def __init__(self, client: Client, state: JobState) -> None:
+        self._client, self.state = client, state
+
+    def refresh(self) -> Self:
+        """Ask how it is. Raises Problem."""
+        self.state = self._client._state(self.id)
+        return self
+
+    def events(self, after: int = 0) -> Iterator[Event]:
+        """What happens to the job, as it happens, until its end; a lost connection is made again. Raises Problem.
+
+        `after`: only what came after the event with this id.
+        """
+        return self._client._events(self.id, after)
+
+    def watch(self) -> Iterator[Self]:
+        """The job now, and each time that it has changed, until it has ended. Raises Problem."""
+        yield self.refresh()
+        if self.ended:
+            return
+        for event in self.events():
+            if event.kind == "progress":
+                self.state = JobState.model_validate(event.data)
+                yield self
+        yield self.refresh()
+
+    def wait(self, timeout: float | None = None, progress: bool = False) -> Self:
+        """The job when it has ended, however it has ended. `progress`: with a line on stderr.
+
+        Raises TimeoutError after so many seconds, Problem.
+        """
+        line, pause, since = Line() if progress else None, FIRST_POLL, time.monotonic()
+        while not self.ended:
+            self.refresh()
+            if line:
+                line.show(self.state)
+            if not self.ended and timeout is not None and time.monotonic() - since > timeout:
+                raise TimeoutError(f"job {self.id} has not ended within {timeout:g} s: it is {self.status}")
+            if not self.ended:
+                time.sleep(pause)
+            pause = min(LONGEST_POLL, 2 * pause)
+        return self
+
+    def cancel(self) -> Self:
+        """Cancel the job; an ended one stays as it is. Raises Problem."""
+        response = self._client._ask("DELETE", f"/v1/jobs/{self.id}")
+        self.state = JobState.model_validate_json(response.content)
+        return self
+
+    def case(self) -> dict[str, Any]:
+        """The case with every default filled in, as it is run. Raises Problem."""
+        case: dict[str, Any] = (self._client._ask("GET", f"/v1/jobs/{self.id}/case")).json()
+        return case
+
+    def fetch(self, path: str | Path) -> int:
+        """Write the dataset to a file, whole and verified or not at all; gives its bytes. Raises Problem, OSError."""
+        path = Path(path)
+        beside = path.with_name(f".{path.name}.part")
+        try:
+            with beside.open("wb") as file:
+                size = self._client._download(self.id, file)
+            beside.replace(path)
+        finally:
+            beside.unlink(missing_ok=True)
+        return size
+
+    def dataset(self) -> xr.Dataset:
+        """The whole dataset in xarray, its file held in memory. Raises Problem."""
+        file = io.BytesIO()
+        self._client._download(self.id, file)
+        return opened(file.getvalue(), f"{self.id}.nc")
+
+    def values(self, *variables: str, t_min: float | None = None, t_max: float | None = None,
+               s_min: float | None = None, s_max: float | None = None, time_stride: int = 1,
+               s_stride: int = 1) -> dict[str, Any]:
+        """Some variables in ranges of time (s) and arclength (m), every stride-th, as plain data. Raises Problem."""
+        told = {"t_min": t_min, "t_max": t_max, "s_min": s_min, "s_max": s_max}
+        query: dict[str, Any] = {"variables": ",".join(variables), "time_stride": time_stride, "s_stride": s_stride}
+        query.update({name: value for name, value in told.items() if value is not None})
+        part: dict[str, Any] = (self._client._ask("GET", f"/v1/jobs/{self.id}/data", params=query)).json()
+        return part
+
+    def data(self, *variables: str, **part: Any) -> xr.Dataset:
+        """The same in xarray: only this is transferred. `part` as `values` takes it. Raises Problem."""
+        return assembled(self.values(*variables, **part))
+
+    def table(self, *variables: str, **part: Any) -> pd.DataFrame:
+        """The same in pandas, a row for each time (and node, and component). Raises Problem."""
+        return (self.data(*variables, **part)).to_dataframe()
+
+    def link(self, seconds: float = 86400.0) -> Link:
+        """An address by which anybody reads this dataset for so long, without a key. Raises Problem."""
+        body = b'{"seconds": %r}' % seconds
+        told = (self._client._ask("POST", f"/v1/jobs/{self.id}/links", body=body)).json()
+        return self._linked(told)
+
+    def links(self) -> list[Link]:
+        """The links to this dataset, those that are good no more included. Raises Problem."""
+        told = (self._client._ask("GET", f"/v1/jobs/{self.id}/links")).json()
+        return [self._linked(link) for link in told["links"]]
+
+    def revoke(self, link: Link | str) -> None:
+        """Make a link useless from now on. Raises Problem."""
+        link_id = link if isinstance(link, str) else link.id
+        self._client._ask("DELETE", f"/v1/jobs/{self.id}/links/{_safe(link_id)}")
+
+    def _linked(self, told: dict[str, Any]) -> Link:
+        href = told.pop("href", None)
+        return Link(url=None if href is None else f"{self._client.url}{href}", **told)
+
+
+def _safe(name: str) -> str:
+    """A name as a part of an address. Raises HockleError for what is none."""
+    if not name.replace("-", "").replace("_", "").isalnum():
+        raise HockleError(f"a job id has letters and digits only, got {name!r}")
+    return name

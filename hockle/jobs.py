@@ -1,0 +1,55 @@
+"""hockle jobs, cancel, watch: the jobs of a server."""
+
+from __future__ import annotations
+
+import argparse
+from itertools import islice
+from typing import Any
+
+from hockle.connection import add_server, connected, follow, sentence
+
+STATUSES = ("accepted", "running", "successful", "failed", "dismissed")
+
+
+def register(subparsers: Any) -> None:
+    """Add `hockle jobs`, `hockle cancel` and `hockle watch`."""
+    listing = subparsers.add_parser("jobs", help="list jobs, newest first")
+    listing.add_argument("--status", choices=STATUSES, help="only jobs of this status")
+    listing.add_argument("--label", help="only jobs with exactly this label")
+    listing.add_argument("-n", type=int, default=20, metavar="NUMBER", dest="many", help="at most so many (default 20)")
+    listing.set_defaults(run=jobs)
+    cancelling = subparsers.add_parser("cancel", help="cancel jobs")
+    cancelling.add_argument("ids", metavar="ID", nargs="+")
+    cancelling.set_defaults(run=cancel)
+    watching = subparsers.add_parser("watch", help="follow a job to its end")
+    watching.add_argument("id", metavar="ID")
+    watching.set_defaults(run=watch)
+    add_server(listing, cancelling, watching)
+
+
+def jobs(told: argparse.Namespace) -> int:
+    """Print a line for each job: id, status, progress, when it was submitted, label, title."""
+    with connected(told.server) as client:
+        for job in islice(client.jobs(status=told.status, label=told.label), told.many):
+            state = job.state
+            print(f"{state.id}  {state.status:10}  {state.progress:4.0%}  {state.created:%Y-%m-%d %H:%M}"
+                  f"  {state.label:12}  {state.title}".rstrip())
+    return 0
+
+
+def cancel(told: argparse.Namespace) -> int:
+    """Cancel jobs, and print how each is doing then."""
+    with connected(told.server) as client:
+        for job_id in told.ids:
+            state = client.job(job_id).cancel().state
+            waits = " (it ends within a second)" if not state.ended else ""
+            print(f"{sentence(state)}{waits}")
+    return 0
+
+
+def watch(told: argparse.Namespace) -> int:
+    """Show a job to its end; 1 if it was not successful."""
+    with connected(told.server) as client:
+        ended = follow(client, told.id)
+    print(sentence(ended))
+    return 0 if ended.status == "successful" else 1

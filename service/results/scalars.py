@@ -1,0 +1,41 @@
+"""The last values of variables that have no place along the rod."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+from numpy.typing import NDArray
+
+from service.results.query import ONE_AT_A_TIME, UnknownVariable
+from service.results.schema import ERRORS, VARIABLES
+
+Value = float | int | list[float | None] | None
+"""A number, the components of a vector, or nothing."""
+SCALARS = tuple(variable.name for variable in (*VARIABLES, *ERRORS.values()) if not variable.along_rod)
+
+
+def scalar_variables(names: Sequence[str]) -> list[str]:
+    """The names, if they all are of such variables. Raises UnknownVariable."""
+    for name in names:
+        if name not in SCALARS:
+            raise UnknownVariable(f"variable must be one of {', '.join(SCALARS)}, got {name!r}")
+    return list(names)
+
+
+def last_values(path: Path, names: Sequence[str]) -> dict[str, Value]:
+    """The values of the last frame; None for what the dataset does not hold, and where there is no number."""
+    with ONE_AT_A_TIME, netCDF4.Dataset(path) as dataset:
+        dataset.set_auto_mask(False)
+        frames = len(dataset.dimensions["time"])
+        held = {name: np.asarray(dataset[name][-1]) for name in names if frames and name in dataset.variables}
+    return {name: _plain(held[name]) if name in held else None for name in names}
+
+
+def _plain(value: NDArray[np.float64]) -> Value:
+    plain = value.astype(object)
+    plain[~np.isfinite(value)] = None
+    told: Value = plain.tolist()
+    return told

@@ -34,8 +34,9 @@ class Limits(Document):
 
 
 class JobState(Document):
-    """A job. `phase` is what its run is doing, `progress` goes from 0 to 1, `remaining` is the seconds that are left, `t`
-    is simulated seconds; `message` says what to do next, `attributes` what the run as a whole says of its errors."""
+    """A job. `phase` is what its run is doing, `progress` goes from 0 to 1, `remaining` is the seconds that are left,
+    `t` is simulated seconds; `message` says what to do next, `attributes` what the run as a whole says of its errors.
+    """
 
     id: str
     owner: str

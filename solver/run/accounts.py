@@ -31,7 +31,7 @@ class Accounts:
         self._jolts = [*([0.0] if thrown else []), *method.start.jolts(), *method.end.jolts()]
         s = np.linspace(0.0, scene.rod.length, 11)
         self._unit = float(principal(elasticity_of(scene.rod, s))[:, :2].min(axis=1).mean()) / scene.rod.length
-        self._turnover = 0.0
+        self._turnover, self._there = 0.0, 0.0
         self._Lk_at_start = 0.0
 
     def after_step(self, dt: float, iterations: int, flowed: Array) -> None:
@@ -51,6 +51,7 @@ class Accounts:
         else:
             self._turnover += float(np.abs(entries - self._entries).sum())
         self._entries = entries
+        self._there = max(self._there, total - energy.potential)
         self._settle(t, total - self._energy_at_start - work_ends - work_loads + dissipation)
         Wr = writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
         return Frame(
@@ -70,6 +71,11 @@ class Accounts:
         """
         floor = MADE_OF_NOTHING if self._missing > 0.0 else LOST_AT_REST
         return self._missing / (self._turnover + floor * self._unit)
+
+    @property
+    def lost(self) -> float:
+        """Energy that went nowhere until the last frame, over the largest that motion, strain and contact ever had."""
+        return max(-self._missing, 0.0) / (self._there + LOST_AT_REST * self._unit)
 
     def _settle(self, t: float, balance: float) -> None:
         """Enter the balance (J) at time t."""

@@ -13,8 +13,8 @@ class Remarks:
     `end_hops`: how often a loop hopped over an end; both by Tw + Wr - Lk from frame to frame, so that two of opposite
     sign between frames cancel, and none is seen without topology. `deepest_overlap` (m) of strands, and the time
     `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
-    it has to stretch, see `physics.axial`. `energy_lost`: the part of all energy that changed its form or hands which
-    went nowhere, if that is more than a tenth.
+    it has to stretch, see `physics.axial`. `energy_lost`: energy that went nowhere, over the largest
+    that motion, strain and contact ever had, if that is more than a tenth.
     """
 
     crossings: int = 0
@@ -49,8 +49,8 @@ class Remarks:
             )
         if self.energy_lost:
             told.append(
-                f"Of all energy that changed its form or hands {self.energy_lost:.0%} went nowhere: the steps are too "
-                "long for the waves that had it."
+                f"Energy went nowhere, {self.energy_lost:.0%} of the largest that the rod's motion and strain had: the "
+                "steps are too long for the waves that had it."
             )
         if self.axial_stiffness:
             told.append(

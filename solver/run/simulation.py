@@ -22,7 +22,8 @@ FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
 """Outcomes that a shorter step does not avert."""
 
 LARGEST_MADE = 0.1
-"""Part of the energy that changed its form or hands: a run that made or lost more of it says nothing of the rod."""
+"""Part of the energy that changed its form or hands: a run that made or lost more of it says nothing of the rod. And
+part of the largest energy that there ever was, a loss of which a run that goes on has to tell."""
 
 class Simulation(Run):
     """Motion, by steps in time."""
@@ -81,9 +82,10 @@ class Simulation(Run):
         told = f"{abs(made):.2g} of all that changed hands"
         if made > LARGEST_MADE:
             raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, told)
-        if made < -LARGEST_MADE and output == self._outputs[-1]:  # much of what was at first may be little of all
-            self.remarks.energy_lost = -made
-            if not self._goes_on:
+        if output == self._outputs[-1]:  # much of what was at first may be little of all
+            if self._accounts.lost > LARGEST_MADE:
+                self.remarks.energy_lost = self._accounts.lost
+            if made < -LARGEST_MADE and not self._goes_on:
                 raise RunFailed(Outcome.ENERGY_LOST, self.t, self.statistics.steps, told)
         crossed = self._watch.see(frame)
         if crossed:

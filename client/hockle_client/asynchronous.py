@@ -25,7 +25,7 @@ from hockle_client.problems import HockleError, Unreachable, problem_of
 from hockle_client.reading import assembled, opened
 from hockle_client.retrying import Retries
 from hockle_client.schema import Setting
-from hockle_client.showing import Line
+from hockle_client.showing import Line, show_many
 from hockle_client.streaming import Download, Events
 
 if TYPE_CHECKING:
@@ -119,8 +119,12 @@ class AsyncClient:
         """The jobs when all have ended, however. Raises TimeoutError after so many seconds."""
         deadline = None if timeout is None else time.monotonic() + timeout
         waited = list(jobs)
-        for job in waited:
-            await job.wait(None if deadline is None else max(0.0, deadline - time.monotonic()), progress)
+        for done, job in enumerate(waited):
+            if progress:
+                show_many(done, len(waited))
+            await job.wait(None if deadline is None else max(0.0, deadline - time.monotonic()))
+        if progress:
+            show_many(len(waited), len(waited))
         return waited
 
     async def scalars(self, jobs: Iterable[AsyncJob | str], *variables: str) -> list[dict[str, Any]]:

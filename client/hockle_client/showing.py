@@ -26,3 +26,8 @@ class Line:
         if job.ended or not 0.0 < job.progress < 1.0:
             return f"{passed:.0f} s"
         return f"{passed * (1.0 - job.progress) / job.progress:.0f} s left"
+
+
+def show_many(ended: int, jobs: int) -> None:
+    """Say on a line of its own how many jobs have ended."""
+    print(f"\r{ended} of {jobs} jobs have ended", end="\n" if ended == jobs else "", file=sys.stderr, flush=True)

@@ -27,7 +27,7 @@ class SubsetTooLarge(ValueError):
 
 
 def open_dataset(path: Path) -> xr.Dataset:
-    """The dataset in xarray, its time in seconds since the start."""
+    """The dataset in xarray, its time in seconds since the start; also of one written before time had plain seconds."""
     return xr.open_dataset(path, engine="netcdf4", decode_times=False)
 
 
@@ -98,8 +98,7 @@ def _check_size(
 def _coordinate(dataset: netCDF4.Dataset, name: str, parts: dict[str, slice]) -> dict[str, Any]:
     if name in LABELS:
         return {"values": list(LABELS[name])}
-    units = "s" if name == "time" else COORDINATES[name]["units"]
-    return {"units": units, "values": dataset[name][parts[name]].tolist()}
+    return {"units": COORDINATES[name]["units"], "values": dataset[name][parts[name]].tolist()}
 
 
 def _values(dataset: netCDF4.Dataset, variable: Variable, parts: dict[str, slice]) -> dict[str, Any]:

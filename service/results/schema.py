@@ -34,18 +34,14 @@ LABEL_NAMES = {
 }
 
 COORDINATES: dict[str, dict[str, str]] = {
-    "time": {
-        "units": "seconds since 1970-01-01",
-        "calendar": "standard",
-        "units_metadata": "leap_seconds: none",
-        "standard_name": "time",
-        "axis": "T",
-        "long_name": "time since the start of the simulation",
-        "comment": "the date stands for the start; xarray gives seconds with decode_times=False",
-    },
+    "time": {"units": "s", "long_name": "time since the start of the simulation"},
     "s": {"units": "m", "long_name": "arclength from the start of the rod"},
 }
-"""The attributes of the coordinates. CF knows time only as time since a date."""
+"""The attributes of the coordinates.
+
+Time is a number of seconds as any other: xarray makes dates of units with "since", older ones durations of "seconds".
+CF's standard name and axis of time ask for "since" (docs/decisions/0018-time-in-seconds.md).
+"""
 
 
 @dataclass(frozen=True)

@@ -26,10 +26,10 @@ class Fields:
     Vectors (n, 3); `orientation` (n, 4), unit quaternion (w, x, y, z) that takes material components to lab ones.
     """
 
-    v: Annotated[Array, Output("m s-1", "velocity of the centreline", "material", along_rod=True)]
-    omega: Annotated[Array, Output("rad s-1", "angular velocity of the section", "material", along_rod=True)]
+    v: Annotated[Array, Output("m/s", "velocity of the centreline", "material", along_rod=True)]
+    omega: Annotated[Array, Output("rad/s", "angular velocity of the section", "material", along_rod=True)]
     f: Annotated[Array, Output("N", "internal force", "material", along_rod=True)]
-    kappa: Annotated[Array, Output("rad m-1", "curvature and twist", "material", along_rod=True)]
+    kappa: Annotated[Array, Output("rad/m", "curvature and twist", "material", along_rod=True)]
     q: Annotated[Array, Output("N m", "internal moment", "material", along_rod=True)]
     r: Annotated[Array, Output("m", "position of the centreline", "lab", along_rod=True)]
     orientation: Annotated[
@@ -82,7 +82,7 @@ class Frame(Fields):
         int, Output("1", "directions in which the energy stays the same", statics=True, verified=False)
     ] = -1
     max_curvature: Annotated[
-        float, Output("rad m-1", "largest curvature of the centreline along the rod", of=_max_curvature)
+        float, Output("rad/m", "largest curvature of the centreline along the rod", of=_max_curvature)
     ] = FOLLOWS
 
 

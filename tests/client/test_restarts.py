@@ -35,7 +35,7 @@ class Waiting(threading.Thread):
 
 @pytest.mark.parametrize("how", ["waits", "reads events"])
 def test_a_server_is_stopped_and_started_under_a_waiting_client(connect, slow, tmp_path, until, how):
-    port = free_port()
+    port, slow = free_port(), slow.set("t_end", 2.0)
     with serving(tmp_path, port=port) as server:
         client = connect(server.address)
         job = client.submit(slow)

@@ -43,7 +43,8 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
     outward_start, outward_end = -_unit(start_tangent), _unit(end_tangent)
     columns, quarter = shorten(_columns(r, 2), -outward_start, outward_end)
     quarter += _segment_pairs(columns, False)
-    quarter += _ray(columns, columns[:, -1], outward_end) - _ray(columns, columns[:, 0], outward_start)
+    rows = np.ascontiguousarray(columns.T)
+    quarter += _ray(rows, rows[-1], outward_end) - _ray(rows, rows[0], outward_start)
     across = columns[:, -1] - columns[:, 0]
     quarter -= half_area(across, outward_end, -outward_start)
     return -quarter / pi
@@ -56,9 +57,9 @@ def writhe_shares(r: Array, start_tangent: Array, end_tangent: Array) -> tuple[f
 
 def share_of_rays(r: Array, start_tangent: Array, end_tangent: Array) -> float:
     """The part of `writhe` (turns) that the pairs with a ray have in it."""
-    columns, outward_start, outward_end = _columns(r, 2), -_unit(start_tangent), _unit(end_tangent)
-    rays = _ray(columns, columns[:, -1], outward_end) - _ray(columns, columns[:, 0], outward_start)
-    rays -= half_area(columns[:, -1] - columns[:, 0], outward_end, -outward_start)
+    outward_start, outward_end = -_unit(start_tangent), _unit(end_tangent)
+    rays = _ray(r, r[-1], outward_end) - _ray(r, r[0], outward_start)
+    rays -= half_area(r[-1] - r[0], outward_end, -outward_start)
     return -float(rays) / pi
 
 
@@ -91,14 +92,14 @@ def _unit(direction: ArrayLike) -> Array:
 
 @kernel
 def _ray(r: Array, origin: Array, direction: Array) -> float:
-    """Half the signed area of all segments of `r` (3, n) with the ray from one of its ends.
+    """Half the signed area of all segments of `r` (n, 3) with the ray from one of its ends.
 
     The quadrilateral's two corners at infinity are one, so it is a triangle. The segment that
     touches the ray lies in a plane with it and adds nothing.
     """
     total = 0.0
-    for i in range(r.shape[1] - 1):
-        a, d = origin - r[:, i], origin - r[:, i + 1]
+    for i in range(len(r) - 1):
+        a, d = origin - r[i], origin - r[i + 1]
         if a.any() and d.any():
             total += half_area(a, direction, d)
     return total

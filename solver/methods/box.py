@@ -173,7 +173,7 @@ class BoxMethod:
         """The state's centreline."""
         tangents = np.empty((2, 3))
         tangents_of(self.state.quaternion[[0, -1]], tangents)
-        return Shape(self.state.r.copy(), tangents)
+        return Shape(self.state.r, tangents)
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""

@@ -70,7 +70,7 @@ class Method(Protocol):
         """The state along the rod."""
 
     def centreline(self) -> Shape:
-        """The state's centreline."""
+        """The state's centreline, as it is until the next step."""
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""

@@ -117,7 +117,7 @@ class StaggeredMethod(RadauMethod):
 
     def centreline(self) -> Shape:
         """The state's centreline."""
-        return Shape(self._nodes[0].copy(), self._R[[0, -1], :, 2])
+        return Shape(self._nodes[0], self._R[[0, -1], :, 2])
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""

@@ -34,7 +34,8 @@ class Watch:
         share = share_of_rays(shape.r, shape.tangents[0], shape.tangents[1])
         if self._last and abs(share - self._share) > JUMP:
             self._hops += passages(Shape(*self._last), shape).hops
-        self._last, self._share = tuple(shape), share
+        self._share = share
+        self._keep(shape)
 
     def see(self, frame: Frame) -> str:
         """Enter the next frame. Why the run must end, or nothing."""
@@ -49,8 +50,14 @@ class Watch:
             return "Tw + Wr - Lk jumped" if abs(jump - 2.0 * hops) > JUMP else ""
         if self._last and abs(jump) > JUMP:
             self._enter(*passages(Shape(*self._last), shape), frame.t)
-        self._last = tuple(shape)
+        self._keep(shape)
         return ""
+
+    def _keep(self, shape: Shape) -> None:
+        if not self._last:
+            self._last = shape.r.copy(), shape.tangents.copy()
+        for mine, new in zip(self._last, shape, strict=True):
+            mine[:] = new
 
     def _enter(self, crossings: int, hops: int, t: float) -> None:
         if crossings and not self._remarks.crossings:

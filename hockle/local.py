@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 from hockle.failure import Failure
 
 if TYPE_CHECKING:
-    from xarray import Dataset
-
     from service.cases import CaseSpec
     from service.results import DatasetWriter
     from solver import Run, RunFailed
@@ -89,40 +87,42 @@ def run(told: argparse.Namespace) -> int:
 
 def summary(path: Path) -> str:
     """How the run of a dataset ended, what it cost, and its last frame's balance."""
-    from outcomes import Outcome
-    from service.results import open_dataset
+    from netCDF4 import Dataset
 
-    with open_dataset(path) as dataset:
-        told = dataset.attrs
+    from outcomes import Outcome
+
+    with Dataset(path) as dataset:
+        dataset.set_auto_mask(False)
+        told = dataset.__dict__
+        frames = len(dataset["time"])
         lines = [
             f"{told['case_name']}: {told['outcome']}",
             f"  steps {told['steps']} ({told['failed_steps']} repeated), "
             f"Newton iterations {told['newton_iterations']}, CPU {told['cpu_time']:.2f} s",
         ]
-        if dataset.sizes["time"]:
-            last = dataset.isel(time=-1)
-            energies = [name for name in map(str, dataset.data_vars) if name.startswith("energy_")]
-            stored = sum(float(last[name]) for name in energies if not name.endswith(("_balance", "_error")))
+        if frames:
+            last = {name: float(v[-1]) for name, v in dataset.variables.items() if v.dimensions == ("time",)}
+            energies = [name for name in last if name.startswith("energy_")]
+            stored = sum(last[name] for name in energies if not name.endswith(("_balance", "_error")))
             lines += [
-                f"  at t = {float(last.time):g} s: Tw {float(last.Tw):.4f}, Wr {float(last.Wr):.4f}, "
-                f"Lk {float(last.Lk):.4f}",
+                f"  at t = {last['time']:g} s: Tw {last['Tw']:.4f}, Wr {last['Wr']:.4f}, Lk {last['Lk']:.4f}",
                 f"  energy {stored:.4g} J, " + _trust(last),
             ]
         if told["outcome"] == Outcome.COMPLETED and told["message"]:
             lines.append(f"  {told['message']}")
     return "\n".join(
-        [*lines, f"  {path} ({path.stat().st_size / 1e6:.1f} MB, {dataset.sizes['time']} frames)"]
+        [*lines, f"  {path} ({path.stat().st_size / 1e6:.1f} MB, {frames} frames)"]
     )
 
 
-def _trust(last: Dataset) -> str:
+def _trust(last: dict[str, float]) -> str:
     """What a dynamic run's last frame says of its error, or a static one's of its stability."""
     if "negative_modes" not in last:
-        return f"balance {float(last.energy_balance):.2g} J"
-    falling, neutral = int(last.negative_modes), int(last.neutral_modes)
+        return f"balance {last['energy_balance']:.2g} J"
+    falling, neutral = int(last["negative_modes"]), int(last["neutral_modes"])
     verdict = f"unstable in {falling} {_directions(falling)}" if falling else "stable"
     verdict += f", free to move in {neutral} {_directions(neutral)}" if neutral else ""
-    return f"parameter {float(last.parameter):g} s, {verdict}"
+    return f"parameter {last['parameter']:g} s, {verdict}"
 
 
 def _directions(many: int) -> str:

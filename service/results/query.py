@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 from threading import Lock
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import netCDF4
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from service.results.schema import COORDINATES, ERRORS, LABELS, VARIABLES, Variable
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ONE_AT_A_TIME = Lock()
 """The HDF5 library is not thread-safe."""
@@ -28,6 +30,8 @@ class SubsetTooLarge(ValueError):
 
 def open_dataset(path: Path) -> xr.Dataset:
     """The dataset in xarray, its time in seconds since the start; also of one written before time had plain seconds."""
+    import xarray as xr  # half a second, which what reads a part alone need not wait for
+
     return xr.open_dataset(path, engine="netcdf4", decode_times=False)
 
 

@@ -207,10 +207,19 @@ def relative_rotation(left: Array, right: Array, theta: Array) -> None:
 
 
 def quaternion_of(R: Array) -> Array:
-    """The unit quaternions (n, 4) of rotation matrices (n, 3, 3), with w >= 0 first and continuous along n."""
-    from scipy.spatial.transform import Rotation
+    """The unit quaternions (n, 4) of rotation matrices (n, 3, 3), with w >= 0 first and continuous along n.
 
-    quaternions: Array = Rotation.from_matrix(R).as_quat(scalar_first=True)
+    4 q q^T follows from the entries of R; its row with the largest diagonal is q but for its length (Shepperd 1978).
+    """
+    products, trace = np.empty((len(R), 4, 4)), np.trace(R, axis1=1, axis2=2)
+    products[:, 0, 0] = 1.0 + trace
+    for i, (j, k) in enumerate(((1, 2), (2, 0), (0, 1))):
+        products[:, 0, i + 1] = products[:, i + 1, 0] = R[:, k, j] - R[:, j, k]
+        products[:, i + 1, i + 1] = 1.0 + 2.0 * R[:, i, i] - trace
+        products[:, j + 1, k + 1] = products[:, k + 1, j + 1] = R[:, j, k] + R[:, k, j]
+    largest = np.argmax(np.diagonal(products, axis1=1, axis2=2), axis=1)
+    quaternions: Array = products[np.arange(len(R)), largest]
+    quaternions /= np.linalg.norm(quaternions, axis=1)[:, None]
     if quaternions[0, 0] < 0:
         quaternions[0] *= -1.0
     for i in range(1, len(quaternions)):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from typing import Literal, TypeVar
+from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator, PPoly
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Interpolation = Literal["linear", "smoothstep", "pchip", "cubic"]
 Number = TypeVar("Number", float, NDArray[np.float64])
@@ -132,13 +134,16 @@ def _primitive(piece: tuple[float, float, float, float], u: float) -> float:
 def _power_coefficients(
     x: NDArray[np.float64], y: NDArray[np.float64], interpolation: Interpolation
 ) -> NDArray[np.float64]:
+    flat, width, rise = np.zeros(len(x) - 1), np.diff(x), np.diff(y)
     if interpolation == "linear":
-        flat = np.zeros(len(x) - 1)
-        return np.array([flat, flat, np.diff(y) / np.diff(x), y[:-1]])
-    spline: PPoly
+        return np.array([flat, flat, rise / width, y[:-1]])
     if interpolation == "smoothstep":
-        spline = CubicHermiteSpline(x, y, np.zeros_like(y))
-    elif interpolation == "pchip":
+        return np.array([-2.0 * rise / width**3, 3.0 * rise / width**2, flat, y[:-1]])
+    # scipy.interpolate takes a fifth of a second to load, and few scenes need it
+    from scipy.interpolate import CubicSpline, PchipInterpolator
+
+    spline: PPoly
+    if interpolation == "pchip":
         spline = PchipInterpolator(x, y)
     elif interpolation == "cubic":
         spline = CubicSpline(x, y)

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
@@ -25,6 +24,7 @@ class Initial:
     e1, or e2 where the rod begins along e1; along s the frame
     follows by parallel transport, turned about the tangent by `twist` (rad). `velocity` (m/s) and
     `angular_velocity` (rad/s, about the centre of mass) are a rigid motion in the lab frame.
+    `direction` is the unit tangent of a rod that is straight, None of any other.
     """
 
     centreline: Callable[[Array], Array]
@@ -32,6 +32,7 @@ class Initial:
     twist: Profile = field(default_factory=lambda: Curve.constant(0.0))
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    direction: tuple[float, float, float] | None = None
 
     def __post_init__(self) -> None:
         for name in ("a1", "velocity", "angular_velocity"):
@@ -58,7 +59,9 @@ class Initial:
         norm = float(np.linalg.norm(along))
         if not norm > 0:
             raise ValueError(f"direction must not be zero, got {direction}")
-        return cls(centreline=lambda s: start + np.outer(s, along / norm), **others)  # type: ignore[arg-type]
+        along /= norm
+        unit = (float(along[0]), float(along[1]), float(along[2]))
+        return cls(centreline=lambda s: start + np.outer(s, along), direction=unit, **others)  # type: ignore[arg-type]
 
     @classmethod
     def through(cls, points: Array, length: float, **others: object) -> Initial:
@@ -75,6 +78,8 @@ def arclength_spline(points: Array, length: float) -> Callable[[Array], Array]:
 
     Raises ValueError if the curve's own length differs from `length` by more than 0.1 %.
     """
+    from scipy.interpolate import CubicSpline
+
     path = np.asarray(points, dtype=float)
     if path.ndim != 2 or path.shape[0] < 4 or path.shape[1] != 3 or not np.isfinite(path).all():
         raise ValueError(f"a centreline needs at least 4 finite points of 3 coordinates, got shape {path.shape}")

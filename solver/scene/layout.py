@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.spatial.transform import Rotation
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.kernels.rotation import quaternion_of
 from solver.scene.initial import Initial
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 ALONG = 1e-6
 """Sine of the angle below which a direction counts as along the rod."""
@@ -22,20 +25,43 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     """
     refined = np.linspace(s[0], s[-1], 8 * (len(s) - 1) + 1)
     path = initial.centreline(refined)
-    curve = CubicSpline(refined, path)
-    tangent = curve(refined, 1)
+    tangent, bend = _derivatives(initial, refined, path)
     tangent /= np.linalg.norm(tangent, axis=1)[:, None]
     first = _transport(tangent, _first_axis(initial, tangent[0]))
     R = np.stack([first, np.cross(tangent, first), tangent], axis=2)
     angle = np.asarray(initial.twist(refined), dtype=float)
     if angle.any():
-        R = R @ Rotation.from_rotvec(np.outer(angle, [0.0, 0.0, 1.0])).as_matrix()
-    bend = curve(refined, 2)
+        R = R @ _about_third_axis(angle)
     bend -= np.sum(bend * tangent, axis=1)[:, None] * tangent
     kappa_lab = np.cross(tangent, bend)
     kappa = np.einsum("nij,ni->nj", R, kappa_lab)
-    kappa[:, 2] = CubicSpline(refined, angle)(refined, 1) if angle.any() else 0.0
+    kappa[:, 2] = _spline(refined, angle)(refined, 1) if angle.any() else 0.0
     return path[::8].copy(), quaternion_of(R[::8]), kappa[::8]
+
+
+def _derivatives(initial: Initial, s: Array, path: Array) -> tuple[Array, Array]:
+    """The first and second derivatives (n, 3) by s of a centreline at `s` (n,)."""
+    if initial.direction is not None:
+        return np.tile(initial.direction, (len(s), 1)), np.zeros((len(s), 3))
+    curve = _spline(s, path)
+    return np.asarray(curve(s, 1)), np.asarray(curve(s, 2))
+
+
+def _spline(s: Array, values: Array) -> CubicSpline:
+    """Through values at `s`; loaded here, because scipy.interpolate takes a fifth of a second to load."""
+    from scipy.interpolate import CubicSpline
+
+    return CubicSpline(s, values)
+
+
+def _about_third_axis(angle: Array) -> Array:
+    """Rotations (n, 3, 3) by `angle` (n,), rad, about a3."""
+    R = np.zeros((len(angle), 3, 3))
+    R[:, 0, 0] = R[:, 1, 1] = np.cos(angle)
+    R[:, 1, 0] = np.sin(angle)
+    R[:, 0, 1] = -R[:, 1, 0]
+    R[:, 2, 2] = 1.0
+    return R
 
 
 def _first_axis(initial: Initial, tangent: Array) -> Array:

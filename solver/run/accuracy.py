@@ -18,6 +18,8 @@ QUANTITIES = ("r", "kappa", "energies", "Tw_Wr")
 WHERE_IT_COUNTS = 0.95
 """Part of the frames in which kappa and Tw, Wr must keep the tolerance: where a moment jumps, no mesh resolves it at
 once, and where a plane curve crosses itself Wr is that of either side."""
+STANDS_OUT = 3.0
+"""How many times larger than in the rest the error of some frames must be for them to be left out so."""
 SMALL_BEND = 1e-4
 """Total curvature (rad) that counts as none, so that a straight rod's rounding errors are not to be resolved."""
 
@@ -92,7 +94,8 @@ def judge(target: float, errors: Array, names: Sequence[str] = QUANTITIES) -> Ac
 def excess(target: float, errors: Array) -> float:
     """The largest error (frames, 4) that counts, over the target."""
     counted = errors.max(axis=0)
-    counted[[1, 3]] = np.quantile(errors[:, [1, 3]], WHERE_IT_COUNTS, axis=0)
+    most = np.quantile(errors[:, [1, 3]], WHERE_IT_COUNTS, axis=0)
+    counted[[1, 3]] = np.where(counted[[1, 3]] > STANDS_OUT * most, most, counted[[1, 3]])
     return float(counted.max() / target)
 
 

@@ -1,16 +1,19 @@
 """Which resolution a run to a tolerance tries next: a pure function of what those before have shown.
 
 A resolution is a mesh of FIRST_INTERVALS 2^mesh intervals and steps whose error relative to their motion is at most
-FIRST_STEPS tolerance / 4^steps. The coarsest mesh tells, for next to nothing, what shorter steps would change; finer
-meshes follow with the last steps but one that it has been tried with. Whichever error is larger is made smaller, until
-both are below the tolerance or the work is done that may be.
+FIRST_STEPS tolerance / 4^steps. The coarsest mesh runs with two kinds of steps, which tells for next to nothing what
+shorter steps would change. Then the mesh is made finer, or the steps shorter, or both at once: both errors fall to a
+quarter then, so that one difference tells them together. It ends when their sum is below the tolerance, when the work
+is done that may be, or when it shows that this work cannot bring it there.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import ceil, inf, log2
+from math import ceil, inf, log
 from typing import NamedTuple
+
+from solver.run.series import Attempt, is_diagonal
 
 FIRST_INTERVALS = 16
 FIRST_STEPS = 16.0
@@ -32,29 +35,26 @@ LOOSEST = -4
 """The longest steps that are tried: their error hardly counts."""
 SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
-
-
-class Attempt(NamedTuple):
-    """A run that was tried: its `mesh` and `steps`, its `work`, the time `t` (s) that it reached, whether it is
-    `complete`, whether it was `slow`: given up because it would have taken too long, and the number of its `outcome`
-    among all."""
-
-    mesh: int
-    steps: int
-    work: float
-    t: float
-    complete: bool
-    slow: bool
-    outcome: int = 0
+BY_STEPS = 1.5
+"""How much more work steps of a quarter of the error are expected to be, before it has shown."""
+CHEAP, HOPELESS = 0.1, 4.0
+"""Parts of MOST_WORK: what an attempt may always take, and what all that the tolerance needs may, for it to go on."""
+LEAST_FALL = 1.3
+"""By how much the error must have fallen last time to be thought to fall again."""
 
 
 class Excess(NamedTuple):
-    """The errors of what there is, over the tolerance, infinite where nothing tells them: that of `mesh` number `at`,
-    and that of the steps."""
+    """The errors of what there is, over the tolerance, infinite where nothing tells them: by the `mesh` and by the
+    `steps`; and their sum `before` the last attempt."""
 
     mesh: float = inf
     steps: float = inf
-    at: int = -1
+    before: float = inf
+
+    @property
+    def total(self) -> float:
+        """Their sum."""
+        return self.mesh + self.steps
 
 
 class Trial(NamedTuple):
@@ -79,31 +79,6 @@ def longest_step(steps: int, interval: float) -> float:
     return interval / 2.0 ** max(steps, 0)
 
 
-def chosen(attempts: Sequence[Attempt]) -> tuple[list[int], list[int]]:
-    """Which attempts make the frames: up to three meshes of the same steps, coarsest first, and, on the coarsest, up to
-    three of different steps, the longest first, which tell the error of the steps.
-
-    Where none is complete, the last two that went as far as they could.
-    """
-    complete = [i for i, attempt in enumerate(attempts) if attempt.complete]
-    if not complete:
-        return [i for i, attempt in enumerate(attempts) if not attempt.slow][-2:] or [len(attempts) - 1], []
-    best = max(complete, key=lambda i: (attempts[i].mesh, attempts[i].steps))
-    steps = attempts[best].steps
-    meshes = sorted((i for i in complete if attempts[i].steps == steps), key=lambda i: attempts[i].mesh)
-    until = [i for i in step_series(attempts) if attempts[i].steps <= steps + 1]
-    return meshes[-3:], until[-3:] if len(until) > 1 else []
-
-
-def step_series(attempts: Sequence[Attempt]) -> list[int]:
-    """The complete attempts on the mesh that has most of them, the coarsest if there are several, those with the
-    longest steps first."""
-    complete = [i for i, attempt in enumerate(attempts) if attempt.complete]
-    meshes = sorted(attempts[i].mesh for i in complete)
-    most = max(meshes, key=meshes.count, default=0)
-    return sorted((i for i in complete if attempts[i].mesh == most), key=lambda i: attempts[i].steps)
-
-
 def allowance(history: Sequence[Attempt], trial: Trial) -> float:
     """The work that an attempt may take before it is given up as slow."""
     complete = [attempt for attempt in history if attempt.complete]
@@ -117,10 +92,27 @@ def allowance(history: Sequence[Attempt], trial: Trial) -> float:
 
 
 def expected(complete: Sequence[Attempt], trial: Trial) -> float:
-    """The work of an attempt, by the nearest of those before: with the intervals, and the steps by their order."""
+    """The work of an attempt, by the nearest of those before and by how the work grew from one to the next."""
     nearest = min(complete, key=lambda attempt: (abs(attempt.mesh - trial.mesh), abs(attempt.steps - trial.steps)))
-    finer = (intervals_of(trial.mesh) + OVERHEAD) / (intervals_of(nearest.mesh) + OVERHEAD)
-    return float(nearest.work * finer * 1.5 ** max(trial.steps - nearest.steps, 0))
+    size = (intervals_of(trial.mesh) + OVERHEAD) / (intervals_of(nearest.mesh) + OVERHEAD)
+    meshes, steps = trial.mesh - nearest.mesh, max(trial.steps - nearest.steps, 0)
+    mesh_growth = _growth(complete, Trial(1, 0)) or size ** (1.0 / max(meshes, 1))
+    together = _growth(complete, Trial(1, 1))
+    if together and meshes > 0 and steps > 0:
+        both = min(meshes, steps)
+        return float(nearest.work * together**both * mesh_growth ** (meshes - both) * BY_STEPS ** (steps - both))
+    step_growth = _growth(complete, Trial(0, 1)) or BY_STEPS
+    return float(nearest.work * (mesh_growth**meshes if meshes > 0 else size) * step_growth**steps)
+
+
+def _growth(complete: Sequence[Attempt], by: Trial) -> float | None:
+    """How much more work the last attempt was that was finer by `by` than another; None if none was."""
+    work = {(attempt.mesh, attempt.steps): attempt.work for attempt in complete}
+    for attempt in reversed(complete):
+        before = work.get((attempt.mesh - by.mesh, attempt.steps - by.steps))
+        if before:
+            return min(max(attempt.work / before, 1.0), 8.0)
+    return None
 
 
 def following(history: Sequence[Attempt], excess: Excess, first_mesh: int, most_intervals: int) -> Trial | None:
@@ -140,26 +132,49 @@ def _wishes(history: Sequence[Attempt], excess: Excess, most_intervals: int) -> 
     if not complete:
         yield _until_one_is_complete(history, most_intervals)
         return
-    series = [history[i] for i in step_series(history)]
-    mesh, shortest = series[-1].mesh, series[-1].steps
-    shorter = Trial(mesh, shortest + 1)
-    if len(series) == 1:
+    meshes = {attempt.mesh for attempt in complete}
+    if len(complete) == 1:
+        shorter = Trial(complete[0].mesh, complete[0].steps + 1)
         if _is_for(history, shorter, most_intervals):
             yield shorter
-        yield Trial(mesh, shortest - 1)
-    steps = shortest - 1 if len(series) > 1 else shortest
-    if excess.at < 0:
-        finer = Trial(max(attempt.mesh for attempt in history) + 1, steps)
-        coarser = Trial(mesh - 1, shortest)
-        if coarser.mesh >= 0 and not _is_for(history, finer, most_intervals):
-            yield coarser
-        yield finer if finer.mesh <= mesh + 2 and intervals_of(finer.mesh) <= most_intervals else None
+        yield Trial(complete[0].mesh, complete[0].steps - 1)
+    if len(meshes) == 1:
+        yield from _second_mesh(history, complete, excess, most_intervals)
         return
-    short = excess.steps > STEP_SHARE and (excess.steps >= 0.5 * excess.mesh or excess.mesh < 1.0 - STEP_SHARE)
-    again = Trial(max(excess.at, mesh), steps + 1)
-    if short and _is_for(history, shorter, most_intervals) and _is_for(history, again, most_intervals):
-        yield shorter
-    yield _finer(history, complete, Trial(mesh, steps), excess, most_intervals)
+    if excess.total <= 1.0:
+        return
+    for trial in _finer(_finest(complete), excess, diagonal=is_diagonal(history)):
+        if history[-1].complete and _may_do(history, excess, trial, most_intervals):
+            yield trial
+
+
+def _finest(complete: Sequence[Attempt]) -> Attempt:
+    return max(complete, key=lambda attempt: (attempt.mesh, attempt.steps))
+
+
+def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], excess: Excess,
+                 most_intervals: int) -> Iterator[Trial | None]:  # fmt: skip
+    """A finer one, with the longer steps of two if their error is small enough; else a coarser one."""
+    mesh, steps = complete[0].mesh, sorted(attempt.steps for attempt in complete)
+    # by two kinds of steps the error of the shorter is told as 2 / 3 of their difference, which is that of the longer
+    longer = len(steps) > 1 and 1.5 * excess.steps <= STEP_SHARE
+    wanted = steps[-2] if longer else steps[-1]
+    finer = Trial(max(attempt.mesh for attempt in history) + 1, wanted)
+    if not longer and len(steps) > 1 and not _is_for(history, finer, most_intervals):
+        finer = Trial(finer.mesh, steps[-2])
+    if mesh > 0 and not _is_for(history, finer, most_intervals):
+        yield Trial(mesh - 1, steps[-1])
+    yield finer if finer.mesh <= mesh + 2 and intervals_of(finer.mesh) <= most_intervals else None
+
+
+def _finer(best: Attempt, excess: Excess, diagonal: bool) -> list[Trial]:
+    """Finer resolutions than the finest there is, what is wanted most first."""
+    mesh, steps = Trial(best.mesh + 1, best.steps), Trial(best.mesh, best.steps + 1)
+    both = Trial(best.mesh + 1, best.steps + 1)
+    alone = [mesh, steps] if excess.mesh >= excess.steps else [steps, mesh]
+    if diagonal or (excess.mesh > 1.0 - STEP_SHARE and excess.steps > STEP_SHARE):
+        return [both, alone[0]]
+    return alone[:1]
 
 
 def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> Trial | None:
@@ -173,44 +188,45 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> T
     return Trial(last.mesh + 1, last.steps)
 
 
-def _finer(history: Sequence[Attempt], complete: Sequence[Attempt], now: Trial, excess: Excess,
-           most_intervals: int) -> Trial | None:  # fmt: skip
-    """The next mesh with the steps that the coarsest one has by `now`; None if no finer one is needed or to be had."""
-    there = sorted(attempt.mesh for attempt in complete if attempt.steps == now.steps)
-    wanted = excess.at + max(ceil(0.5 * log2(max(excess.mesh, 1e-9) / (1.0 - STEP_SHARE))), 0)
-    tried = max(attempt.mesh for attempt in history if attempt.steps == now.steps)
-    if tried > there[-1] or (len(there) > 1 and there[-1] >= wanted):
-        return None
-    # meshes that were tried with longer steps need not be tried again, but for the one before the last
-    skipped = min(wanted, excess.at + 1) - (len(there) == 1)
-    trial = Trial(max(there[-1] + 1, skipped), now.steps)
-    while not _is_for(history, trial, most_intervals):
-        if trial.mesh == there[-1] + 1:
-            return None
-        trial = Trial(trial.mesh - 1, trial.steps)
-    return trial
-
-
 def _is_for(history: Sequence[Attempt], trial: Trial, most_intervals: int) -> bool:
     """Whether the work that may be done suffices for an attempt."""
     complete = [attempt for attempt in history if attempt.complete]
     return intervals_of(trial.mesh) <= most_intervals and _work(history) + expected(complete, trial) <= MOST_WORK
 
 
+def _may_do(history: Sequence[Attempt], excess: Excess, trial: Trial, most_intervals: int) -> bool:
+    """Whether an attempt can be made, and is cheap or on a way to the tolerance that has an end."""
+    if not _is_for(history, trial, most_intervals):
+        return False
+    complete = [attempt for attempt in history if attempt.complete]
+    if expected(complete, trial) <= CHEAP * MOST_WORK:
+        return True
+    fall = excess.before / excess.total
+    return fall >= LEAST_FALL and _work(history) + _all_of(complete, excess, trial) <= HOPELESS * MOST_WORK
+
+
+def _all_of(complete: Sequence[Attempt], excess: Excess, trial: Trial) -> float:
+    """The work of an attempt and of all that are to follow it, if the error falls as it last did, at best to a
+    quarter from one to the next."""
+    nearest = _finest(complete)
+    fall = min(max(excess.before / excess.total, LEAST_FALL), 4.0)
+    each = expected(complete, trial)
+    growth = max(each / max(nearest.work, 1.0), 1.1)
+    many = min(max(ceil(log(max(excess.total, 1.0)) / log(fall)), 1), 20)
+    return float(each * (growth**many - 1.0) / (growth - 1.0))
+
+
 def _work(history: Sequence[Attempt]) -> float:
     return sum(attempt.work for attempt in history)
 
 
-def to_come(history: Sequence[Attempt], excess: Excess, trial: Trial, most_intervals: int) -> float:
+def to_come(history: Sequence[Attempt], excess: Excess, trial: Trial) -> float:
     """The work that is likely to follow an attempt, for the progress."""
     complete = [attempt for attempt in history if attempt.complete]
+    left = max(MOST_WORK - _work(history), 0.0)
     if not complete:
         return MOST_WORK * FIRST_PART
-    last = trial.mesh + 1 if excess.at < 0 else excess.at + ceil(0.5 * log2(max(excess.mesh, 1.0)))
-    work = 0.0
-    for mesh in range(trial.mesh + 1, last + 1):
-        each = expected(complete, Trial(mesh, trial.steps))
-        if intervals_of(mesh) > most_intervals or _work(history) + work + each > MOST_WORK:
-            break
-        work += each
-    return work
+    each = expected(complete, trial)
+    if excess.total == inf:
+        return min(2.0 * each, left)
+    return min(max(_all_of(complete, excess, trial) - each, 0.0), left)

@@ -16,16 +16,14 @@ import numpy as np
 from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics
 from solver.outcome import Outcome, RunFailed
-from solver.run.accuracy import Accuracy, judge
+from solver.run.accuracy import QUANTITIES, Accuracy, judge
 from solver.run.first_mesh import first_mesh
 from solver.run.plan import (
     IN_CONTACT,
     OVERHEAD,
-    Attempt,
     Excess,
     Trial,
     allowance,
-    chosen,
     following,
     intervals_of,
     longest_step,
@@ -35,8 +33,9 @@ from solver.run.plan import (
 from solver.run.recording import row_of
 from solver.run.remarks import Remarks
 from solver.run.run import Run
+from solver.run.series import Attempt, chosen
 from solver.run.simulation import Simulation
-from solver.run.together import Together
+from solver.run.together import Piece, Together
 from solver.scene.scene import Scene
 
 SMALL_MOTION = 1e-3
@@ -53,7 +52,7 @@ class Refined(Run):
         super().__init__(scene, statistics)
         self._history: list[tuple[float, ...]] = []
         self._recorded: list[tuple[Array, ...]] = []
-        """The rows of each attempt; none where they are not needed any more."""
+        """The rows of each attempt; none of one that failed once another is complete."""
         self._noticed: list[tuple[float, ...]] = []
         """The remarks of each attempt."""
         self._rows: list[Array] = []
@@ -61,6 +60,8 @@ class Refined(Run):
         self._mesh, self._steps = first_mesh(scene), 0
         self._work, self._progress, self._decided = 0.0, 0.0, False
         self._detail = ""
+        self._errors_of_frames = np.zeros((0, len(QUANTITIES)))
+        self._piece = Piece()
         self._run = self._begin()
 
     @property
@@ -81,7 +82,7 @@ class Refined(Run):
         done, part = self._work, min(self._run.t / self._scene.t_end, 1.0)
         attempts = self._attempts
         spent = sum(attempt.work for attempt in attempts)
-        rest = to_come(attempts, self._errors, Trial(self._mesh, self._steps), self._most)
+        rest = to_come(attempts, self._errors, Trial(self._mesh, self._steps))
         whole = spent + done / max(part, 0.01) + rest
         self._progress = max(self._progress, (spent + done) / max(whole, 1.0))
         return self._progress
@@ -103,7 +104,7 @@ class Refined(Run):
         """The errors of its frames, once these come."""
         if not self._decided:
             return None
-        return judge(self._scene.numerics.tolerance or 0.0, np.array(self._together.errors()))
+        return judge(self._scene.numerics.tolerance or 0.0, self._errors_of_frames)
 
     def warm(self) -> None:
         """Have every kernel compiled."""
@@ -129,8 +130,7 @@ class Refined(Run):
 
     @property
     def _errors(self) -> Excess:
-        mesh, steps, at = self._excess
-        return Excess(mesh, steps, int(at))
+        return Excess(*self._excess)
 
     @property
     def _most(self) -> int:
@@ -146,11 +146,12 @@ class Refined(Run):
         return self._next_frame(0.0) if self._decided else None
 
     def _next_frame(self, output: float) -> Frame | None:
-        together = self._together
-        if self._frames >= together.frames:
+        if self._frames >= len(self._errors_of_frames):
             last = self._attempts[-1]
             raise RunFailed(OUTCOMES[int(last.outcome)], last.t, self.statistics.steps, self._detail)
-        frame = together.frame(self._frames)
+        if not self._piece.holds(self._frames):
+            self._piece = self._together.piece(self._frames)
+        frame = self._piece.frames[self._frames - self._piece.first]
         self.t = frame.t
         return frame
 
@@ -178,16 +179,14 @@ class Refined(Run):
         self._recorded.append(tuple(self._rows))
         self._noticed.append(astuple(self._run.remarks))
         self._rows, self._work = [], 0.0
-        together = self._together
-        self._recorded = [rows if i in together.needed else () for i, rows in enumerate(self._recorded)]
-        excess = together.excess()
-        if excess.at < 0:  # what another mesh has shown with longer steps
-            excess = Excess(self._errors.mesh, excess.steps, self._errors.at)
-        self._excess = tuple(excess)
+        if complete:
+            done = [attempt.complete for attempt in self._attempts]
+            self._recorded = [rows if there else () for rows, there in zip(self._recorded, done, strict=True)]
+            self._excess = tuple(self._together.excess(self._errors))
         then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
         if then is None:
-            self._decided = True
-            self.remarks = Remarks(*self._noticed[chosen(self._attempts)[0][-1]])  # type: ignore[arg-type]
+            self._decided, self._errors_of_frames = True, self._together.errors()
+            self.remarks = Remarks(*self._noticed[chosen(self._attempts).finest])  # type: ignore[arg-type]
         else:
             self._mesh, self._steps = then
             self._run = self._begin()

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.run.accuracy import errors_of, excess, sizes
-from solver.run.plan import Attempt, Excess, chosen, intervals_of, step_series, step_tolerance
+from solver.run.plan import Excess, intervals_of, step_tolerance
 from solver.run.recording import (
     BALANCE,
     CURVATURE,
@@ -27,6 +28,7 @@ from solver.run.recording import (
     number_of,
 )
 from solver.run.richardson import error_of_steps, extrapolate
+from solver.run.series import Attempt, chosen, is_diagonal
 from solver.run.verify import VerifiedFrame, unseen
 from solver.scene.scene import Scene
 
@@ -38,57 +40,72 @@ UNFOLLOWED = 0.02
 waves that no attempt follows and none therefore shows."""
 AT_ONCE = 50_000
 """Nodes times frames that are looked at together."""
+FALL = 3.0
+"""By how much the error of the steps is taken to fall, where nothing shows it, from one kind of steps to the next."""
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Frames of a run, from number `first` on."""
+
+    first: int = 0
+    frames: tuple[VerifiedFrame, ...] = ()
+
+    def holds(self, i: int) -> bool:
+        """Whether frame number i is one of them."""
+        return self.first <= i < self.first + len(self.frames)
 
 
 class Together:
-    """The frames of two or three meshes of one step tolerance, extrapolated; the coarsest also with other steps.
-
-    Where no attempt is complete: as far as the last two came. `recorded`: the rows of each attempt.
-    """
+    """The frames of the chosen attempts, extrapolated (see `series`). `recorded`: the rows of each attempt."""
 
     def __init__(self, scene: Scene, attempts: Sequence[Attempt], recorded: Sequence[Sequence[Array]]) -> None:
         self._scene, self._attempts, self._recorded = scene, attempts, recorded
-        self._meshes, self._steps = chosen(attempts)
-        self.finest = attempts[self._meshes[-1]]
-        self._shorter = bool(self._steps) and attempts[self._steps[-1]].steps > self.finest.steps
-        self.frames = min(len(recorded[i]) for i in self._meshes)
+        self._chosen, self._diagonal = chosen(attempts), is_diagonal(attempts)
+        self.finest = attempts[self._chosen.finest]
+        self.frames = min(len(recorded[i]) for i in self._chosen.meshes)
         """How many there are."""
-
-    @property
-    def needed(self) -> set[int]:
-        """The attempts whose rows are needed, now or when finer ones come: of the coarsest mesh, and the last."""
-        series = step_series(self._attempts)
-        steps = {self._attempts[i].steps for i in series[-2:]}
-        last = [i for i, attempt in enumerate(self._attempts) if attempt.complete and attempt.steps in steps]
-        return {*self._meshes, *series, *last[-3:]}
 
     @property
     def s(self) -> Array:
         """Arclengths of the nodes (n,), m."""
         return np.linspace(0.0, float(self._scene.rod.length), intervals_of(self.finest.mesh) + 1)
 
-    def frame(self, i: int) -> VerifiedFrame:
-        """Frame number i.
+    def piece(self, i: int) -> Piece:
+        """Frame number i and those that follow it, as many as are looked at together.
 
-        Its errors are the largest of those of the frames beside it: those of a wave pass through zero now and then.
+        The errors of each are the largest of those of the frames beside it: those of a wave pass through zero now and
+        then. Of what is given at the start none is in error.
         """
-        first = max(i - BESIDE, 1) if i > 0 else 0  # of what is given at the start none is in error
-        here = slice(first, i + BESIDE + 1) if i > 0 else slice(0, 1)
-        value, error = self._of_frames(here)
-        along, numbers = error.along.max(axis=0), error.numbers.max(axis=0)
+        here = range(i, min(i + self._many, self.frames))
+        first, last = max(i - BESIDE, 0), min(here.stop + BESIDE, self.frames)
+        value, error = self._of_frames(slice(first, last))
+        sizes_there = [np.linalg.norm(value.along[..., rows], axis=-1).max(axis=-1) for rows in (OMEGA, FORCE)]
+        rows = self._recorded[self._chosen.finest]
+        lost = np.maximum.accumulate([abs(number_of(row, BALANCE)) for row in rows[: here.stop]])
+        frames = []
+        for k in here:
+            beside = slice(max(k - BESIDE, 1) - first, min(k + BESIDE + 1, last) - first) if k > 0 else slice(0, 1)
+            largest = [float(size[beside].max()) for size in sizes_there]
+            columns = Columns(value.along[k - first], value.numbers[k - first])
+            along, numbers = error.along[beside].max(axis=0), error.numbers[beside].max(axis=0)
+            frames.append(self._frame(float(rows[k][0]), columns, Columns(along, numbers), largest, float(lost[k])))
+        return Piece(i, tuple(frames))
+
+    def _frame(self, t: float, value: Columns, error: Columns, largest: Sequence[float],
+               lost: float) -> VerifiedFrame:  # fmt: skip
+        """A frame, whose errors are those of the attempts or what none of these shows: `largest` omega (rad/s) and f
+        (N) nearby, and the energy `lost` (J)."""
+        along, numbers = error
         tolerated = step_tolerance(self.finest.steps, self._scene.numerics.tolerance or 1.0)
-        for rows in (OMEGA, FORCE):
-            largest = np.linalg.norm(value.along[..., rows], axis=-1).max()
-            along[:, rows] = np.maximum(along[:, rows], UNFOLLOWED * min(tolerated, 1.0) * largest)
-        value = Columns(value.along[i - first], value.numbers[i - first])
-        lost = max(abs(number_of(row, BALANCE)) for row in self._recorded[self._meshes[-1]][: i + 1])
+        for rows, most in zip((OMEGA, FORCE), largest, strict=True):
+            along[:, rows] = np.maximum(along[:, rows], UNFOLLOWED * min(tolerated, 1.0) * most)
         for name, least in unseen(self._scene.rod, self.s, lost).items():
             along[:, column(name)] = np.maximum(along[:, column(name)], least)
         curvature = float(np.linalg.norm(along[:, KAPPA], axis=-1).max())
         numbers[0, CURVATURE] = max(numbers[0, CURVATURE], curvature)
         numbers[0, BALANCE] = max(numbers[0, BALANCE], abs(value.numbers[0, BALANCE]))  # of the solution it is none
         numbers = np.where(UNVERIFIED, value.numbers, numbers)
-        t = float(self._recorded[self._meshes[-1]][i][0])
         return VerifiedFrame(**vars(frame_of(t, value)), error=frame_of(t, Columns(along, numbers)))
 
     def errors(self) -> Array:
@@ -96,55 +113,67 @@ class Together:
         size = self._sizes()
         return np.concatenate([errors_of(self._of_frames(here)[1], size) for here in self._pieces()])
 
-    def excess(self) -> Excess:
-        """The error of the finest mesh, and that of the last steps but one on the coarsest, over the tolerance."""
+    def excess(self, before: Excess) -> Excess:
+        """The errors of the finest mesh and of its steps, over the tolerance; `before`: those before the last
+        attempt."""
         if not self.finest.complete:
             return Excess()
         size, target = self._sizes(), self._scene.numerics.tolerance or 1.0
-        mesh, of_mesh, of_steps, series = -1, np.inf, np.inf, step_series(self._attempts)[-3:]
-        if len(self._meshes) > 1:
-            told = [errors_of(self._of_mesh(here)[1], size) for here in self._pieces()]
-            mesh, of_mesh = self.finest.mesh, excess(target, np.concatenate(told))
-        if len(series) > 1:
-            told = [errors_of(self._of_steps(series, True, here, 2), size) for here in self._pieces()]
-            of_steps = excess(target, np.concatenate(told))
-        return Excess(of_mesh, of_steps, mesh)
+        mesh, steps = [], []
+        for here in self._pieces():
+            mesh.append(errors_of(self._of_mesh(here)[1], size))
+            steps.append(errors_of(self._of_steps(here), size))
+        of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else np.inf
+        of_steps = excess(target, np.concatenate(steps)) if self._chosen.series else np.inf
+        if self._diagonal:
+            of_mesh = of_steps = 0.5 * of_mesh
+        return Excess(of_mesh, of_steps, before.total)
+
+    @property
+    def _many(self) -> int:
+        return max(AT_ONCE // (intervals_of(self.finest.mesh) + 1), 1)
 
     def _pieces(self) -> Iterator[slice]:
         """Frames by so many that their arrays stay small."""
-        many = max(AT_ONCE // (intervals_of(self.finest.mesh) + 1), 1)
-        for i in range(0, self.frames, many):
-            yield slice(i, min(i + many, self.frames))
+        for i in range(0, self.frames, self._many):
+            yield slice(i, min(i + self._many, self.frames))
 
     def _sizes(self) -> Array:
-        return sizes(self._scene, (columns_of(self._recorded[self._meshes[-1]][here]) for here in self._pieces()))
+        return sizes(self._scene, (self._columns(self._chosen.finest, here) for here in self._pieces()))
+
+    def _columns(self, i: int, here: slice) -> Columns:
+        return columns_of(self._recorded[i][here])
 
     def _of_frames(self, here: slice) -> tuple[Columns, Columns]:
         """The values and their errors."""
         value, mesh = self._of_mesh(here)
-        steps = self._of_steps(self._steps, self._shorter, here, value.along.shape[1])
+        steps = self._of_steps(here)
         return value, Columns(mesh.along + steps.along, mesh.numbers + steps.numbers)
 
     def _of_mesh(self, here: slice) -> tuple[Columns, Columns]:
-        """The values and their errors by the mesh."""
-        told = [columns_of(self._recorded[k][here]) for k in self._meshes]
-        meshes = [_aligned(columns, told[-1]) for columns in told]
-        doubled = [self._attempts[k].mesh for k in self._meshes]
+        """The values and their errors by the mesh, on a diagonal by mesh and steps."""
+        finest = self._columns(self._chosen.finest, here)
+        meshes = [_aligned(self._columns(k, here), finest) for k in self._chosen.meshes]
+        doubled = [self._attempts[k].mesh for k in self._chosen.meshes]
         ratios = [2 ** (b - a) for a, b in pairwise(doubled)]
         values, errors = zip(*(extrapolate(series, ratios) for series in zip(*meshes, strict=True)), strict=True)
-        along, numbers = values
+        along = finest.along + (values[0] - meshes[-1].along)
+        numbers = finest.numbers + (values[1] - meshes[-1].numbers)
         turned = along[..., ORIENTATION]
         along[..., ORIENTATION] = turned / np.linalg.norm(turned, axis=-1)[..., None]
-        return Columns(along, np.where(UNVERIFIED, told[-1].numbers, numbers)), Columns(*errors)
+        return Columns(along, np.where(UNVERIFIED, finest.numbers, numbers)), Columns(*errors)
 
-    def _of_steps(self, series: Sequence[int], shorter: bool, here: slice, nodes: int) -> Columns:
-        """The error by the steps at `nodes` nodes, as attempts with different steps tell it."""
-        if len(series) < 2:
+    def _of_steps(self, here: slice) -> Columns:
+        """The error by the steps, as attempts with different steps tell it; none where nothing tells it."""
+        series, nodes = self._chosen.series, intervals_of(self.finest.mesh) + 1
+        if not series:
             many = min(here.stop, self.frames) - here.start
             return Columns(np.zeros((many, nodes, WIDTH)), np.zeros((many, 1, len(NUMBERS))))
-        told = [columns_of(self._recorded[k][here]) for k in series]
+        told = [self._columns(k, here) for k in series]
         along, numbers = zip(*(_aligned(columns, told[-1]) for columns in told), strict=True)
-        return Columns(error_of_steps(along, shorter, nodes), error_of_steps(numbers, shorter, 1))
+        longer = self.finest.steps - self._attempts[series[-1]].steps
+        part = FALL ** -max(longer, 0)
+        return Columns(*(part * error_of_steps(each, longer < 0, n) for each, n in ((along, nodes), (numbers, 1))))
 
 
 def _aligned(columns: Columns, fine: Columns) -> Columns:

@@ -7,7 +7,8 @@ from math import inf
 import numpy as np
 import pytest
 
-from solver.run.plan import MOST_WORK, Attempt, Excess, Trial, chosen, following, step_tolerance
+from solver.run.plan import MOST_WORK, Excess, Trial, expected, following, step_tolerance
+from solver.run.series import Attempt, Chosen, chosen
 
 SMALL = 0.01 * MOST_WORK
 
@@ -30,20 +31,22 @@ def slow(mesh: int, steps: int) -> Attempt:
         ([], Excess(), Trial(1, 0)),
         ([ran(0, 0)], Excess(), Trial(0, 1)),
         ([ran(0, 0, 0.9 * MOST_WORK)], Excess(), Trial(0, -1)),  # shorter steps are not to be had
-        ([ran(0, 0), ran(0, 1)], Excess(inf, 5.0), Trial(1, 0)),
-        ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.1, 1), None),
-        ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(2.0, 0.1, 1), Trial(2, 0)),
-        ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.9, 1), Trial(0, 2)),
-        ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(9.0, 0.9, 1), Trial(2, 0)),  # the larger error first
-        ([ran(0, 0), ran(0, 1), ran(1, 0), ran(2, 0), ran(0, 2)], Excess(0.5, 0.1, 2), Trial(1, 1)),
-        ([ran(0, 0), ran(0, 1), ran(1, 0, 0.9 * MOST_WORK)], Excess(9.0, 0.1, 1), None),
+        ([ran(0, 0), ran(0, 1)], Excess(inf, 5.0), Trial(1, 1)),
+        ([ran(0, 0), ran(0, 1)], Excess(inf, 0.2), Trial(1, 0)),
+        ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.1, 9.0), None),
+        ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(2.0, 0.1, 9.0), Trial(2, 0)),
+        ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.9, 9.0), Trial(1, 1)),
+        ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(9.0, 0.9, 50.0), Trial(2, 1)),  # both at once
+        ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 2)], Excess(0.6, 0.6, 9.0), Trial(3, 3)),  # a diagonal
+        ([ran(0, 0), ran(0, 1), ran(1, 0, 0.9 * MOST_WORK)], Excess(9.0, 0.1), None),
+        ([ran(0, 0), ran(0, 1), ran(1, 0), slow(2, 0)], Excess(9.0, 0.1, 9.0), None),
         ([failed(0, 0.5)], Excess(), Trial(1, 0)),
         ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2)], Excess(), None),
         ([slow(0, 0)], Excess(), Trial(0, -2)),
         ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK)], Excess(), Trial(2, -5)),
         ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK), ran(2, -5)], Excess(inf, 9.0), Trial(1, -4)),
-        ([ran(2, -4, 3 * MOST_WORK), ran(2, -5), ran(1, -4)], Excess(9.0, 9.0, 2), None),
-        ([ran(0, 0), ran(0, 1), failed(1, 0.2)], Excess(), Trial(2, 0)),
+        ([ran(2, -4, 3 * MOST_WORK), ran(2, -5), ran(1, -4)], Excess(9.0, 9.0), None),
+        ([ran(0, 0), ran(0, 1), failed(1, 0.2)], Excess(inf, 0.1), Trial(2, 0)),
     ],
 )
 def test_what_follows(history: list[Attempt], excess: Excess, then: Trial | None) -> None:
@@ -51,16 +54,46 @@ def test_what_follows(history: list[Attempt], excess: Excess, then: Trial | None
 
 
 def test_no_mesh_is_finer_than_may_be() -> None:
-    assert following([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(9.0, 0.1, 1), 0, 63) is None
+    assert following([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(9.0, 0.1, 90.0), 0, 63) is None
 
 
-def test_the_frames_are_those_of_the_finest_mesh_and_its_steps_error_that_of_its_steps() -> None:
-    attempts = [ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 1), ran(0, 2), ran(0, 3), ran(1, 3)]
-    assert chosen(attempts) == ([1, 2, 3], [0, 1, 4])
+@pytest.mark.parametrize(
+    ("work", "excess", "then"),
+    [
+        (0.25, Excess(9.0, 0.1, 36.0), Trial(2, 0)),
+        (0.25, Excess(90.0, 0.1, 95.0), None),  # it hardly falls
+        (0.25, Excess(9000.0, 0.1, 36000.0), None),  # it falls, but there is a long way to go
+        (0.01, Excess(90.0, 0.1, 95.0), Trial(2, 0)),  # but it costs nearly nothing
+    ],
+)
+def test_what_cannot_bring_the_tolerance_is_not_tried_unless_it_is_cheap(
+    work: float, excess: Excess, then: Trial | None
+) -> None:
+    history = [ran(0, 0, 0.5 * work * MOST_WORK), ran(0, 1), ran(1, 0, work * MOST_WORK)]
+    assert following(history, excess, 0, 2000) == then
 
 
-def test_where_nothing_is_complete_the_last_two_that_went_on_count() -> None:
-    assert chosen([slow(0, 0), failed(0, 0.2), failed(1, 0.3), failed(2, 0.3)]) == ([2, 3], [])
+def test_the_work_of_an_attempt_is_expected_to_grow_as_it_did() -> None:
+    there = [ran(0, 0, 1e5), ran(0, 1, 2e5), ran(1, 1, 6e5)]
+    assert expected(there, Trial(2, 1)) == pytest.approx(18e5)
+    assert expected(there, Trial(1, 2)) == pytest.approx(12e5)
+    assert expected(there, Trial(2, 2)) == pytest.approx(36e5)
+    assert expected([*there, ran(2, 2, 30e5)], Trial(3, 3)) == pytest.approx(150e5)
+
+
+@pytest.mark.parametrize(
+    ("attempts", "then"),
+    [
+        ([ran(0, 0), ran(0, 1), ran(1, 0)], Chosen(2, [0, 2], [0, 1])),
+        ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 1)], Chosen(3, [1, 2, 3], [0, 1])),
+        ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 2)], Chosen(3, [0, 2, 3], [])),  # a diagonal
+        ([ran(0, 0), ran(0, 1), ran(1, 1), ran(1, 2), ran(1, 3)], Chosen(4, [1, 2], [2, 3, 4])),
+        ([ran(0, 0), slow(0, 1)], Chosen(0, [0], [])),
+        ([slow(0, 0), failed(0, 0.2), failed(1, 0.3), failed(2, 0.3)], Chosen(3, [2, 3], [])),
+    ],
+)
+def test_which_attempts_make_the_frames(attempts: list[Attempt], then: Chosen) -> None:
+    assert chosen(attempts) == then
 
 
 def test_a_step_shorter_has_a_quarter_of_the_error() -> None:
@@ -76,8 +109,10 @@ def test_it_comes_to_an_end_and_tries_nothing_twice(seed: int) -> None:
     while (trial := following(history, excess, first, 1024)) is not None:
         kind, work = rng.choice(3, p=chances), float(10 ** rng.uniform(-3, 0.5)) * MOST_WORK
         history.append(Attempt(*trial, work, float(rng.uniform()), complete=kind == 0, slow=kind == 1))
-        known = max((attempt.mesh for attempt in history if attempt.complete), default=-1)
-        at = known if rng.uniform() < 0.8 and len({a.mesh for a in history if a.complete}) > 1 else -1
-        excess = Excess(*(10 ** rng.uniform(-2, 2, 2)), at)
+        here = chosen(history)
+        if any(attempt.complete for attempt in history):
+            assert all(history[i].complete for i in (here.finest, *here.meshes, *here.series))
+        assert history[here.meshes[-1]].mesh == history[here.finest].mesh
+        excess = Excess(*(10 ** rng.uniform(-2, 2, 2)), excess.total)
         assert len(history) < 60
     assert len({attempt[:2] for attempt in history}) == len(history)

@@ -1,0 +1,85 @@
+"""Which of the attempts at a tolerance make the frames, and which tell their errors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+
+class Attempt(NamedTuple):
+    """A run that was tried: its `mesh` and `steps` (see `plan`), its `work`, the time `t` (s) that it reached, whether
+    it is `complete`, whether it was `slow`: given up because it would have taken too long, and the number of its
+    `outcome` among all."""
+
+    mesh: int
+    steps: int
+    work: float
+    t: float
+    complete: bool
+    slow: bool
+    outcome: int = 0
+
+
+class Chosen(NamedTuple):
+    """Numbers of attempts.
+
+    `finest`: whose nodes and values the frames have. `meshes`: up to three, the coarsest first, the last on the same
+    mesh as the finest, which tell the error of the mesh: of the same steps, or, where each has shorter steps than the
+    one before (a diagonal), of mesh and steps together. `series`: up to three on one mesh, those with the longest
+    steps first, which tell the error of the steps; empty where `meshes` tells it or nothing does.
+    """
+
+    finest: int
+    meshes: list[int]
+    series: list[int]
+
+
+def chosen(attempts: Sequence[Attempt]) -> Chosen:
+    """Which attempts make the frames; where none is complete, the last two that went as far as they could."""
+    complete = [i for i, attempt in enumerate(attempts) if attempt.complete]
+    if not complete:
+        last = [i for i, attempt in enumerate(attempts) if not attempt.slow][-2:] or [len(attempts) - 1]
+        return Chosen(last[-1], last, [])
+    finest = max(complete, key=lambda i: (attempts[i].mesh, attempts[i].steps))
+    series = step_series(attempts)
+    until = [i for i in series if attempts[i].steps <= attempts[finest].steps + 1]
+    told = until[-3:] if len(until) > 1 else []
+    same = _chain(attempts, finest, 0)
+    if len(same) > 1:
+        return Chosen(finest, same, told)
+    diagonal = _chain(attempts, finest, 1)
+    on_mesh = [i for i in complete if attempts[i].mesh == attempts[finest].mesh]
+    others = [_chain(attempts, i, 0) for i in sorted(on_mesh, key=lambda i: -attempts[i].steps)]
+    longer = next((chain for chain in others if len(chain) > 1), [])
+    if longer and finest in told:
+        return Chosen(finest, longer, told)
+    if len(diagonal) > 1:
+        return Chosen(finest, diagonal, [])
+    return Chosen(finest, longer or [finest], told)
+
+
+def is_diagonal(attempts: Sequence[Attempt]) -> bool:
+    """Whether the chosen meshes have steps of their own each."""
+    meshes = chosen(attempts).meshes
+    return len(meshes) > 1 and attempts[meshes[-1]].complete and attempts[meshes[0]].steps != attempts[meshes[-1]].steps
+
+
+def step_series(attempts: Sequence[Attempt]) -> list[int]:
+    """The complete attempts on the mesh that has most of them, the finest if there are several, those with the
+    longest steps first."""
+    complete = [i for i, attempt in enumerate(attempts) if attempt.complete]
+    meshes = sorted((attempts[i].mesh for i in complete), reverse=True)
+    most = max(meshes, key=meshes.count, default=0)
+    return sorted((i for i in complete if attempts[i].mesh == most), key=lambda i: attempts[i].steps)
+
+
+def _chain(attempts: Sequence[Attempt], end: int, shift: int) -> list[int]:
+    """Up to three complete attempts on ever finer meshes, the last of them `end`; each has steps that are shorter by
+    `shift` for every doubling of the mesh."""
+    there = {(attempt.mesh, attempt.steps): i for i, attempt in enumerate(attempts) if attempt.complete}
+    mesh, steps, chain = attempts[end].mesh, attempts[end].steps, [end]
+    for coarser in range(mesh - 1, -1, -1):
+        before = there.get((coarser, steps - shift * (mesh - coarser)))
+        if before is not None and len(chain) < 3:
+            chain.insert(0, before)
+    return chain

@@ -134,10 +134,10 @@ def _wishes(history: Sequence[Attempt], excess: Excess, most_intervals: int) -> 
         return
     meshes = {attempt.mesh for attempt in complete}
     if len(complete) == 1:
-        shorter = Trial(complete[0].mesh, complete[0].steps + 1)
-        if _is_for(history, shorter, most_intervals):
-            yield shorter
-        yield Trial(complete[0].mesh, complete[0].steps - 1)
+        mesh, steps = complete[0].mesh, complete[0].steps
+        if _is_for(history, Trial(mesh, steps + 1), most_intervals):
+            yield Trial(mesh, steps + 1)
+        yield Trial(max(mesh - 1, 0), steps - 1)  # if it can, the last one is to tell all
     if len(meshes) == 1:
         yield from _second_mesh(history, complete, excess, most_intervals)
         return

@@ -76,6 +76,7 @@ SCENE_KEYS = {"output_interval": "output.interval", "gravity": "loads.gravity", 
 
 OTHER_DEFAULTS = {
     "Rod.laws",  # the coupling that a case gives is none where it is zero
+    "Initial.direction",  # none, but of a straight rod
     "Scene.numerics",  # a case's own are resolved by what else it says
     "Numerics.dt_max",  # 0.05 s, where a case says nothing else about its steps
     "Condition.since", "Condition.within",  # a condition that a case names has a value

@@ -12,11 +12,16 @@ from pydantic import BaseModel
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.api.parts import InParts
+from service.api.problems import Problem
 
-POLICY = "default-src 'self'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; frame-ancestors 'none'"
+POLICY = "default-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
+FRESH = {"Cache-Control": "no-cache", "X-Content-Type-Options": "nosniff"}
 LEAST_FREE = 50_000_000
 """Bytes of free disk, below which no job is sure to be kept."""
-DASHBOARD = Path(__file__).parent.parent / "dashboard" / "index.html"
+DASHBOARD = Path(__file__).parent.parent / "dashboard"
+KINDS = {".js": "text/javascript", ".css": "text/css"}
+PARTS = {path.name: path for path in DASHBOARD.iterdir() if path.suffix in KINDS}
+"""The dashboard's modules and style by name."""
 router = APIRouter()
 
 Reached = Literal["ok", "unreachable"]
@@ -35,7 +40,15 @@ class Readiness(BaseModel):
 @router.get("/", include_in_schema=False)
 def dashboard() -> FileResponse:
     """The page that shows the jobs."""
-    return FileResponse(DASHBOARD, headers={"Content-Security-Policy": POLICY})
+    return FileResponse(DASHBOARD / "index.html", headers={"Content-Security-Policy": POLICY, **FRESH})
+
+
+@router.get("/dashboard/{name}", include_in_schema=False)
+def part(name: str) -> FileResponse:
+    """A module or the style of that page."""
+    if name not in PARTS:
+        raise Problem(404, "not_found", f"the dashboard has no part {name[:80]!r}")
+    return FileResponse(PARTS[name], media_type=KINDS[PARTS[name].suffix], headers=FRESH)
 
 
 @router.get("/livez", tags=["service"])

@@ -25,6 +25,8 @@ READING = ("GET", "HEAD", "OPTIONS")
 OPEN_TO_ALL = frozenset({"/", "/healthz", "/livez", "/readyz", "/v1/openapi.json"})
 SHARED = "/v1/shared/"
 """Below it no key is asked for: the address itself lets in."""
+DASHBOARD = "/dashboard/"
+"""The program of the page that asks for the key."""
 log = logging.getLogger(__name__)
 
 
@@ -78,7 +80,7 @@ class Gate:
 
 def is_open(path: str) -> bool:
     """Whether no key is asked for at this path."""
-    return path in OPEN_TO_ALL or path.startswith(SHARED)
+    return path in OPEN_TO_ALL or path.startswith((SHARED, DASHBOARD))
 
 
 def _check_origin(method: str, host: str, origin: str | None) -> None:

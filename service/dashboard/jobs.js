@@ -1,0 +1,142 @@
+// @ts-check
+/** The table of jobs: filters, search, pages by cursor, live. */
+import { call, follow, read } from "./api.js";
+import { actions, bar, byId, element, isOpen, standing } from "./page.js";
+
+/** @typedef {import("./api.js").Job} Job */
+const PAGE = 50, LARGEST_PAGE = 200;
+const STREAMS = 3; // a browser keeps at most six connections to a host
+const FILTERS = ["status", "label", "owner", "since"];
+
+export class JobsTable {
+  /** @param {URLSearchParams} chosen the filters, as in the address of this page */
+  constructor(chosen) {
+    this.chosen = chosen;
+    /** @type {Map<string, {job: Job, row: HTMLElement}>} */
+    this.known = new Map();
+    this.wanted = PAGE;
+    /** @type {string | null} where the next page lies */
+    this.next = this.address(PAGE);
+    this.closing = new AbortController();
+    /** @type {Set<string>} ids that are followed by events */
+    this.followed = new Set();
+    this.body = /** @type {HTMLElement} */ (document.querySelector("#jobs tbody"));
+    this.body.replaceChildren();
+  }
+
+  /** @param {number} limit @param {Record<string, string>} [more] */
+  address(limit, more = {}) {
+    const query = new URLSearchParams({ limit: String(limit) });
+    for (const name of FILTERS) {
+      const value = this.chosen.get(name);
+      if (value) query.set(name, name === "since" ? new Date(`${value}T00:00`).toISOString() : value);
+    }
+    for (const [name, value] of Object.entries(more)) query.set(name, value);
+    return `/v1/jobs?${query}`;
+  }
+
+  /** Whether the search has a job in it. @param {Job} job */
+  found(job) {
+    const sought = (this.chosen.get("search") ?? "").toLowerCase();
+    return [job.title, job.label, job.id, job.outcome].join("\n").toLowerCase().includes(sought);
+  }
+
+  /** Read older pages until as many jobs are shown as are wanted, or there are no more. */
+  async fill() {
+    while (this.next && this.known.size < this.wanted && !this.closing.signal.aborted) {
+      const size = this.chosen.get("search") ? LARGEST_PAGE : PAGE;
+      const page = await read(this.next.replace(/limit=\d+/, `limit=${size}`));
+      page.jobs.forEach((/** @type {Job} */ job) => this.put(job));
+      this.next = page.next;
+      this.tell();
+    }
+    this.tell();
+  }
+
+  /** Show PAGE jobs more. */
+  async more() {
+    this.wanted = this.known.size + PAGE;
+    await this.fill();
+  }
+
+  /** Read what is new, what runs, and what has ended since. */
+  async refresh() {
+    const newest = await read(this.address(PAGE));
+    newest.jobs.forEach((/** @type {Job} */ job) => this.put(job));
+    const asked = this.chosen.get("status");
+    const running = asked && asked !== "running" ? [] : (await read(this.address(LARGEST_PAGE, { status: "running" }))).jobs;
+    const ids = new Set(running.map((/** @type {Job} */ job) => job.id));
+    const ended = [...this.known.values()].filter(({ job }) => job.status === "running" && !ids.has(job.id));
+    for (const job of running) if (this.known.has(job.id)) this.put(job);
+    for (const { job } of ended) this.put(await read(job.links.self));
+    this.tell();
+    this.listen();
+  }
+
+  /** Follow some running jobs by their events. */
+  listen() {
+    for (const { job } of this.known.values()) {
+      if (this.followed.size >= STREAMS) return;
+      if (job.status !== "running" || this.followed.has(job.id)) continue;
+      this.followed.add(job.id);
+      follow(job, (now) => this.put(now), this.closing.signal).catch(() => {}).finally(() => this.followed.delete(job.id));
+    }
+  }
+
+  /** Show a job as it is now, if it is searched for, in its place: newest first. @param {Job} job */
+  put(job) {
+    if (this.closing.signal.aborted || !this.found(job)) return;
+    const old = this.known.get(job.id);
+    if (old && JSON.stringify(old.job) === JSON.stringify(job)) return;
+    const asked = this.chosen.get("status");
+    if (asked && job.status !== asked) {
+      old?.row.remove();
+      this.known.delete(job.id);
+      return;
+    }
+    const row = this.row(job);
+    this.known.set(job.id, { job, row });
+    if (old) {
+      const focus = old.row.contains(document.activeElement);
+      old.row.replaceWith(row);
+      if (focus) row.querySelector("a")?.focus();
+      return;
+    }
+    this.body.insertBefore(row, this.follower(job.id));
+  }
+
+  /** The row of the next older job; null where this is the oldest. @param {string} id */
+  follower(id) {
+    const last = this.body.lastElementChild;
+    if (!last || last.id > id) return null;
+    return [...this.body.children].find((one) => one.id < id) ?? null;
+  }
+
+  /** @param {Job} job */
+  row(job) {
+    const link = /** @type {HTMLAnchorElement} */ (element("a", "", job.title || job.id));
+    link.href = `#/jobs/${job.id}`;
+    const what = element("td", "", link, element("small", "", [job.label, job.id].filter(Boolean).join(", ")));
+    const state = element("td", "", element("span", `status ${job.status}`, job.status));
+    const ended = job.outcome || job.message;
+    const progress = element("td", "", ...(job.status === "running" ? [bar(job)] : []), element("small", "", standing(job)));
+    if (ended && !isOpen(job)) progress.append(element("small", "", job.message || job.outcome));
+    const row = element("tr", "", what, state, progress, element("td", "", new Date(job.created).toLocaleString()),
+      element("td", "", job.owner), element("td", "", ...actions(job, () => this.refresh())));
+    row.id = job.id;
+    return row;
+  }
+
+  /** Tell how many there are. */
+  tell() {
+    if (this.closing.signal.aborted) return;
+    const shown = this.known.size;
+    byId("count").textContent = `${shown} jobs shown${this.next ? ", there are older ones" : ""}`;
+    byId("empty").hidden = shown > 0 || this.next !== null;
+    byId("more").hidden = !this.next;
+  }
+
+  close() {
+    this.closing.abort();
+  }
+}

@@ -1,0 +1,115 @@
+// @ts-check
+/** Which page is shown, as its address says: #/?status=running is the table, #/jobs/ID one job. */
+import { Refusal, setKey } from "./api.js";
+import { JobPage } from "./job.js";
+import { JobsTable } from "./jobs.js";
+import { byId, notice } from "./page.js";
+
+const EVERY = 2500; // ms
+/** @type {JobsTable | JobPage | null} */
+let view = null;
+let timer = 0;
+
+/** Leave the page that is shown, and show the one that the address names. */
+function open() {
+  view?.close();
+  notice("");
+  const [path, query] = location.hash.replace(/^#/, "").split("?");
+  const id = /^\/jobs\/([0-9a-z]+)$/.exec(path)?.[1];
+  byId("jobs").hidden = Boolean(id);
+  byId("job").hidden = !id;
+  document.title = "hockle: jobs";
+  const chosen = new URLSearchParams(query ?? "");
+  for (const field of byId("filters").elements) field.value = chosen.get(field.name) ?? "";
+  view = id ? new JobPage(id) : new JobsTable(chosen);
+  const shown = view;
+  guarded(() => shown.fill());
+}
+
+/** Do it, tell of a fault, and look again a little later. @param {() => Promise<void>} work */
+async function guarded(work) {
+  clearTimeout(timer);
+  const shown = view;
+  try {
+    await work();
+    if (shown === view) notice("");
+    byId("login").hidden = true;
+    await health();
+  } catch (error) {
+    if (shown !== view) return;
+    if (error instanceof Refusal && error.status === 401) return askForKey(error.message);
+    notice(error instanceof Refusal ? error.message : "the server does not answer; it is asked again");
+    if (!(error instanceof Refusal)) tellHealth(false, "away");
+  }
+  clearTimeout(timer);
+  if (shown === view) timer = setTimeout(() => guarded(async () => view?.refresh()), EVERY);
+}
+
+/** @param {string} told */
+function askForKey(told) {
+  view?.close();
+  byId("jobs").hidden = byId("job").hidden = true;
+  byId("login").hidden = false;
+  byId("login").elements.key.focus();
+  notice(told);
+}
+
+async function health() {
+  const state = await (await fetch("/readyz")).json();
+  const told = `database ${state.database}, broker ${state.broker}, disk ${state.disk}`;
+  tellHealth(state.status === "ok", state.status === "ok" ? "serving" : told);
+}
+
+/** @param {boolean} ok @param {string} told */
+function tellHealth(ok, told) {
+  byId("health").className = ok ? "ok" : "bad";
+  if (byId("health").textContent !== told) byId("health").textContent = told;
+}
+
+byId("login").onsubmit = (/** @type {Event} */ event) => {
+  event.preventDefault();
+  setKey(byId("login").elements.key.value.trim());
+  byId("login").reset();
+  byId("login").hidden = true;
+  open();
+};
+
+byId("filters").onsubmit = (/** @type {Event} */ event) => event.preventDefault();
+let typing = 0;
+byId("filters").oninput = () => {
+  clearTimeout(typing);
+  typing = setTimeout(() => {
+    const chosen = new URLSearchParams();
+    for (const field of byId("filters").elements) if (field.value) chosen.set(field.name, field.value);
+    history.replaceState(null, "", `#/?${chosen}`);
+    open();
+  }, 250);
+};
+
+byId("more").onclick = () => {
+  const shown = view;
+  if (shown instanceof JobsTable) guarded(() => shown.more());
+};
+
+byId("theme").onclick = () => {
+  const root = document.documentElement;
+  const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  localStorage.setItem("theme", root.dataset.theme = dark ? "light" : "dark");
+};
+document.documentElement.dataset.theme = localStorage.getItem("theme") ?? "";
+
+addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.metaKey || event.altKey || byId("ask").open || byId("jobs").hidden) return;
+  if (/** @type {Element} */ (event.target).matches("input, select")) return;
+  if (event.key === "/") {
+    event.preventDefault();
+    byId("filters").elements.search.focus();
+  }
+  if (event.key !== "j" && event.key !== "k") return;
+  const links = [...document.querySelectorAll("#jobs tbody tr:not([hidden]) a")];
+  const at = links.indexOf(/** @type {Element} */ (document.activeElement)) + (event.key === "j" ? 1 : -1);
+  /** @type {HTMLElement | undefined} */ (links[Math.max(at, 0)])?.focus();
+});
+
+addEventListener("hashchange", open);
+open();

@@ -1,0 +1,81 @@
+// @ts-check
+/** Parts of a page, and how numbers are told. */
+import { call, save } from "./api.js";
+
+/** @typedef {import("./api.js").Job} Job */
+
+/** The element of this page with an id. @param {string} id */
+export const byId = (id) => /** @type {any} */ (document.getElementById(id));
+
+/** A new element. @param {string} name @param {string} className @param {...(string | Node)} inside */
+export function element(name, className, ...inside) {
+  const made = document.createElement(name);
+  made.className = className;
+  made.append(...inside);
+  return made;
+}
+
+/** A new button. @param {string} text @param {() => void} act */
+export function button(text, act) {
+  const made = element("button", "", text);
+  made.setAttribute("type", "button");
+  made.onclick = act;
+  return made;
+}
+
+/** Whether a job is still to end. @param {Job} job */
+export const isOpen = (job) => job.status === "accepted" || job.status === "running";
+
+/** @param {number} seconds */
+export function clock(seconds) {
+  const whole = Math.round(seconds);
+  if (whole < 60) return `${whole} s`;
+  return whole < 3600 ? `${Math.floor(whole / 60)} min ${whole % 60} s` : `${(whole / 3600).toFixed(1)} h`;
+}
+
+/** What a job is at, or how long it took. @param {Job} job */
+export function standing(job) {
+  if (job.status === "running") {
+    const left = job.remaining === null ? "" : `, ${clock(job.remaining)} left`;
+    return `${job.phase || "starting"}, t = ${job.t.toFixed(2)} s${left}`;
+  }
+  if (!job.started || !job.finished) return "";
+  return `took ${clock((Date.parse(job.finished) - Date.parse(job.started)) / 1000)}`;
+}
+
+/** A bar of a job's progress. @param {Job} job */
+export function bar(job) {
+  const made = document.createElement("progress");
+  made.value = job.progress;
+  made.setAttribute("aria-label", `progress of ${job.title}`);
+  return made;
+}
+
+/** What can be done with a job: cancel it, or save its dataset. @param {Job} job @param {() => void} then */
+export function actions(job, then) {
+  const dataset = job.dataset;
+  if (dataset) return [button(`Dataset, ${(dataset.bytes / 1e6).toFixed(1)} MB`, () => save(dataset.href, `${job.id}.nc`))];
+  if (!isOpen(job)) return [];
+  const cancel = button(job.cancel_requested ? "Cancelling" : "Cancel", () => askToCancel(job, then));
+  cancel.toggleAttribute("disabled", job.cancel_requested);
+  return [cancel];
+}
+
+/** @param {Job} job @param {() => void} then */
+function askToCancel(job, then) {
+  byId("question").textContent = `Cancel "${job.title}"? It stops, and cannot go on later.`;
+  const ask = byId("ask");
+  ask.returnValue = "no";
+  ask.onclose = async () => {
+    if (ask.returnValue !== "yes") return;
+    await call(job.links.self, { method: "DELETE" }).catch((error) => notice(error.message));
+    then();
+  };
+  ask.showModal();
+}
+
+/** Tell of a fault; "" takes it away. @param {string} text */
+export function notice(text) {
+  byId("notice").hidden = !text;
+  if (byId("notice").textContent !== text) byId("notice").textContent = text;
+}

@@ -1,0 +1,110 @@
+"""The dashboard in a real browser: a server on loopback, headless Chromium."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from shutil import which
+from types import SimpleNamespace
+
+import pytest
+import uvicorn
+
+from service.api.app import create_app
+from service.jobs import Database, NewJob, Registry
+from service.jobs.registry import insert_jobs
+from service.settings import Settings
+
+CHROMIUM = which("chromium") or which("chromium-browser") or which("google-chrome")
+ARGUMENTS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+             "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+
+
+@contextmanager
+def serving(settings: Settings, keyed: bool = False) -> Iterator[SimpleNamespace]:
+    """The API in a thread; gives its address and its application."""
+    app = create_app(settings, keyed=keyed)
+    listening = socket.create_server(("127.0.0.1", 0))
+    server = uvicorn.Server(uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=1))
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
+    thread.start()
+    while not server.started:
+        assert thread.is_alive()
+        time.sleep(0.01)
+    try:
+        yield SimpleNamespace(address=f"http://127.0.0.1:{listening.getsockname()[1]}", app=app)
+    finally:
+        server.should_exit = True
+        thread.join()
+        listening.close()
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return replace(Settings(data=tmp_path), rate=1e6, quota=20_000)
+
+
+@pytest.fixture
+def server(settings: Settings) -> Iterator[SimpleNamespace]:
+    with serving(settings) as running:
+        yield running
+
+
+@pytest.fixture
+def keyed_server(settings: Settings) -> Iterator[SimpleNamespace]:
+    with serving(settings, keyed=True) as running:
+        yield running
+
+
+@pytest.fixture
+def registry(server: SimpleNamespace) -> Registry:
+    return server.app.state.parts.registry
+
+
+@pytest.fixture
+def add(registry: Registry) -> Callable[..., list[str]]:
+    """Put jobs into the registry; gives their ids."""
+
+    def jobs(many: int, title: str = "a rod", **more: str) -> list[str]:
+        database: Database = registry.database
+        ids: list[str] = []
+        for start in range(0, many, 1000):
+            new = [NewJob({"title": title}, title=f"{title} {k}", **more)
+                   for k in range(start, min(start + 1000, many))]
+            with database.writing() as transaction:
+                ids += [job.id for job in insert_jobs(transaction, new)]
+        return ids
+
+    return jobs
+
+
+@pytest.fixture
+def context(tmp_path: Path) -> Iterator[object]:
+    """A browser with a profile of its own, without any page but an empty one."""
+    if CHROMIUM is None:
+        pytest.skip("there is no Chromium: apt-get install chromium")
+    api = pytest.importorskip("playwright.sync_api", reason="Playwright's Python package is not installed")
+    with api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch_persistent_context(
+            str(tmp_path / "profile"), executable_path=CHROMIUM, args=ARGUMENTS,
+            viewport={"width": 1200, "height": 800})
+        browser.set_default_timeout(60_000)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def page(context):
+    """Its page; no fault may be told on its console, and nothing asked for elsewhere."""
+    page, faults = context.pages[0], []
+    page.on("pageerror", lambda error: faults.append(str(error)))
+    page.on("console", lambda line: faults.append(line.text) if "Content Security Policy" in line.text else None)
+    page.on("request", lambda request: None if request.url.startswith(("http://127.0.0.1:", "data:", "blob:", "about:"))
+            else faults.append(f"asked for {request.url}"))  # fmt: skip
+    yield page
+    assert faults == []

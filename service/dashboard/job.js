@@ -1,6 +1,7 @@
 // @ts-check
 /** The page of a job: its state, outcome with remedy, what the run says, its case, downloads. */
 import { follow, read, save } from "./api.js";
+import { chart } from "./chart.js";
 import { actions, bar, button, byId, element, isOpen, standing } from "./page.js";
 
 /** @typedef {import("./api.js").Job} Job */
@@ -14,7 +15,8 @@ export class JobPage {
     this.rest = element("div", "");
     /** @type {Job | null} */
     this.job = null;
-    byId("job").replaceChildren(this.head, this.rest);
+    this.charts = element("div", "charts");
+    byId("job").replaceChildren(this.head, this.charts, this.rest);
   }
 
   /** Show the job and its case. */
@@ -29,6 +31,19 @@ export class JobPage {
     if (isOpen(job)) follow(job, (now) => this.show(now), this.closing.signal).catch(() => {});
   }
 
+  /** Draw twist, writhe and link of the dataset, and what lacks between them. */
+  async draw() {
+    const { coordinates, variables } = await read(`${this.address}/data?variables=Tw,Wr,Lk`);
+    const [Tw, Wr, Lk] = ["Tw", "Wr", "Lk"].map((name) => /** @type {(number | null)[]} */ (variables[name].values));
+    const defect = Tw.map((twist, k) => {
+      const writhe = Wr[k], link = Lk[k];
+      return twist === null || writhe === null || link === null ? null : twist + writhe - link;
+    });
+    const time = coordinates.time.values, unit = variables.Tw.units;
+    this.charts.replaceChildren(chart(`Twist, writhe, link (${unit})`, time, { Tw, Wr, Lk }),
+      chart(`Tw + Wr - Lk (${unit})`, time, { "Tw + Wr - Lk": defect }));
+  }
+
   async refresh() {
     if (this.job && isOpen(this.job)) this.show(await read(this.address));
   }
@@ -36,6 +51,7 @@ export class JobPage {
   /** @param {Job} job */
   show(job) {
     if (this.closing.signal.aborted || JSON.stringify(job) === JSON.stringify(this.job)) return;
+    if (job.dataset && !this.job?.dataset) this.draw().catch((error) => this.charts.replaceChildren(error.message));
     this.job = job;
     document.title = `hockle: ${job.title}`;
     const facts = element("dl", "");

@@ -58,7 +58,7 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
         settings.make_directories()
         database = Database(settings.database_url)
         registry, doorbell = Registry(database), Doorbell(settings)
-        with (Reconciler(database, doorbell, settings), Notifier(database),
+        with (Reconciler(database, doorbell, settings).rounds(), Notifier(database).rounds(),
               Submissions(database, settings.quota, lambda: ring_for_all(database, doorbell)) as submissions):
             async with Feed(registry).running() as feed:
                 limit = RateLimit(settings.rate, int(settings.rate * BURST))

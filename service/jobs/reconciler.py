@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import logging
-import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 
 from sqlalchemy import func, select, update
+from sqlalchemy.exc import DBAPIError
 
 from outcomes import Outcome
 from service.jobs.database import Database
 from service.jobs.doorbell import Doorbell
-from service.jobs.leader import Leader
+from service.jobs.leader import Deposed, Leader
 from service.jobs.lifecycle import Status
 from service.jobs.tables import jobs, owners
+from service.rounds import Rounds
 from service.settings import Settings
 
+LOOK = 1.5
+"""Seconds between two looks, at the most: a leader renews its lease by each."""
 AT_ONCE = 64
 """The most messages that are left for the workers: each makes one of them look for a job."""
 TIDY = 60.0
@@ -62,7 +66,7 @@ def beats(database: Database) -> list[Beat]:
         return [Beat(*row) for row in connection.execute(query)]
 
 
-def take_back(database: Database, lost: Beat, attempts: int) -> None:
+def take_back(database: Database | Leader, lost: Beat, attempts: int) -> None:
     """Take a job from a worker that has fallen silent: it waits again, or ends if that has no use.
 
     A renewal in the last moment is stronger; afterwards the epoch shuts the worker out.
@@ -81,7 +85,7 @@ def take_back(database: Database, lost: Beat, attempts: int) -> None:
         )  # fmt: skip
 
 
-def dismiss_cancelled(database: Database) -> None:
+def dismiss_cancelled(database: Database | Leader) -> None:
     """End the waiting jobs whose cancelling met a worker that handed them back. There is hardly ever one: no writer
     waits while all that wait are looked through."""
     cancelled = jobs.c.status == Status.ACCEPTED, jobs.c.cancel_requested
@@ -94,7 +98,7 @@ def dismiss_cancelled(database: Database) -> None:
                            outcome=Outcome.CANCELLED.value, message="cancelled while it waited")
 
 
-def recount(database: Database) -> None:
+def recount(database: Database | Leader) -> None:
     """Set right how many unfinished jobs owners have: a process of an older version, which does not keep the number,
     may have run beside this one."""
     there_are = (
@@ -127,44 +131,43 @@ def ring_for_all(database: Database, doorbell: Doorbell, least: int = 0) -> None
 
 
 class Reconciler:
-    """A thread that reconciles a few times within each lease, while no other process does."""
+    """Reconciles a few times within each lease, while no other process does; with `rounds`, in a thread.
+
+    Who does not lead watches the leases all the same: so a job that was lost with its leader is taken back as soon.
+    """
 
     def __init__(self, database: Database, doorbell: Doorbell, settings: Settings) -> None:
         self._database, self._doorbell, self._attempts = database, doorbell, settings.attempts
         self._watch = Watch(settings.lease)
-        self._leader = Leader(database, settings.locks / "reconciler.lock")
-        self._interval = min(5.0, settings.lease / 3)
+        self.leader = Leader(database)
+        self._interval = min(LOOK, settings.lease / 3)
         self._tidy_at = time.monotonic()
-        self._stopped = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="reconciler", daemon=True)
 
-    def __enter__(self) -> Reconciler:
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._stopped.set()
-        self._thread.join()
-        self._leader.resign()
+    @contextmanager
+    def rounds(self) -> Iterator[Rounds]:
+        """The thread, running."""
+        with Rounds("reconciler", self._interval, self.once) as thread:
+            yield thread
+        with suppress(DBAPIError):  # then another sees that the lease is over
+            self.leader.resign()
 
     def once(self) -> None:
-        """Do what is due."""
-        for lost in self._watch.lost(beats(self._database)):
-            log.warning("job %s, epoch %d: its worker has fallen silent", lost.job_id, lost.epoch)
-            take_back(self._database, lost, self._attempts)
-        dismiss_cancelled(self._database)
+        """Do what is due, if this process leads."""
+        lost = self._watch.lost(beats(self._database))
+        if not self.leader.elected():
+            return
+        try:
+            self._lead(lost)
+        except Deposed:
+            log.warning("another process reconciles by now")
+
+    def _lead(self, lost: list[Beat]) -> None:
+        for beat in lost:
+            log.warning("job %s, epoch %d: its worker has fallen silent", beat.job_id, beat.epoch)
+            take_back(self.leader, beat, self._attempts)
+        dismiss_cancelled(self.leader)
         tidy = time.monotonic() >= self._tidy_at
         ring_for_all(self._database, self._doorbell, least=int(tidy))
         if tidy:
-            recount(self._database)
+            recount(self.leader)
             self._tidy_at = time.monotonic() + TIDY
-
-    def _run(self) -> None:
-        while True:
-            try:
-                if self._leader.elected():
-                    self.once()
-            except Exception:
-                log.exception("reconciling failed; it is tried again in %.1f s", self._interval)
-            if self._stopped.wait(self._interval):
-                return

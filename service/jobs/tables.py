@@ -146,6 +146,27 @@ webhooks = Table(
     Column("answer", Text, nullable=False, default=""),
 )
 
+leader = Table(
+    "leader",  # one row: who reconciles, and how often he has renewed his lease
+    metadata,
+    Column("name", String(16), primary_key=True),
+    Column("holder", String(32), nullable=False, default=""),
+    Column("beat", BigInteger, nullable=False, default=0),
+)
+
+processes = Table(
+    "processes",  # those that run now; `beat` grows while one gets on, `stuck` names parts of it that do not
+    metadata,
+    Column("id", Text, primary_key=True),
+    Column("kind", String(8), nullable=False),
+    Column("host", Text, nullable=False),
+    Column("pid", Integer, nullable=False),
+    Column("places", Integer, nullable=False),
+    Column("beat", BigInteger, nullable=False),
+    Column("seen", Double, nullable=False),
+    Column("stuck", Text, nullable=False),
+)
+
 REACHED = tuple(field.name for field in dataclasses.fields(Reached))
 NOT_OF_THE_JOB = ("case_json", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
 JOB_COLUMNS = [column for column in jobs.columns if column.name not in NOT_OF_THE_JOB]

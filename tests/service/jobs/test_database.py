@@ -45,7 +45,8 @@ def test_an_older_registry_is_upgraded_with_its_unfinished_jobs_counted(database
     first, _ = registry.submit(NewJob({})), registry.submit(NewJob({}))
     registry.cancel(first.id)
     with database.engine.begin() as connection:
-        connection.execute(text("DROP TABLE links"))
+        for made in ("links", "leader", "processes"):
+            connection.execute(text(f"DROP TABLE {made}"))
         for added in ("owners DROP COLUMN unfinished", "jobs DROP COLUMN phase", "jobs DROP COLUMN attributes"):
             connection.execute(text(f"ALTER TABLE {added}"))
         connection.execute(text("UPDATE alembic_version SET version_num = '0003'"))

@@ -10,7 +10,6 @@ from sqlalchemy import select, update
 from service.jobs import Database, NewJob, Reached, Registry, Status, reconciler
 from service.jobs.doorbell import Doorbell, celery_settings
 from service.jobs.held import HeldJob, claim
-from service.jobs.leader import Leader
 from service.jobs.reconciler import (
     AT_ONCE,
     Reconciler,
@@ -160,22 +159,13 @@ def test_what_the_lost_have_left_is_removed_though_no_job_comes_any_more(registr
         for _ in range(3):
             looks.once()
         assert bell.wanted == wanted
+        looks.leader.resign()
 
 
 def test_a_running_reconciler_takes_back_a_lost_job(registry, settings, until):
     job = held(registry)
-    with Reconciler(registry.database, Bell(), settings):
+    with Reconciler(registry.database, Bell(), settings).rounds():
         until(lambda: registry.get(job.job.id).status is Status.ACCEPTED)
-
-
-def test_one_of_many_leads_and_another_when_it_resigns(database, settings, until):
-    first, second = (Leader(database, settings.locks / "leader") for _ in range(2))
-    assert first.elected()
-    assert not second.elected()
-    assert first.elected()
-    first.resign()
-    until(second.elected)  # PostgreSQL frees the lock when it has seen that the connection is gone
-    second.resign()
 
 
 def test_a_dead_broker_is_told_not_raised(tmp_path):

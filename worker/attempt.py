@@ -26,6 +26,7 @@ from worker.drift import drift_of
 from worker.endings import LEAST_FREE, Ending, OutOfDisk, is_full
 from worker.lease import Lease
 from worker.lock import JobLock
+from worker.shown import Shown
 
 log = logging.getLogger(__name__)
 Made = TypeVar("Made")
@@ -59,6 +60,7 @@ class Attempt:
         self._checkpoints = Checkpoints(self._directory, held.job.epoch, key)
         self._redone = 0
         self._due = 0.0
+        self._shown = Shown(self._directory)
 
     def run(self) -> Ending:
         """Compute the frames and put the dataset together. Raises whatever else ends a run."""
@@ -71,6 +73,7 @@ class Attempt:
             simulation.restore(found.state)
         self._tell_lost(found)
         segments = found.segments if found else ()
+        self._with_room(lambda: self._shown.begin(segments, simulation))
         with DatasetWriter(self._path, spec, self._directory, segments) as writer:
             status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED, ""
             try:
@@ -98,7 +101,7 @@ class Attempt:
                 under_way = True
                 log.info("under way", extra={"t": simulation.t, "steps": simulation.statistics.steps})
             if frame is not None:
-                self._keep(writer, frame)
+                self._keep(simulation, writer, frame)
             steps = simulation.statistics.steps
             self._lock.mark(steps)
             self._tell(simulation)
@@ -113,9 +116,11 @@ class Attempt:
     def _tell(self, run: Run) -> None:
         self._lease.tell(Reached(run.progress, run.t, run.statistics.steps, self._redone, phase=run.phase))
 
-    def _keep(self, writer: DatasetWriter, frame: Frame) -> None:
+    def _keep(self, simulation: Run, writer: DatasetWriter, frame: Frame) -> None:
         try:
             writer.append(frame)
+            if self._shown.due:
+                self._shown.renew(writer, simulation)
         except OSError:  # the frame itself is in memory
             self._with_room(writer.flush)
 
@@ -126,7 +131,7 @@ class Attempt:
         """
         began = time.monotonic()
         try:
-            segments = tuple(writer.flush())
+            segments = self._shown.renew(writer, simulation)
             self._checkpoints.save(Checkpoint(simulation.statistics.steps, simulation.checkpoint(), segments))
             self._held.checkpointed(self._lease.reached)
         except (OSError, DBAPIError) as error:

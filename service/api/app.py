@@ -13,6 +13,7 @@ from service.access import KeyStore
 from service.access.limits import RateLimit
 from service.api import (
     cases,
+    data,
     datasets,
     events,
     front,
@@ -42,8 +43,8 @@ TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "cases", "description": "What can be simulated, and what it would cost."},
         {"name": "OGC API Processes", "description": "The same jobs as one process of OGC API Processes, Part 1."},
         {"name": "service", "description": "Whether it lives, and how it does."}]
-ROUTERS = [part.router for part in (submitting, jobs, events, datasets, links, scalars, cases, processes, watching,
-                                    front)]
+ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, links, scalars, cases, processes,
+                                    watching, front)]
 BURST = 10.0  # s of an owner's rate that may be spent at once
 
 

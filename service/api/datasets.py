@@ -1,23 +1,21 @@
-"""/v1/jobs/{id}/dataset is the file, /v1/jobs/{id}/data a part of it as JSON."""
+"""/v1/jobs/{id}/dataset: the file."""
 
 from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Request, Response
 from fastapi.responses import FileResponse, StreamingResponse
-from pydantic import BaseModel, ConfigDict, Field
 from starlette.responses import MalformedRangeHeader, RangeNotSatisfiable
 
 from service.api.description import NOT_MODIFIED, problems
-from service.api.numbers import WHOLE
 from service.api.parts import InParts, Jobs, Parts, matches
 from service.api.problems import Problem
 from service.jobs import ENDED, Dataset, Job
-from service.results import StoreUnreachable, SubsetTooLarge, UnknownVariable, subset
+from service.results import StoreUnreachable
 from service.results.bucket import Bucket
 
 NETCDF = "application/x-netcdf"
@@ -28,19 +26,6 @@ FILE: dict[int | str, dict[str, Any]] = {
 }
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 log = logging.getLogger(__name__)
-
-
-class Part(BaseModel):
-    """Which part of a dataset: names with commas between, ranges in s and m, every n-th in time and s."""
-
-    model_config = ConfigDict(extra="forbid")
-    variables: str = Field(min_length=1, max_length=1000, examples=["Tw,Wr,Lk"])
-    t_min: float | None = Field(None, allow_inf_nan=False)
-    t_max: float | None = Field(None, allow_inf_nan=False)
-    s_min: float | None = Field(None, allow_inf_nan=False)
-    s_max: float | None = Field(None, allow_inf_nan=False)
-    time_stride: Annotated[int, Field(ge=1), WHOLE] = 1
-    s_stride: Annotated[int, Field(ge=1), WHOLE] = 1
 
 
 class DatasetFile(FileResponse):
@@ -77,23 +62,6 @@ def whole(job: Job, request: Request, parts: Parts) -> Response:
         if isinstance(place, Bucket):
             return _object(place, published, request, headers)
     return DatasetFile(place, headers=headers, media_type=NETCDF)
-
-
-@router.get("/data", responses=problems(404, 409, 422, 503))
-def data(job_id: str, part: Annotated[Part, Query()], parts: InParts, jobs: Jobs) -> dict[str, Any]:
-    """Some variables over a range of time and arclength, as JSON: at most a million values."""
-    job = jobs.get(job_id)
-    published = dataset_of(job)
-    with there(job):
-        path = parts.datasets.file(published.file, published.bytes, published.sha256)
-    arguments = part.model_dump()
-    names = [name.strip() for name in arguments.pop("variables").split(",")]
-    try:
-        return subset(path, names, **arguments)
-    except SubsetTooLarge as error:
-        raise Problem(422, "subset_too_large", str(error)) from None
-    except UnknownVariable as error:
-        raise Problem(422, "unknown_variable", str(error)) from None
 
 
 def _object(bucket: Bucket, published: Dataset, request: Request, headers: dict[str, str]) -> Response:

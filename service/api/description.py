@@ -32,6 +32,7 @@ PARAMETERS = {
     "after": "Only what is older than this id: pages lead on with it",
     "status": "Only jobs of this status",
     "label": "Only jobs with exactly this label",
+    "format": "In which format; else as the Accept header says",
     "variables": "Names of variables, with commas between them",
     "t_min": "Frames from this time on, s",
     "t_max": "Frames up to this time, s",

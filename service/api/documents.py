@@ -68,10 +68,10 @@ class JobsDocument(BaseModel):
 def document(job: Job) -> JobDocument:
     """A job as its readers see it."""
     here = address(job.id)
-    links = {"self": here, "events": f"{here}/events", "case": f"{here}/case"}
+    links = {"self": here, "events": f"{here}/events", "case": f"{here}/case", "data": f"{here}/data"}
     dataset = None
     if job.dataset is not None:
-        links |= {"dataset": f"{here}/dataset", "data": f"{here}/data"}
+        links["dataset"] = f"{here}/dataset"
         dataset = DatasetDocument(href=links["dataset"], sha256=job.dataset.sha256, bytes=job.dataset.bytes)
     return JobDocument(
         id=job.id, owner=job.owner, status=job.status, title=job.title, label=job.label, priority=job.priority,

@@ -2,30 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
-from fastapi import APIRouter, Query
-from pydantic import BaseModel, ConfigDict, Field
+import numpy as np
+from fastapi import APIRouter, Query, Response
+from pydantic import BaseModel, Field
 
 from service.api.datasets import there
 from service.api.description import problems
+from service.api.formats import CONTENT, Accept, Variables, format_of, given, readable
 from service.api.parts import InParts, Jobs, Parts
 from service.api.problems import Problem
 from service.jobs import Job, Status
-from service.results import UnknownVariable
-from service.results.scalars import Value, last_values, scalar_variables
+from service.results.part import Column, Part
+from service.results.scalars import Value, last_values, scalar_columns, scalar_variables
 
 MOST_JOBS = 200
 router = APIRouter(prefix="/v1/scalars", tags=["results"])
 
 
-class Chosen(BaseModel):
+class Chosen(Variables):
     """Which numbers of which jobs."""
 
-    model_config = ConfigDict(extra="forbid")
     jobs: str = Field(min_length=1, max_length=27 * MOST_JOBS, examples=["01m7zns6je0661bz8g4vdfp4fq"],
                       description=f"Ids of jobs, at most {MOST_JOBS}, with commas between them")
-    variables: str = Field(min_length=1, max_length=1000, examples=["Tw,Wr,Lk"])
 
 
 class ScalarsOfJob(BaseModel):
@@ -45,23 +46,35 @@ class ScalarsDocument(BaseModel):
     jobs: list[ScalarsOfJob]
 
 
-@router.get("", responses=problems(404, 422, 503))
-def scalars(chosen: Annotated[Chosen, Query()], parts: InParts, jobs: Jobs) -> ScalarsDocument:
-    """Variables that have no place along the rod, at the end of many jobs."""
+@router.get("", response_model=ScalarsDocument, responses={**CONTENT, **problems(404, 422, 503)})
+def scalars(chosen: Annotated[Chosen, Query()], parts: InParts, jobs: Jobs, accept: Accept = None) -> Response:
+    """Variables that have no place along the rod, at the end of many jobs; but for JSON a table, a row for each job."""
     ids = [one.strip() for one in chosen.jobs.split(",")]
     if len(ids) > MOST_JOBS:
         raise Problem(422, "too_many_jobs", f"jobs must be at most {MOST_JOBS}, got {len(ids)}")
-    try:
-        names = scalar_variables([name.strip() for name in chosen.variables.split(",")])
-    except UnknownVariable as error:
-        raise Problem(422, "unknown_variable", str(error)) from None
-    return ScalarsDocument(jobs=[_of(jobs.get(job_id), names, parts) for job_id in ids])
+    with readable():
+        names = scalar_variables(chosen.names)
+    found = [jobs.get(job_id) for job_id in ids]
+    values = [values_of(job, names, parts) for job in found]
+    name, form = format_of(chosen.format, accept)
+    if name != "json":
+        return given(Part(job_columns(found), scalar_columns(names, values)), form)
+    documents = [ScalarsOfJob(id=job.id, label=job.label, status=job.status, outcome=job.outcome, t=job.t, values=told)
+                 for job, told in zip(found, values, strict=True)]  # fmt: skip
+    return Response(ScalarsDocument(jobs=documents).model_dump_json(), media_type=form.media_type)
 
 
-def _of(job: Job, names: list[str], parts: Parts) -> ScalarsOfJob:
-    values: dict[str, Value] = dict.fromkeys(names)
-    if job.dataset is not None:
-        with there(job):
-            path = parts.datasets.file(job.dataset.file, job.dataset.bytes, job.dataset.sha256)
-        values = last_values(path, names)
-    return ScalarsOfJob(id=job.id, label=job.label, status=job.status, outcome=job.outcome, t=job.t, values=values)
+def values_of(job: Job, names: Sequence[str], parts: Parts) -> dict[str, Value]:
+    """The last values of a job. Raises Problem 404 or 503 where its dataset is not there."""
+    if job.dataset is None:
+        return dict.fromkeys(names)
+    with there(job):
+        path = parts.datasets.file(job.dataset.file, job.dataset.bytes, job.dataset.sha256)
+    return last_values(path, names)
+
+
+def job_columns(jobs: Sequence[Job], along: str = "job") -> tuple[Column, ...]:
+    """What is said of each job beside its values, along one dimension."""
+    facts = {"id": str, "label": str, "status": str, "outcome": str, "t": float}
+    return tuple(Column(name, (along,), np.array([kind(getattr(job, name)) for job in jobs], kind),
+                        {"units": "s"} if name == "t" else {}) for name, kind in facts.items())  # fmt: skip

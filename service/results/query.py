@@ -1,16 +1,20 @@
-"""Reading datasets: whole in xarray, or a part as plain data."""
+"""Reading datasets: whole in xarray, or some variables over ranges of time and arclength."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import prod
 from pathlib import Path
 from threading import Lock
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
+from service.results.part import Column, Part
 from service.results.schema import COORDINATES, ERRORS, LABELS, VARIABLES, Variable
 
 if TYPE_CHECKING:
@@ -28,6 +32,47 @@ class SubsetTooLarge(ValueError):
     """A subset of more values than are given out at once."""
 
 
+@dataclass(frozen=True)
+class Ranges:
+    """Closed ranges of time (s) and arclength (m), and every how many-th value in them. Raises ValueError."""
+
+    t_min: float | None = None
+    t_max: float | None = None
+    s_min: float | None = None
+    s_max: float | None = None
+    time_stride: int = 1
+    s_stride: int = 1
+
+    def __post_init__(self) -> None:
+        for name in ("time_stride", "s_stride"):
+            if getattr(self, name) < 1:
+                raise ValueError(f"{name} must be >= 1, got {getattr(self, name)}")
+
+    def of(self, time: NDArray[np.float64], s: NDArray[np.float64]) -> dict[str, slice]:
+        """The indices along both coordinates."""
+        return {"time": _slice(time, self.t_min, self.t_max, self.time_stride),
+                "s": _slice(s, self.s_min, self.s_max, self.s_stride)}
+
+
+class Source(Protocol):
+    """Frames that can be read: those of a dataset, or those so far of a run."""
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """Times of the frames (frames,), s."""
+
+    @property
+    def s(self) -> NDArray[np.float64]:
+        """Arclengths of the nodes (n,), m."""
+
+    @property
+    def variables(self) -> Mapping[str, Variable]:
+        """Those that it holds, by name."""
+
+    def read(self, variable: Variable, ranges: Mapping[str, slice]) -> NDArray[Any]:
+        """The values of one variable at some indices of time and s."""
+
+
 def open_dataset(path: Path) -> xr.Dataset:
     """The dataset in xarray, its time in seconds since the start; also of one written before time had plain seconds."""
     import xarray as xr  # half a second, which what reads a part alone need not wait for
@@ -35,83 +80,84 @@ def open_dataset(path: Path) -> xr.Dataset:
     return xr.open_dataset(path, engine="netcdf4", decode_times=False)
 
 
-def subset(
-    path: Path,
-    variables: Sequence[str],
-    t_min: float | None = None,
-    t_max: float | None = None,
-    s_min: float | None = None,
-    s_max: float | None = None,
-    time_stride: int = 1,
-    s_stride: int = 1,
-    limit: int = 1_000_000,
-) -> dict[str, Any]:
-    """Some variables at the times and arclengths within closed ranges, every stride-th of them.
+class DatasetSource:
+    """The frames of a dataset that is open."""
 
-    Returns JSON data: `coordinates` (time, s and component names as far as they are used) and
-    `variables`, each with dimensions, units, long name and nested `values`; null where there is no
-    value. Raises UnknownVariable, SubsetTooLarge (more than `limit` values), or ValueError for a
-    stride below 1.
-    """
-    for name, stride in (("time_stride", time_stride), ("s_stride", s_stride)):
-        if stride < 1:
-            raise ValueError(f"{name} must be >= 1, got {stride}")
-    with ONE_AT_A_TIME, netCDF4.Dataset(path) as dataset:
+    def __init__(self, dataset: netCDF4.Dataset) -> None:
         dataset.set_auto_mask(False)
-        chosen = [_variable(dataset, name) for name in variables]
-        parts = {
-            "time": _part(dataset["time"][:], t_min, t_max, time_stride),
-            "s": _part(dataset["s"][:], s_min, s_max, s_stride),
-        }
-        _check_size(dataset, chosen, parts, limit)
-        used = {name for variable in chosen for name in variable.dimensions}
-        return {
-            "coordinates": {name: _coordinate(dataset, name, parts) for name in sorted(used)},
-            "variables": {variable.name: _values(dataset, variable, parts) for variable in chosen},
-        }
+        self._dataset = dataset
+        self.time: NDArray[np.float64] = dataset["time"][:]
+        self.s: NDArray[np.float64] = dataset["s"][:]
+        self.variables = {v.name: v for v in (*VARIABLES, *ERRORS.values()) if v.name in dataset.variables}
+
+    def read(self, variable: Variable, ranges: Mapping[str, slice]) -> NDArray[Any]:
+        """The values of one variable at some indices of time and s."""
+        values: NDArray[Any] = self._dataset[variable.name][
+            tuple(ranges.get(name, slice(None)) for name in variable.dimensions)
+        ]
+        return values
 
 
-def _variable(dataset: netCDF4.Dataset, name: str) -> Variable:
-    held = {v.name: v for v in (*VARIABLES, *ERRORS.values()) if v.name in dataset.variables}
-    if name not in held:
-        raise UnknownVariable(f"variable must be one of {', '.join(held)}, got {name!r}")
-    return held[name]
+@contextmanager
+def opened(path: Path) -> Iterator[DatasetSource]:
+    """The frames of the dataset in a file."""
+    with ONE_AT_A_TIME, netCDF4.Dataset(path) as dataset:
+        yield DatasetSource(dataset)
 
 
-def _part(values: NDArray[np.float64], lowest: float | None, highest: float | None, stride: int) -> slice:
+def subset(source: Source, names: Sequence[str], ranges: Ranges = Ranges(), limit: int = 1_000_000,
+           table: bool = False) -> Part:
+    """Some variables over ranges of time and arclength, with the coordinates that they need.
+
+    Raises UnknownVariable, or SubsetTooLarge for more than `limit` values, before anything is read. `table`: as many
+    as its table has, in which what has no place along the rod is repeated along it.
+    """
+    chosen = [held(source.variables, name) for name in dict.fromkeys(names)]
+    indices = ranges.of(source.time, source.s)
+    lengths = _lengths(source, indices)
+    used = list(dict.fromkeys(name for variable in chosen for name in variable.dimensions))
+    rows = [name for name in used if name not in LABELS] if table else []
+    check_size(sum(prod(lengths[name] for name in {*variable.dimensions, *rows}) for variable in chosen), limit)
+    return Part(tuple(coordinate(source, name, indices) for name in used),
+                tuple(column(variable, source.read(variable, indices)) for variable in chosen))
+
+
+def held(variables: Mapping[str, Variable], name: str) -> Variable:
+    """The variable of this name. Raises UnknownVariable."""
+    if name not in variables:
+        raise UnknownVariable(f"variable must be one of {', '.join(variables)}, got {name!r}")
+    return variables[name]
+
+
+def check_size(size: int, limit: int) -> None:
+    """Raises SubsetTooLarge."""
+    if size > limit:
+        raise SubsetTooLarge(f"the subset must have at most {limit:,} values, got {size:,}: narrow it or stride")
+
+
+def column(variable: Variable, values: NDArray[Any]) -> Column:
+    """Values of a variable."""
+    return Column(variable.name, variable.dimensions, values,
+                  {"units": variable.units, "long_name": variable.long_name})
+
+
+def coordinate(source: Source, name: str, indices: Mapping[str, slice]) -> Column:
+    """The values of one dimension at some indices."""
+    if name in LABELS:
+        return Column(name, (name,), np.array(LABELS[name]))
+    values = source.time if name == "time" else source.s
+    return Column(name, (name,), values[indices[name]], COORDINATES[name])
+
+
+def _lengths(source: Source, indices: Mapping[str, slice]) -> dict[str, int]:
+    whole = {"time": len(source.time), "s": len(source.s)}
+    return {name: len(range(*indices[name].indices(size))) for name, size in whole.items()} | {
+        name: len(labels) for name, labels in LABELS.items()
+    }
+
+
+def _slice(values: NDArray[np.float64], lowest: float | None, highest: float | None, stride: int) -> slice:
     """The indices of an increasing coordinate's values within a closed range."""
     first = 0 if lowest is None else int(np.searchsorted(values, lowest, "left"))
     last = len(values) if highest is None else int(np.searchsorted(values, highest, "right"))
     return slice(first, max(first, last), min(stride, max(1, len(values))))  # netCDF4 takes no stride past 64 bits
-
-
-def _check_size(
-    dataset: netCDF4.Dataset, chosen: Sequence[Variable], parts: dict[str, slice], limit: int
-) -> None:
-    def length(dimension: str) -> int:
-        whole = len(dataset.dimensions[dimension])
-        return len(range(*parts.get(dimension, slice(None)).indices(whole)))
-
-    size = sum(int(np.prod([length(name) for name in v.dimensions])) for v in chosen)
-    if size > limit:
-        raise SubsetTooLarge(
-            f"the subset must have at most {limit:,} values, got {size:,}: narrow it or stride"
-        )
-
-
-def _coordinate(dataset: netCDF4.Dataset, name: str, parts: dict[str, slice]) -> dict[str, Any]:
-    if name in LABELS:
-        return {"values": list(LABELS[name])}
-    return {"units": COORDINATES[name]["units"], "values": dataset[name][parts[name]].tolist()}
-
-
-def _values(dataset: netCDF4.Dataset, variable: Variable, parts: dict[str, slice]) -> dict[str, Any]:
-    values = dataset[variable.name][tuple(parts.get(name, slice(None)) for name in variable.dimensions)]
-    plain = values.astype(object)
-    plain[~np.isfinite(values)] = None
-    return {
-        "dimensions": list(variable.dimensions),
-        "units": variable.units,
-        "long_name": variable.long_name,
-        "values": plain.tolist(),
-    }

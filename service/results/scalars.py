@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
+from service.results.part import Column
 from service.results.query import ONE_AT_A_TIME, UnknownVariable
-from service.results.schema import ERRORS, VARIABLES
+from service.results.schema import ERRORS, LABELS, VARIABLES, Variable
 
 Value = float | int | list[float | None] | None
 """A number, the components of a vector, or nothing."""
-SCALARS = tuple(variable.name for variable in (*VARIABLES, *ERRORS.values()) if not variable.along_rod)
+BY_NAME = {variable.name: variable for variable in (*VARIABLES, *ERRORS.values()) if not variable.along_rod}
+SCALARS = tuple(BY_NAME)
 
 
 def scalar_variables(names: Sequence[str]) -> list[str]:
@@ -32,6 +34,21 @@ def last_values(path: Path, names: Sequence[str]) -> dict[str, Value]:
         frames = len(dataset.dimensions["time"])
         held = {name: np.asarray(dataset[name][-1]) for name in names if frames and name in dataset.variables}
     return {name: _plain(held[name]) if name in held else None for name in names}
+
+
+def scalar_columns(names: Sequence[str], values: Sequence[Mapping[str, Value]],
+                   along: str = "job") -> tuple[Column, ...]:
+    """The last values of many jobs as arrays along one dimension; NaN where there is none."""
+    return tuple(_column(BY_NAME[name], [one[name] for one in values], along) for name in names)
+
+
+def _column(variable: Variable, values: Sequence[Value], along: str) -> Column:
+    components = variable.dimensions[1:]
+    nothing = np.full([len(LABELS[name]) for name in components], np.nan)
+    rows = [nothing if value is None else np.array(value, float) for value in values]
+    array = np.stack(rows) if rows else np.zeros((0, *nothing.shape))
+    attributes = {"units": variable.units, "long_name": variable.long_name}
+    return Column(variable.name, (along, *components), array, attributes)
 
 
 def _plain(value: NDArray[np.float64]) -> Value:

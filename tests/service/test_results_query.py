@@ -9,7 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.results import DatasetWriter, SubsetTooLarge, UnknownVariable, subset
+from service.results import DatasetWriter, Ranges, SubsetTooLarge, UnknownVariable
+from service.results import subset as part_of
+from service.results.formats import as_data
+from service.results.query import opened
 from tests.service.frames import ended, frames, small_spec
 
 
@@ -22,6 +25,11 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
             writer.append(frame)
         writer.publish("completed", "", ended(spec))
     return path
+
+
+def subset(path: Path, names: list[str], limit: int = 1_000_000, **ranges: Any) -> dict[str, Any]:
+    with opened(path) as source:
+        return as_data(part_of(source, names, Ranges(**ranges), limit))
 
 
 def test_a_subset_is_json_with_coordinates_and_units(path: Path):

@@ -20,6 +20,8 @@ import xarray as xr
 from service.cases import CaseSpec, parse_case
 from service.cases.case import FieldName
 from service.results import VARIABLES, DatasetWriter, Published, durable, netcdf, open_dataset, segments, subset
+from service.results.formats import as_data
+from service.results.query import opened
 from service.results.schema import stored_variables
 from solver import VerifiedFrame
 from tests.service.frames import ended, frames, nodes, small_spec
@@ -353,5 +355,6 @@ def test_a_verified_dataset_has_error_bars(path: Path):
         assert np.array_equal(dataset.r_error, [frame.error.r for frame in verified])
         assert dataset.energy_bending_error.values.tolist() == [f.error.energy_bending for f in verified]
         assert "10 intervals and with 20" in dataset.attrs["history"]
-    told = subset(path, ["Tw_error"])["variables"]["Tw_error"]
+    with opened(path) as source:
+        told = as_data(subset(source, ["Tw_error"]))["variables"]["Tw_error"]
     assert told["long_name"] == "estimated error of Tw"

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from service.results import bucket
+from service.results.formats import FORMATS
 from service.settings import Settings
 
 
@@ -96,10 +98,7 @@ def test_a_part_that_cannot_be_given_is_refused_by_name(client, done, query, nam
 
 
 def test_a_part_too_large_is_refused_before_it_is_read(client, done, monkeypatch):
-    from service.api import datasets
-    from service.results import subset
-
-    monkeypatch.setattr(datasets, "subset", lambda *told, **more: subset(*told, **more, limit=3))
+    monkeypatch.setitem(FORMATS, "json", replace(FORMATS["json"], limit=3))
     answer = client.get(f"/v1/jobs/{done}/data?variables=r")
     assert (answer.status_code, answer.json()["type"]) == (422, "urn:hockle:problem:subset_too_large")
     assert "stride" in answer.json()["detail"]

@@ -1,0 +1,79 @@
+"""In which format a client wants numbers: by `format` in the query, or else by the Accept header."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Annotated, Any, Literal
+
+from fastapi import Header, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from service.api.numbers import WHOLE
+from service.api.problems import Problem
+from service.results import Ranges, SubsetTooLarge, UnknownVariable
+from service.results.formats import FORMATS, Format
+from service.results.part import Part
+
+FormatName = Literal["json", "csv", "netcdf", "arrow"]
+Accept = Annotated[str | None, Header(alias="Accept", description="A format's media type, where the query has none")]
+ALSO = {"application/netcdf": "netcdf", "application/vnd.apache.arrow.file": "arrow"}
+CONTENT: dict[int | str, dict[str, Any]] = {200: {"description": "The values", "content": {
+    one.media_type: {"schema": {"type": "object"} if name == "json" else {"type": "string", "format": "binary"}}
+    for name, one in FORMATS.items()}}}  # fmt: skip
+"""The formats in an operation's `responses`."""
+
+
+class Variables(BaseModel):
+    """Which variables are wanted, and how."""
+
+    model_config = ConfigDict(extra="forbid")
+    variables: str = Field(min_length=1, max_length=1000, examples=["Tw,Wr,Lk"])
+    format: FormatName | None = Field(None, description="Else as the Accept header says; JSON if it says nothing")
+
+    @property
+    def names(self) -> list[str]:
+        """The variables by name."""
+        return [name.strip() for name in self.variables.split(",")]
+
+
+class VariablesInRanges(Variables):
+    """Which part of a dataset: names with commas between, ranges in s and m, every n-th in time and s."""
+
+    t_min: float | None = Field(None, allow_inf_nan=False)
+    t_max: float | None = Field(None, allow_inf_nan=False)
+    s_min: float | None = Field(None, allow_inf_nan=False)
+    s_max: float | None = Field(None, allow_inf_nan=False)
+    time_stride: Annotated[int, Field(ge=1), WHOLE] = 1
+    s_stride: Annotated[int, Field(ge=1), WHOLE] = 1
+
+    @property
+    def ranges(self) -> Ranges:
+        """The ranges alone."""
+        return Ranges(**self.model_dump(exclude={"variables", "format"}))
+
+
+def format_of(name: FormatName | None, accept: str | None) -> tuple[str, Format]:
+    """The format that is asked for, with its name; JSON where none of ours is."""
+    if name is not None:
+        return name, FORMATS[name]
+    types = {one.media_type: known for known, one in FORMATS.items()} | ALSO
+    wanted = [kind.partition(";")[0].strip().lower() for kind in (accept or "").split(",")]
+    chosen = next((types[kind] for kind in wanted if kind in types), "json")
+    return chosen, FORMATS[chosen]
+
+
+@contextmanager
+def readable() -> Iterator[None]:
+    """While a part is read. Raises Problem 422."""
+    try:
+        yield
+    except SubsetTooLarge as error:
+        raise Problem(422, "subset_too_large", str(error)) from None
+    except UnknownVariable as error:
+        raise Problem(422, "unknown_variable", str(error)) from None
+
+
+def given(part: Part, form: Format, headers: dict[str, str] | None = None) -> Response:
+    """The answer that holds a part."""
+    return Response(form.write(part), 200, {"Vary": "Accept"} | (headers or {}), form.media_type)

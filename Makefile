@@ -68,7 +68,7 @@ lock:  ## after a change of a requirements*.in (needs uv)
 	$(LOCK) --constraint requirements.txt requirements-bench.in -o requirements-bench.txt
 
 clean:  ## the environment and all that was made
-	rm -rf .venv var demo *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv var demo build *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 .venv/bin/python:
 	@test -n "$(PYTHON)" || { echo "hockle needs Python 3.11, 3.12 or 3.13: name one with make PYTHON=..." >&2; exit 1; }

@@ -68,11 +68,11 @@ class Served:
 
     def apis(self) -> list[int]:
         """The processes of the API."""
-        return self._services("service.api")
+        return self._services("hockle api")
 
     def worker(self) -> int | None:
         """The Celery worker, the parent of those that run jobs."""
-        return next(iter(self._services("worker.app")), None)
+        return next(iter(self._services("hockle worker")), None)
 
     def broker(self) -> int | None:
         """Redis."""

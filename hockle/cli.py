@@ -10,8 +10,10 @@ from importlib.metadata import version
 
 from hockle.failure import Failure
 
-COMMANDS = ("hockle.local", "hockle.plots", "hockle.serving", "hockle.keys", "hockle.remote",
-            "hockle.jobs", "hockle.demo")
+COMMANDS = ("local", "plots", "serving", "parts", "keys", "remote", "jobs", "demo")
+
+UNIX_ONLY = ("fcntl", "resource")
+"""Modules of Python that Windows lacks."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -22,6 +24,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return command(told)
     except Failure as failure:
         print(f"hockle: {failure}", file=sys.stderr)
+        return 1
+    except ModuleNotFoundError as error:
+        if error.name not in UNIX_ONLY:
+            raise
+        print("hockle: this command needs Linux or macOS, for it locks files as they do: on Windows use it in WSL; "
+              "cases, validate and what talks to a server work everywhere", file=sys.stderr)  # fmt: skip
         return 1
     except KeyboardInterrupt:
         print("hockle: interrupted", file=sys.stderr)
@@ -37,5 +45,5 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=f"hockle {version('hockle')}")
     subparsers = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
     for name in COMMANDS:
-        import_module(name).register(subparsers)
+        import_module(f"hockle.{name}").register(subparsers)
     return top

@@ -17,6 +17,7 @@ from pathlib import Path
 from hockle.broker import answers, redis_binary, redis_child
 from hockle.children import Child
 from hockle.failure import Failure
+from hockle.parts import SINGLE_THREADED
 from service.access import has_keys
 from service.api.listening import listen
 from service.settings import Settings
@@ -25,10 +26,12 @@ START_WITHIN = 120.0
 APIS = 2
 """Processes that answer requests: one of them may be busy, or dead for a moment."""
 
+HOCKLE = (sys.executable, "-m", "hockle")
+
 DEATHS, WITHIN = 5, 60.0
 
-ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "2"}
-"""One job, one core; and small matrices are slower on more. Two heaps, where glibc would give the threads of an API
+ENVIRONMENT = SINGLE_THREADED | {"MALLOC_ARENA_MAX": "2"}
+"""Two heaps, where glibc would give the threads of an API
 process sixteen on two cores, each as large as the largest answer that some thread ever made in it."""
 
 
@@ -99,10 +102,9 @@ class Services:
         environment = self.settings.environment() | ENVIRONMENT
         apis = [f"api-{number}" for number in range(1, APIS + 1)]
         for name, listening in zip(apis, sockets, strict=True):
-            api = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
+            api = [*HOCKLE, "api", "--fd", str(listening.fileno())]
             self._add(Child(name, api, self._log(name), environment, keep_fds=(listening.fileno(),)))
-        worker = [sys.executable, "-m", "celery", "--app", "worker.app", "worker", "--loglevel", "INFO",
-                  "--concurrency", str(self._workers), "--without-gossip", "--without-mingle"]
+        worker = [*HOCKLE, "worker", "--workers", str(self._workers)]
         self._add(Child("worker", worker, self._log("worker"), environment, stop_signal=signal.SIGQUIT))
         for name in apis:
             self._await(name, self._api_answers)

@@ -1,4 +1,4 @@
-"""The Celery app: `celery -A worker.app worker`. Its settings come from the environment."""
+"""The Celery app that `hockle worker` runs. Its settings come from the environment."""
 
 from __future__ import annotations
 

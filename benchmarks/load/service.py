@@ -44,7 +44,7 @@ def without_workers() -> Iterator[tuple[str, int, Settings]]:
         data = cleanup.enter_context(tempfile.TemporaryDirectory(prefix="hockle-load-"))
         sockets = [cleanup.enter_context(listening) for listening in listen("127.0.0.1", 0, many=APIS)]
         for listening in sockets:
-            command = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
+            command = [sys.executable, "-m", "hockle", "api", "--fd", str(listening.fileno())]
             process = subprocess.Popen(command, env=os.environ | TOLD | {"HOCKLE_DATA": data},
                                        pass_fds=[listening.fileno()])  # fmt: skip
             cleanup.callback(process.wait, 60)

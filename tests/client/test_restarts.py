@@ -68,7 +68,7 @@ def test_submissions_go_on_while_the_interface_is_killed_and_none_is_made_twice(
 
         submitting = Waiting(submit)
         until(lambda: submitting.error or len(list(looking.jobs())) > 5, "jobs are made")
-        server.kill(server.service("service.api"))
+        server.kill(server.service("hockle api"))
         until(lambda: server.ready, "the interface is back")
         stop.wait(1.0)
         stop.set()

@@ -16,7 +16,7 @@ from service.settings import Settings
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
 
-API, WORKER, BROKER = "service.api", "worker.app", "unixsocket:"
+API, WORKER, BROKER = "hockle api", "hockle worker", "unixsocket:"
 
 
 def running(client, case, until) -> str:

@@ -36,8 +36,7 @@ def registry(settings) -> Iterator[Registry]:
 def worker(settings: Settings) -> Iterator[subprocess.Popen[bytes]]:
     """A worker as `hockle serve` starts it."""
     solver.warm()  # else it may compile for longer than a test waits
-    command = [sys.executable, "-m", "celery", "--app", "worker.app", "worker", "--concurrency", "1",
-               "--without-gossip", "--without-mingle"]  # fmt: skip
+    command = [sys.executable, "-m", "hockle", "worker", "--workers", "1"]
     process = subprocess.Popen(command, env=os.environ | settings.environment())
     try:
         yield process

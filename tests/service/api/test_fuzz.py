@@ -86,7 +86,7 @@ def serving(data: Path, **environment: str) -> Iterator[str]:
     """The address of a running service, in a process of its own."""
     [listening] = listen("127.0.0.1", 0)
     with listening:
-        command = [sys.executable, "-m", "service.api", "--fd", str(listening.fileno())]
+        command = [sys.executable, "-m", "hockle", "api", "--fd", str(listening.fileno())]
         told = {**os.environ, "HOCKLE_DATA": str(data), "REDIS_URL": "", **environment}
         process = subprocess.Popen(command, env=told, pass_fds=[listening.fileno()])
         try:

@@ -1,4 +1,4 @@
-"""hockle jobs, cancel, watch: the jobs of a server."""
+"""hockle jobs, cancel, watch, pin, unpin, delete: the jobs of a server."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STATUSES = ("accepted", "running", "successful", "failed", "dismissed")
 
 
 def register(subparsers: Any) -> None:
-    """Add `hockle jobs`, `hockle cancel` and `hockle watch`."""
+    """Add `hockle jobs`, `hockle cancel`, `hockle watch`, `hockle pin`, `hockle unpin` and `hockle delete`."""
     listing = subparsers.add_parser("jobs", help="list jobs, newest first")
     listing.add_argument("--status", choices=STATUSES, help="only jobs of this status")
     listing.add_argument("--label", help="only jobs with exactly this label")
@@ -21,10 +21,16 @@ def register(subparsers: Any) -> None:
     cancelling = subparsers.add_parser("cancel", help="cancel jobs")
     cancelling.add_argument("ids", metavar="ID", nargs="+")
     cancelling.set_defaults(run=cancel)
+    pinning = subparsers.add_parser("pin", help="keep jobs: nobody deletes them")
+    unpinning = subparsers.add_parser("unpin", help="let jobs be deleted")
+    deleting = subparsers.add_parser("delete", help="delete jobs that have ended, with their datasets")
+    for parser, what in ((pinning, pin), (unpinning, unpin), (deleting, delete)):
+        parser.add_argument("ids", metavar="ID", nargs="+")
+        parser.set_defaults(run=what)
     watching = subparsers.add_parser("watch", help="follow a job to its end")
     watching.add_argument("id", metavar="ID")
     watching.set_defaults(run=watch)
-    add_server(listing, cancelling, watching)
+    add_server(listing, cancelling, watching, pinning, unpinning, deleting)
 
 
 def jobs(told: argparse.Namespace) -> int:
@@ -44,6 +50,30 @@ def cancel(told: argparse.Namespace) -> int:
             state = client.job(job_id).cancel().state
             waits = " (it ends within a second)" if not state.ended else ""
             print(f"{sentence(state)}{waits}")
+    return 0
+
+
+def pin(told: argparse.Namespace) -> int:
+    """Have jobs kept."""
+    with connected(told.server) as client:
+        for job_id in told.ids:
+            client.job(job_id).pin()
+    return 0
+
+
+def unpin(told: argparse.Namespace) -> int:
+    """Let jobs be deleted."""
+    with connected(told.server) as client:
+        for job_id in told.ids:
+            client.job(job_id).unpin()
+    return 0
+
+
+def delete(told: argparse.Namespace) -> int:
+    """Delete jobs that have ended."""
+    with connected(told.server) as client:
+        for job_id in told.ids:
+            client.job(job_id).delete()
     return 0
 
 

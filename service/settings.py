@@ -86,6 +86,21 @@ class Settings:
         float, Positive, means("the most computing that a case may ask for, by its estimate", "s")
     ] = 86400.0
     quota: Annotated[int, Positive, means("the most unfinished jobs of one owner")] = 10_000
+    quota_bytes: Annotated[
+        Annotated[int, Positive] | None,
+        means("the most bytes of datasets of one owner: beyond it nothing more is accepted", "bytes"),
+    ] = None
+    keep_days: Annotated[
+        Annotated[float, Positive] | None, means("for how long a job is kept after its end; then it is deleted", "days")
+    ] = None
+    keep_bytes: Annotated[
+        Annotated[int, Positive] | None,
+        means("the most bytes of datasets that are kept of one owner: beyond it the oldest jobs are deleted", "bytes"),
+    ] = None
+    keep_free: Annotated[
+        Annotated[int, Positive] | None,
+        means("the least free disk: below it the oldest jobs are deleted", "bytes"),
+    ] = None
     rate: Annotated[float, Positive, means("the most requests of one owner who has a key", "1/s")] = 100.0
     require_keys: Annotated[bool, means("ask for API keys on loopback too, as behind a proxy")] = False
     hosts: Annotated[str, means("names by which clients know the service, with commas between")] = ""

@@ -84,7 +84,7 @@ class Attempt:
             self._check_size()
             message = " ".join([message, *simulation.notes()]).strip()
             published = self._with_room(lambda: writer.publish(outcome.value, message, simulation))
-        dataset = Dataset(self._path.name, published.sha256, published.bytes)
+        dataset = Dataset(self._path.name, published.sha256, published.bytes, self._datasets.stamp(self._path.name))
         return Ending(status, outcome, message, dataset, self._drift(spec), simulation.attributes())
 
     def publish(self) -> None:

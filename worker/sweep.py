@@ -6,7 +6,7 @@ import logging
 import shutil
 from collections.abc import Iterable
 
-from service.jobs import ENDED, Database, Registry, UnknownJob
+from service.jobs import ENDED, Database, DeletedJob, Registry, UnknownJob
 from service.results import Datasets, StoreUnreachable
 from service.settings import Settings
 from worker.attempt import dataset_file, work_directory
@@ -19,6 +19,8 @@ def sweep(database: Database, settings: Settings) -> None:
     for job_id in {path.stem for path in (*settings.work.iterdir(), *settings.locks.glob("*.lock"))}:
         try:
             job = Registry(database).get(job_id)
+        except DeletedJob as deleted:
+            job = deleted.job
         except UnknownJob:
             continue  # not the work of a job of this registry
         if job.status in ENDED:

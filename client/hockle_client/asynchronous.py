@@ -253,7 +253,24 @@ class AsyncJob(JobFacts):
 
     async def cancel(self) -> Self:
         """Cancel the job; an ended one stays as it is. Raises Problem."""
-        response = await self._client._ask("DELETE", f"/v1/jobs/{self.id}")
+        return await self._do("POST", "cancel")
+
+    async def pin(self) -> Self:
+        """Have the job kept, whatever the server's rules. Raises Problem."""
+        return await self._do("PUT", "pin")
+
+    async def unpin(self) -> Self:
+        """Let it be deleted. Raises Problem."""
+        return await self._do("DELETE", "pin")
+
+    async def delete(self) -> None:
+        """Delete the job, which must have ended, and its dataset, for ever. Raises Problem."""
+        if not (await self.refresh()).ended:
+            raise HockleError(f"job {self.id} is {self.status}: cancel it, and wait for its end")
+        await self._client._ask("DELETE", f"/v1/jobs/{self.id}")
+
+    async def _do(self, method: str, what: str) -> Self:
+        response = await self._client._ask(method, f"/v1/jobs/{self.id}/{what}")
         self.state = JobState.model_validate_json(response.content)
         return self
 

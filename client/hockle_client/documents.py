@@ -18,11 +18,12 @@ class Document(BaseModel):
 
 
 class DatasetInfo(Document):
-    """A dataset that can be fetched."""
+    """A dataset that can be fetched, but where a `fault` was found: it is missing or damaged."""
 
     href: str
     sha256: str
     bytes: int
+    fault: str = ""
 
 
 class Limits(Document):
@@ -51,6 +52,7 @@ class JobState(Document):
     outcome: str
     message: str
     cancel_requested: bool
+    pinned: bool = False
     attempts: int
     created: datetime
     started: datetime | None

@@ -252,7 +252,24 @@ class Job(JobFacts):
 
     def cancel(self) -> Self:
         """Cancel the job; an ended one stays as it is. Raises Problem."""
-        response = self._client._ask("DELETE", f"/v1/jobs/{self.id}")
+        return self._do("POST", "cancel")
+
+    def pin(self) -> Self:
+        """Have the job kept, whatever the server's rules. Raises Problem."""
+        return self._do("PUT", "pin")
+
+    def unpin(self) -> Self:
+        """Let it be deleted. Raises Problem."""
+        return self._do("DELETE", "pin")
+
+    def delete(self) -> None:
+        """Delete the job, which must have ended, and its dataset, for ever. Raises Problem."""
+        if not (self.refresh()).ended:
+            raise HockleError(f"job {self.id} is {self.status}: cancel it, and wait for its end")
+        self._client._ask("DELETE", f"/v1/jobs/{self.id}")
+
+    def _do(self, method: str, what: str) -> Self:
+        response = self._client._ask(method, f"/v1/jobs/{self.id}/{what}")
         self.state = JobState.model_validate_json(response.content)
         return self
 

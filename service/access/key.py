@@ -11,7 +11,7 @@ from enum import StrEnum
 
 OWNER = re.compile(r"[a-z0-9][a-z0-9._-]{0,62}")
 SPELLING = re.compile(r"hk_([0-9a-f]{12})_([A-Za-z0-9_-]{43})")
-RESERVED = ("local",)
+RESERVED = ("local", "console", "retention")
 
 
 class Scope(StrEnum):
@@ -52,7 +52,8 @@ class NewKey:
 
     def __post_init__(self) -> None:
         if not OWNER.fullmatch(self.owner) or self.owner in RESERVED:
-            raise ValueError(f"owner must be 1 to 63 of a-z 0-9 . _ -, and not local, got {self.owner!r}")
+            raise ValueError(f"owner must be 1 to 63 of a-z 0-9 . _ -, and none of {', '.join(RESERVED)}, "
+                             f"got {self.owner!r}")
         if not self.scopes:
             raise ValueError(f"scopes must be some of {', '.join(Scope)}, got none")
 

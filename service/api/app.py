@@ -33,9 +33,11 @@ from service.cases import load_case, parse_case, shipped_cases
 from service.jobs import Database, Registry
 from service.jobs.doorbell import Doorbell
 from service.jobs.reconciler import Reconciler, ring_for_all
+from service.jobs.submission import Terms
 from service.jobs.submissions import Submissions
 from service.results import Datasets
 from service.settings import Settings
+from service.store import Keeper
 from service.webhooks import Notifier
 
 TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
@@ -59,12 +61,15 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
         settings.make_directories()
         database = Database(settings.database_url)
         registry, doorbell = Registry(database), Doorbell(settings)
+        published = Datasets(settings.datasets, settings.copies, settings.objects)
+        terms = Terms(settings.quota, settings.quota_bytes, published.looks_good)
         with (Reconciler(database, doorbell, settings).rounds(), Notifier(database).rounds(),
-              Submissions(database, settings.quota, lambda: ring_for_all(database, doorbell)) as submissions):
+              Keeper(database, published, settings).rounds(),
+              Submissions(database, terms, lambda: ring_for_all(database, doorbell)) as submissions):
             async with Feed(registry).running() as feed:
                 limit = RateLimit(settings.rate, int(settings.rate * BURST))
                 app.state.parts = Parts(settings, registry, doorbell, KeyStore(database), limit, submissions, feed,
-                                        Datasets(settings.datasets, settings.copies, settings.objects))
+                                        published)
                 _warm_up()
                 yield
         doorbell.close()

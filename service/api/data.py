@@ -49,8 +49,8 @@ def part_of(job_id: str, jobs: Registry, parts: Parts, read: Callable[[Source], 
                 return job, read(LiveSource.of(parts.settings.work / job.id))
         except FileNotFoundError:  # there is none yet, or the job has just ended
             job = jobs.get(job_id)
-    published = dataset_of(job)
-    with there(job):
+    published = dataset_of(job, parts)
+    with there(job, parts):
         path = parts.datasets.file(published.file, published.bytes, published.sha256)
-    with there(job), readable(), opened(path) as source:
+    with there(job, parts), readable(), opened(path) as source:
         return job, read(source)

@@ -17,6 +17,8 @@ from service.api.problems import Problem
 from service.jobs import ENDED, Dataset, Job
 from service.results import StoreUnreachable
 from service.results.bucket import Bucket
+from service.store import look, lost
+from service.store.verification import MISSING
 
 NETCDF = "application/x-netcdf"
 BINARY = {NETCDF: {"schema": {"type": "string", "format": "binary"}}}
@@ -52,12 +54,12 @@ def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Respon
 
 def whole(job: Job, request: Request, parts: Parts) -> Response:
     """A job's file as an answer. Raises Problem."""
-    published = dataset_of(job)
+    published = dataset_of(job, parts)
     headers = {"ETag": f'"{published.sha256}"', "Cache-Control": "private, immutable"}
     if matches(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     headers["Content-Disposition"] = f'attachment; filename="{job.id}.nc"'
-    with there(job):
+    with there(job, parts):
         place = parts.datasets.find(published.file)
         if isinstance(place, Bucket):
             return _object(place, published, request, headers)
@@ -84,28 +86,33 @@ def _one_range(request: Request, etag: str, size: int) -> tuple[int, int] | None
     return ranges[0] if len(ranges) == 1 else None
 
 
-def dataset_of(job: Job) -> Dataset:
-    """What the job has published. Raises Problem 404 or 409."""
-    if job.dataset is not None:
-        return job.dataset
+def dataset_of(job: Job, parts: Parts) -> Dataset:
+    """What the job has published, and is still good. Raises Problem 404, 409 or 503."""
+    with there(job, parts):
+        published = look(parts.registry.database, parts.datasets, job)
+    if published is not None and published.fault:
+        raise _lost(job, published.fault)
+    if published is not None:
+        return published
     if job.status in ENDED:
-        raise _no_dataset(job)
+        raise Problem(404, "no_dataset", f"job {job.id} is {job.status} and has no dataset: {job.message}")
     raise Problem(409, "not_finished", f"job {job.id} is {job.status}: its dataset comes at its end",
                   {"Retry-After": "1"})
 
 
 @contextmanager
-def there(job: Job) -> Iterator[None]:
+def there(job: Job, parts: Parts) -> Iterator[None]:
     """While its dataset is looked for. Raises Problem 404 or 503."""
     try:
         yield
     except FileNotFoundError:
-        raise _no_dataset(job) from None
+        lost(parts.registry.database, job)
+        raise _lost(job, MISSING) from None
     except StoreUnreachable as error:
         log.warning("job %s: its dataset cannot be read: %s", job.id, error)
         raise Problem(503, "store_unreachable", "the object store that holds the dataset cannot give it now: ask later",
                       {"Retry-After": "5"}) from None
 
 
-def _no_dataset(job: Job) -> Problem:
-    return Problem(404, "no_dataset", f"job {job.id} is {job.status} and has no dataset: {job.message}")
+def _lost(job: Job, fault: str) -> Problem:
+    return Problem(404, "dataset_lost", f"the dataset of job {job.id} is {fault}: submit its case again")

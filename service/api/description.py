@@ -122,6 +122,8 @@ def _complete(operation: dict[str, Any], keyed: bool) -> None:
         answers |= _named(problems(422))
     secured = "security" in operation
     answers |= _named(problems(*ANYWHERE, *(WITH_A_KEY if secured else ())))
+    if any(parameter["name"] == "job_id" for parameter in operation.get("parameters", [])):
+        answers |= _named(problems(410))
     if secured:
         if not keyed:
             operation["security"].append({})

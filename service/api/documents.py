@@ -14,11 +14,12 @@ POLL_AFTER = "1"
 
 
 class DatasetDocument(BaseModel):
-    """A dataset that can be fetched."""
+    """A dataset that can be fetched, but where a `fault` was found: it is missing or damaged."""
 
     href: str
     sha256: str
     bytes: int
+    fault: str
 
 
 class LimitsDocument(BaseModel):
@@ -47,6 +48,7 @@ class JobDocument(BaseModel):
     outcome: str
     message: str
     cancel_requested: bool
+    pinned: bool
     attempts: int
     created: datetime
     started: datetime | None
@@ -72,11 +74,12 @@ def document(job: Job) -> JobDocument:
     dataset = None
     if job.dataset is not None:
         links["dataset"] = f"{here}/dataset"
-        dataset = DatasetDocument(href=links["dataset"], sha256=job.dataset.sha256, bytes=job.dataset.bytes)
+        dataset = DatasetDocument(href=links["dataset"], sha256=job.dataset.sha256, bytes=job.dataset.bytes,
+                                  fault=job.dataset.fault)
     return JobDocument(
         id=job.id, owner=job.owner, status=job.status, title=job.title, label=job.label, priority=job.priority,
         phase=job.phase, progress=job.progress, remaining=job.remaining, t=job.t, outcome=job.outcome,
-        message=job.message, cancel_requested=job.cancel_requested, attempts=job.attempts,
+        message=job.message, cancel_requested=job.cancel_requested, pinned=job.pinned, attempts=job.attempts,
         created=_instant(job.created), started=job.started and _instant(job.started),
         finished=job.finished and _instant(job.finished), case_sha256=job.case_sha256,
         attributes=job.attributes, limits=LimitsDocument(**vars(job.limits)), dataset=dataset, links=links,

@@ -1,4 +1,4 @@
-"""/v1/jobs: list, follow, cancel."""
+"""/v1/jobs: list, follow, cancel, delete, pin."""
 
 from __future__ import annotations
 
@@ -9,14 +9,15 @@ from urllib.parse import urlencode
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import AwareDatetime, BaseModel, BeforeValidator, ConfigDict, Field
 
-from service.access import Scope
+from service.access import Caller, Scope
 from service.api.description import NOT_MODIFIED, problems
 from service.api.documents import JobDocument, JobsDocument, answer, document
 from service.api.numbers import WHOLE
-from service.api.parts import Jobs, OwnJobs, Reader, Submitter, matches
+from service.api.parts import InParts, Jobs, OwnJobs, Parts, Reader, Submitter, matches
 from service.api.problems import Problem
-from service.jobs import Selection, Status
+from service.jobs import Job, Registry, Selection, Status
 from service.meaning import NO_CONTROL
+from service.store.removal import remove_files
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
@@ -80,8 +81,36 @@ def case(job_id: str, jobs: Jobs) -> dict[str, Any]:
     return jobs.case(job_id)
 
 
-@router.delete("/{job_id}", responses=problems(404))
+@router.post("/{job_id}/cancel", responses=problems(404))
 def cancel(job_id: str, jobs: OwnJobs, caller: Submitter) -> JobDocument:
     """Cancel a job: at once if it waits, within a second if it runs, and `dismissed` is how it then ends, however near
     its end it was; an ended one stays as it is."""
     return document(jobs.cancel(job_id, caller.actor))
+
+
+@router.delete("/{job_id}", responses=problems(404, 409))
+def delete(job_id: str, parts: InParts, jobs: OwnJobs, caller: Submitter) -> JobDocument:
+    """Delete a job that has ended, with its dataset: afterwards the answer is 410, with who and when. One that has not
+    is cancelled."""
+    return document(deleted(job_id, parts, jobs, caller))
+
+
+def deleted(job_id: str, parts: Parts, jobs: Registry, caller: Caller) -> Job:
+    """The job as it was before it was deleted, or is now that it is cancelled."""
+    job = jobs.get(job_id)
+    if not jobs.delete(job_id, caller.actor):
+        return jobs.cancel(job_id, caller.actor)
+    remove_files(parts.registry.database, parts.datasets)
+    return job
+
+
+@router.put("/{job_id}/pin", responses=problems(404))
+def pin(job_id: str, jobs: OwnJobs, caller: Submitter) -> JobDocument:
+    """Keep a job: neither retention nor DELETE takes it."""
+    return document(jobs.pin(job_id, True, caller.actor))
+
+
+@router.delete("/{job_id}/pin", responses=problems(404))
+def unpin(job_id: str, jobs: OwnJobs, caller: Submitter) -> JobDocument:
+    """Let a job be deleted."""
+    return document(jobs.pin(job_id, False, caller.actor))

@@ -67,7 +67,7 @@ def share(job_id: str, parts: InParts, jobs: OwnJobs, caller: Submitter,
         asked = LinkRequest.model_validate(body)
     except ValidationError as error:
         raise CaseError.of(error) from None
-    dataset_of(jobs.get(job_id))
+    dataset_of(jobs.get(job_id), parts)
     link, token = LinkStore(parts.registry.database).create(job_id, caller.actor, asked.seconds)
     return _document(link, f"{SHARED}{token}.nc")
 

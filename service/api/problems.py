@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import logging
 from collections.abc import Mapping
+from datetime import UTC, datetime
 from http import HTTPStatus
-from typing import Any
+from typing import Any, cast
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -17,7 +18,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from service.cases import MOST_TOLD, CaseError
-from service.jobs import UnknownJob
+from service.jobs import DeletedJob, Pinned, UnknownJob
 from service.jobs.submission import KeyReused, QuotaReached
 from service.jobs.submissions import InFlight
 
@@ -53,6 +54,8 @@ def install(app: FastAPI) -> None:
     app.exception_handler(RequestValidationError)(_parameters)
     app.exception_handler(CaseError)(_case)
     app.exception_handler(UnknownJob)(_unknown_job)
+    app.exception_handler(DeletedJob)(_deleted_job)
+    app.exception_handler(Pinned)(_pinned)
     app.exception_handler(KeyReused)(_key_reused)
     app.exception_handler(InFlight)(_in_flight)
     app.exception_handler(QuotaReached)(_quota)
@@ -106,6 +109,18 @@ async def _unknown_job(_: Request, error: Exception) -> JSONResponse:
     return Problem(404, "unknown_job", f"there is no job {str(error)[:40]!r}").response()
 
 
+async def _deleted_job(_: Request, error: Exception) -> JSONResponse:
+    job = cast(DeletedJob, error).job
+    when = datetime.fromtimestamp(job.deleted or 0.0, UTC).isoformat(timespec="seconds")
+    detail = f"job {job.id} was deleted by {job.deleted_by} at {when}"
+    return Problem(410, "job_deleted", detail, deleted=when, deleted_by=job.deleted_by).response()
+
+
+async def _pinned(_: Request, error: Exception) -> JSONResponse:
+    detail = f"job {error} is pinned: unpin it (DELETE /v1/jobs/{error}/pin) before it is deleted"
+    return Problem(409, "pinned", detail).response()
+
+
 async def _key_reused(_: Request, error: Exception) -> JSONResponse:
     detail = f"the Idempotency-Key {str(error)[:80]!r} came with another body before: use a new one"
     return Problem(422, "idempotency_key_reused", detail).response()
@@ -117,8 +132,7 @@ async def _in_flight(_: Request, error: Exception) -> JSONResponse:
 
 
 async def _quota(_: Request, error: Exception) -> JSONResponse:
-    detail = f"{error}: wait for some of them, or cancel them"
-    return Problem(429, "quota_reached", detail, {"Retry-After": SOON}).response()
+    return Problem(429, "quota_reached", str(error), {"Retry-After": SOON}).response()
 
 
 async def _database(request: Request, error: Exception) -> JSONResponse:

@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from service.api.bodies import at_leisure, json_object
 from service.api.description import EXECUTE_BODY, problems
 from service.api.documents import JobDocument, document
+from service.api.jobs import deleted
 from service.api.numbers import WHOLE
 from service.api.parts import InParts, Jobs, OwnJobs, Reader, Submitter
 from service.api.problems import Problem
@@ -173,10 +174,10 @@ async def results(job_id: str, jobs: Jobs) -> dict[str, Link]:
     return {"dataset": Link(href=native.links["dataset"], rel="item", type=NETCDF)}
 
 
-@router.delete("/jobs/{job_id}", responses=problems(404))
-def dismiss(job_id: str, jobs: OwnJobs, caller: Submitter) -> StatusInfo:
-    """Cancel a job."""
-    return _status(jobs.cancel(job_id, caller.actor))
+@router.delete("/jobs/{job_id}", responses=problems(404, 409))
+def dismiss(job_id: str, parts: InParts, jobs: OwnJobs, caller: Submitter) -> StatusInfo:
+    """Cancel a job, or delete one that has ended."""
+    return _status(deleted(job_id, parts, jobs, caller))
 
 
 def _summary() -> dict[str, Any]:

@@ -9,7 +9,7 @@ import numpy as np
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
-from service.api.datasets import there
+from service.api.datasets import dataset_of, there
 from service.api.description import problems
 from service.api.formats import CONTENT, Accept, Variables, format_of, given, readable
 from service.api.parts import InParts, Jobs, Parts
@@ -68,8 +68,9 @@ def values_of(job: Job, names: Sequence[str], parts: Parts) -> dict[str, Value]:
     """The last values of a job. Raises Problem 404 or 503 where its dataset is not there."""
     if job.dataset is None:
         return dict.fromkeys(names)
-    with there(job):
-        path = parts.datasets.file(job.dataset.file, job.dataset.bytes, job.dataset.sha256)
+    published = dataset_of(job, parts)
+    with there(job, parts):
+        path = parts.datasets.file(published.file, published.bytes, published.sha256)
     return last_values(path, names)
 
 

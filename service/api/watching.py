@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import time
 from collections.abc import Iterator
 from datetime import UTC, datetime
@@ -53,15 +54,16 @@ class Stretch(BaseModel):
 
 @router.get("/metrics", response_class=Response, responses={**TEXT})
 def metrics(parts: InParts, _: Operator) -> Response:
-    """Queue, leases, steps, outcomes and drift, from the registry, in the text format of Prometheus."""
+    """Queue, leases, steps, outcomes, bytes and drift, from the registry, in the text format of Prometheus."""
     registry = CollectorRegistry()
-    registry.register(_Told(measure(parts.registry.database, parts.settings.lease, time.time())))
+    measures = measure(parts.registry.database, parts.settings.lease, time.time())
+    registry.register(_Told(measures, shutil.disk_usage(parts.settings.datasets).free))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
 
 
 @router.get("/v1/audit", responses=problems(422))
 def audit(_: Operator, stretch: Annotated[Stretch, Query()], parts: InParts) -> TrailDocument:
-    """Who submitted and cancelled which job, who created and revoked which key."""
+    """Who submitted, cancelled, pinned and deleted which job, who created and revoked which key."""
     deeds = trail(parts.registry.database, stretch.limit, stretch.before)
     more = len(deeds) == stretch.limit
     documents = [DeedDocument(**vars(deed) | {"time": datetime.fromtimestamp(deed.time, UTC)}) for deed in deeds]
@@ -72,8 +74,8 @@ def audit(_: Operator, stretch: Annotated[Stretch, Query()], parts: InParts) -> 
 class _Told(Collector):
     """Measures as Prometheus names them."""
 
-    def __init__(self, measures: Measures) -> None:
-        self._measures = measures
+    def __init__(self, measures: Measures, free: int) -> None:
+        self._measures, self._free = measures, free
 
     def collect(self) -> Iterator[Metric]:
         measures = self._measures
@@ -89,6 +91,14 @@ class _Told(Collector):
         taken = measures.steps + measures.steps_redone  # the first alone falls where a run goes back to its checkpoint
         yield CounterMetricFamily("hockle_steps", "Steps of the solver, those computed again included", taken)
         yield CounterMetricFamily("hockle_steps_redone", "Steps lost and computed again", measures.steps_redone)
+        held = GaugeMetricFamily("hockle_dataset_bytes", "Bytes of the datasets of an owner", labels=["owner"])
+        for owner, size in measures.bytes.items():
+            held.add_metric([owner], size)
+        yield held
+        yield GaugeMetricFamily("hockle_disk_free_bytes", "Free room where datasets are written", self._free)
+        yield GaugeMetricFamily("hockle_datasets_lost", "Datasets that are missing or damaged", measures.lost)
+        yield GaugeMetricFamily("hockle_jobs_pinned", "Jobs that nobody may delete", measures.pinned)
+        yield CounterMetricFamily("hockle_jobs_deleted", "Jobs that were deleted, by whomever", measures.deleted)
         yield _histogram("hockle_drift_topology_turns", "|Tw + Wr - Lk| at the end of a run", measures.drift_topology)
         yield _histogram("hockle_drift_energy_ratio", "Energy balance at the end over the energy that changed its form",
                          measures.drift_energy)

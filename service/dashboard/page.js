@@ -68,7 +68,7 @@ function askToCancel(job, then) {
   ask.returnValue = "no";
   ask.onclose = async () => {
     if (ask.returnValue !== "yes") return;
-    await call(job.links.self, { method: "DELETE" }).catch((error) => notice(error.message));
+    await call(`${job.links.self}/cancel`, { method: "POST" }).catch((error) => notice(error.message));
     then();
   };
   ask.showModal();

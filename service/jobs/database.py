@@ -6,7 +6,7 @@ import json
 import sqlite3
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -58,20 +58,23 @@ class Transaction:
         values = {"version": jobs.c.version + 1} | values
         changed = self.connection.execute(
             update(jobs).where(*where).values(**values)
-            .returning(jobs.c.id, jobs.c.owner, jobs.c.version, jobs.c.epoch)
+            .returning(jobs.c.id, jobs.c.owner, jobs.c.version, jobs.c.epoch, jobs.c.dataset_bytes)
         ).all()  # fmt: skip
         if status in ENDED:
-            self._finished(Counter(row.owner for row in changed))
+            self._finished(changed)
         if event:
             told = {"status": status.value} if status is not None else {}
             for row in changed:
                 self.note(row.id, row.version, event, told | {"epoch": row.epoch})
         return [row.id for row in changed]
 
-    def _finished(self, ended: Counter[str]) -> None:
-        for owner, many in sorted(ended.items()):  # in one order: rows are locked in it
-            fewer = update(owners).where(owners.c.name == owner).values(unfinished=owners.c.unfinished - many)
-            self.connection.execute(fewer)
+    def _finished(self, ended: Sequence[Any]) -> None:
+        many, size = Counter(row.owner for row in ended), Counter[str]()
+        for row in ended:
+            size[row.owner] += row.dataset_bytes or 0
+        for owner in sorted(many):  # in one order: rows are locked in it
+            now = {"unfinished": owners.c.unfinished - many[owner], "bytes": owners.c.bytes + size[owner]}
+            self.connection.execute(update(owners).where(owners.c.name == owner).values(**now))
 
     def note(self, job_id: str, version: int, kind: str, data: Mapping[str, Any]) -> None:
         """Write an event of a job, told by its version."""

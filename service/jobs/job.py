@@ -22,11 +22,17 @@ LOCAL = "local"
 
 @dataclass(frozen=True)
 class Dataset:
-    """A published file, by its name in the directory of datasets."""
+    """A published file, by its name in the directory of datasets.
+
+    `stamp`: what the file looked like when it was known to be good (service.results.durable.stamp_of), empty if nobody
+    has looked, or it is an object. `fault`: why it cannot be read any more, empty if it can.
+    """
 
     file: str
     sha256: str
     bytes: int
+    stamp: str = ""
+    fault: str = ""
 
 
 @dataclass(frozen=True)
@@ -105,7 +111,7 @@ class Job:
     `version` grows with every change that a reader can see. `epoch` grows with every claim and when a
     lost job is taken back: a writer that holds an older one has lost the job. `attempts` counts the
     claims, but for those handed back; `fruitless` those since the last new checkpoint. `attributes`: what its run
-    says of itself as a whole, by the names that its dataset has for it.
+    says of itself as a whole, by the names that its dataset has for it. A `pinned` job is deleted by nobody.
     """
 
     id: str
@@ -129,6 +135,9 @@ class Job:
     version: int
     worker: str
     limits: Limits
+    pinned: bool
+    deleted: float | None
+    deleted_by: str
     dataset: Dataset | None
     attributes: dict[str, float | int | str]
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sqlalchemy import Column, case, func, select
+from sqlalchemy import Column, ColumnElement, case, func, select
 
 from service.jobs.database import Database
 from service.jobs.lifecycle import ENDED, Status
-from service.jobs.tables import jobs
+from service.jobs.tables import jobs, owners
 
 BOUNDS = [10.0**exponent for exponent in range(-15, 1)]
 """Of the histograms: what is drift at all lies anywhere between rounding and one."""
@@ -29,6 +29,7 @@ class Measures:
     """Jobs by status and, of those that ended, by status and outcome; ages in seconds; steps of all jobs together.
 
     `queue_age`: how long the oldest waiting job waits. `lease_age`: how long ago the most silent worker renewed.
+    `bytes` of datasets by owner, `lost` datasets that are missing or damaged, `pinned` and `deleted` jobs.
     `drift_topology` (turn) and `drift_energy`: of ended runs, as service.jobs.Drift has them.
     """
 
@@ -38,6 +39,10 @@ class Measures:
     lease_age: float
     steps: int
     steps_redone: int
+    bytes: dict[str, int]
+    lost: int
+    pinned: int
+    deleted: int
     drift_topology: list[Histogram]
     drift_energy: list[Histogram]
 
@@ -50,6 +55,10 @@ def measure(database: Database, lease: float, now: float) -> Measures:
             .group_by(jobs.c.status, jobs.c.outcome)
         ).all()  # fmt: skip
         oldest = connection.scalar(select(func.min(jobs.c.created)).where(jobs.c.status == Status.ACCEPTED))
+        bytes_ = {row.name: row.bytes for row in connection.execute(select(owners.c.name, owners.c.bytes))}
+        kept = connection.execute(select(
+            _count(jobs.c.dataset_fault != ""), _count(jobs.c.pinned), _count(jobs.c.deleted.is_not(None))
+        )).one()  # fmt: skip
         silent = connection.scalar(select(func.min(jobs.c.lease_until)).where(jobs.c.status == Status.RUNNING))
     by_status = {status.value: 0 for status in Status}
     for status, _, count, _, _ in many:
@@ -61,9 +70,15 @@ def measure(database: Database, lease: float, now: float) -> Measures:
         max(0.0, now - (silent - lease)) if silent is not None else 0.0,
         sum(int(steps) for *_, steps, _ in many),
         sum(int(redone) for *_, redone in many),
+        bytes_,
+        *kept,
         _histograms(database, jobs.c.drift_topology),
         _histograms(database, jobs.c.drift_energy),
     )
+
+
+def _count(which: ColumnElement[bool]) -> ColumnElement[int]:
+    return func.coalesce(func.sum(case((which, 1), else_=0)), 0)
 
 
 def _histograms(database: Database, column: Column[float]) -> list[Histogram]:

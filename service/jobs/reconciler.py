@@ -99,22 +99,23 @@ def dismiss_cancelled(database: Database | Leader) -> None:
 
 
 def recount(database: Database | Leader) -> None:
-    """Set right how many unfinished jobs owners have: a process of an older version, which does not keep the number,
-    may have run beside this one."""
+    """Set right how many unfinished jobs and how many bytes owners have: a process of an older version, which does not
+    keep the numbers, may have run beside this one."""
+    his = jobs.c.owner == owners.c.name
     there_are = (
-        select(func.count())
-        .where(jobs.c.owner == owners.c.name, jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING)))
-        .scalar_subquery()
+        select(func.count()).where(his, jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING))).scalar_subquery()
     )
+    bytes_ = select(func.coalesce(func.sum(jobs.c.dataset_bytes), 0)).where(his).scalar_subquery()
+    miscounted = (owners.c.unfinished != there_are) | (owners.c.bytes != bytes_)
     with database.reading() as connection:
-        wrong = connection.scalars(select(owners.c.name).where(owners.c.unfinished != there_are)).all()
+        wrong = connection.scalars(select(owners.c.name).where(miscounted)).all()
     if not wrong:
         return
     theirs = owners.c.name.in_(wrong)
     with database.writing() as transaction:
         # held first, in one order, and counted after: what another transaction changes meanwhile it adds itself
         transaction.connection.execute(select(owners.c.name).where(theirs).order_by(owners.c.name).with_for_update())
-        transaction.connection.execute(update(owners).where(theirs).values(unfinished=there_are))
+        transaction.connection.execute(update(owners).where(theirs).values(unfinished=there_are, bytes=bytes_))
 
 
 def waiting(database: Database) -> int:

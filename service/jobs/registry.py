@@ -14,8 +14,9 @@ from sqlalchemy.dialects import postgresql, sqlite
 from outcomes import Outcome
 from service.jobs.audit import Actor, note
 from service.jobs.database import Database, Transaction
+from service.jobs.deletion import delete_jobs
 from service.jobs.job import Job, NewJob
-from service.jobs.lifecycle import Status
+from service.jobs.lifecycle import ENDED, Status
 from service.jobs.tables import FRESH, JOB_COLUMNS, events, job_of, jobs, owners
 
 ONE_JOB = select(*JOB_COLUMNS).where(jobs.c.id == bindparam("job_id"))
@@ -24,6 +25,18 @@ ONE_JOB = select(*JOB_COLUMNS).where(jobs.c.id == bindparam("job_id"))
 
 class UnknownJob(LookupError):
     """No job has this id."""
+
+
+class DeletedJob(UnknownJob):
+    """The job that has this id was deleted; of it stays when and by whom."""
+
+    def __init__(self, job: Job) -> None:
+        super().__init__(job.id)
+        self.job = job
+
+
+class Pinned(Exception):
+    """The job is pinned, and so cannot be deleted."""
 
 
 @dataclass(frozen=True)
@@ -74,27 +87,29 @@ class Registry:
         return job
 
     def get(self, job_id: str) -> Job:
-        """One job, by a point read. Raises UnknownJob."""
+        """One job, by a point read. Raises UnknownJob, DeletedJob."""
         _check(job_id)
         with self.database.reading() as connection:
             row = connection.execute(ONE_JOB, {"job_id": job_id}).mappings().first()
         if row is None or self.owner not in (None, row["owner"]):
             raise UnknownJob(job_id)
-        return job_of(row)
+        job = job_of(row)
+        if job.deleted is not None:
+            raise DeletedJob(job)
+        return job
 
     def case(self, job_id: str) -> dict[str, Any]:
-        """The case of a job. Raises UnknownJob."""
-        _check(job_id)
+        """The case of a job. Raises UnknownJob, DeletedJob."""
+        self.get(job_id)
         with self.database.reading() as connection:
-            text = connection.scalar(select(jobs.c.case_json).where(jobs.c.id == job_id, self._seen))
-        if text is None:
-            raise UnknownJob(job_id)
-        case: dict[str, Any] = json.loads(text)
+            text = connection.scalar(select(jobs.c.case_json).where(jobs.c.id == job_id))
+        case: dict[str, Any] = json.loads(text or "{}")
         return case
 
     def page(self, limit: int, selection: Selection = Selection()) -> Page:
         """At most `limit` jobs of a selection, newest first."""
-        query = select(*JOB_COLUMNS).where(self._seen).order_by(jobs.c.id.desc()).limit(limit + 1)
+        kept = (self._seen, jobs.c.deleted.is_(None))
+        query = select(*JOB_COLUMNS).where(*kept).order_by(jobs.c.id.desc()).limit(limit + 1)
         wanted = {jobs.c.status: selection.status, jobs.c.label: selection.label, jobs.c.owner: selection.owner}
         query = query.where(*(column == value for column, value in wanted.items() if value is not None))
         if selection.after is not None:
@@ -108,7 +123,7 @@ class Registry:
         return Page(listed[:limit], listed[limit - 1].id if len(listed) > limit else None)
 
     def cancel(self, job_id: str, actor: Actor | None = None) -> Job:
-        """Dismiss a job that waits; tell the worker of one that runs. Raises UnknownJob."""
+        """Dismiss a job that waits; tell the worker of one that runs. Raises UnknownJob, DeletedJob."""
         _check(job_id)
         with self.database.writing() as transaction:
             this = (jobs.c.id == job_id, self._seen)
@@ -118,6 +133,27 @@ class Registry:
                 note(transaction, actor, "job_cancelled", job_id)
             transaction.change(*this, jobs.c.status == Status.ACCEPTED, event="ended", status=Status.DISMISSED,
                                outcome=Outcome.CANCELLED.value, message="cancelled before it started")
+        return self.get(job_id)
+
+    def delete(self, job_id: str, actor: Actor) -> bool:
+        """Delete a job that has ended; False if it has not. Raises UnknownJob, DeletedJob, Pinned."""
+        job = self.get(job_id)
+        if job.status not in ENDED:
+            return False
+        with self.database.writing() as transaction:
+            deleted = delete_jobs(transaction, actor, [job_id])
+        if not deleted:  # somebody has just pinned it, if not deleted it
+            self.get(job_id)
+            raise Pinned(job_id)
+        return True
+
+    def pin(self, job_id: str, pinned: bool, actor: Actor) -> Job:
+        """Have a job kept whatever retention says, or no more. Raises UnknownJob, DeletedJob."""
+        _check(job_id)
+        with self.database.writing() as transaction:
+            other = (jobs.c.id == job_id, self._seen, jobs.c.deleted.is_(None), jobs.c.pinned != pinned)
+            if transaction.change(*other, pinned=pinned):
+                note(transaction, actor, "job_pinned" if pinned else "job_unpinned", job_id)
         return self.get(job_id)
 
     def versions(self, job_ids: Collection[str]) -> dict[str, int]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import bindparam, delete, func, insert, select, tuple_
@@ -12,7 +12,7 @@ from service.jobs.audit import Actor, note
 from service.jobs.database import Transaction
 from service.jobs.job import Job, NewJob
 from service.jobs.lifecycle import Status
-from service.jobs.registry import insert_jobs
+from service.jobs.registry import DeletedJob, insert_jobs
 from service.jobs.tables import JOB_COLUMNS, idempotency_keys, job_of, jobs, owners, webhooks
 
 REMEMBERED = 3 * 86400.0
@@ -20,10 +20,14 @@ REMEMBERED = 3 * 86400.0
 
 ALIKE = (
     select(jobs.c.owner, jobs.c.case_sha256, func.max(jobs.c.id).label("id"))
-    .where(jobs.c.case_sha256.in_(bindparam("hashes", expanding=True)), jobs.c.status == Status.SUCCESSFUL)
+    .where(jobs.c.case_sha256.in_(bindparam("hashes", expanding=True)), jobs.c.status == Status.SUCCESSFUL,
+           jobs.c.deleted.is_(None), jobs.c.dataset_fault == "")
     .group_by(jobs.c.owner, jobs.c.case_sha256)
 )
-UNFINISHED = select(owners.c.name, owners.c.unfinished).where(owners.c.name.in_(bindparam("owners", expanding=True)))
+OWNED = (
+    select(owners.c.name, owners.c.unfinished, owners.c.bytes)
+    .where(owners.c.name.in_(bindparam("names", expanding=True)))
+)
 
 
 class KeyReused(Exception):
@@ -31,7 +35,7 @@ class KeyReused(Exception):
 
 
 class QuotaReached(Exception):
-    """The owner has as many unfinished jobs as one may have."""
+    """The owner has as many unfinished jobs as one may have, or bytes of datasets."""
 
 
 @dataclass(frozen=True)
@@ -55,28 +59,41 @@ class Submission:
         return self.new.owner, self.key
 
 
-def submit_all(transaction: Transaction, submissions: Sequence[Submission], quota: int) -> list[Job | Exception]:
-    """Write what is new of some submissions; gives the job of each, or why there is none.
+@dataclass(frozen=True)
+class Terms:
+    """What every owner may have: so many unfinished jobs, and bytes of datasets (None: as many as there is room for).
 
-    `quota`: the most unfinished jobs of one owner.
+    `looks_good`: whether a dataset (its file, its stamp) looks as it did when it was good: only then is it given again.
     """
-    desk = _Desk(transaction, submissions, quota)
+
+    unfinished: int
+    bytes: int | None = None
+    looks_good: Callable[[str, str], bool] = lambda _file, _stamp: True
+
+
+def submit_all(transaction: Transaction, submissions: Sequence[Submission], terms: Terms) -> list[Job | Exception]:
+    """Write what is new of some submissions; gives the job of each, or why there is none."""
+    desk = _Desk(transaction, submissions, terms)
     verdicts = [desk.judge(submission) for submission in submissions]
     now = {job.id: job for job in desk.write()}
     if older := {verdict for verdict in verdicts if isinstance(verdict, str)} - now.keys():
         rows = transaction.connection.execute(select(*JOB_COLUMNS).where(jobs.c.id.in_(older))).mappings()
         now |= {row["id"]: job_of(row) for row in rows}
-    return [now[verdict] if isinstance(verdict, str) else verdict for verdict in verdicts]
+    return [_unless_deleted(now[verdict]) if isinstance(verdict, str) else verdict for verdict in verdicts]
+
+
+def _unless_deleted(job: Job) -> Job | DeletedJob:
+    return job if job.deleted is None else DeletedJob(job)
 
 
 class _Desk:
     """What is known when some submissions are judged, one after the other, and what is to be written of them."""
 
-    def __init__(self, transaction: Transaction, submissions: Sequence[Submission], quota: int) -> None:
-        self._transaction, self._quota = transaction, quota
+    def __init__(self, transaction: Transaction, submissions: Sequence[Submission], terms: Terms) -> None:
+        self._transaction, self._terms = transaction, terms
         self._known = _known(transaction, {one.mark for one in submissions if one.key})
-        self._alike = _alike(transaction, {one.new.case_sha256 for one in submissions if one.reuse})
-        self._unfinished = _unfinished(transaction, {one.new.owner for one in submissions})
+        self._alike = _alike(transaction, {one.new.case_sha256 for one in submissions if one.reuse}, terms.looks_good)
+        self._unfinished, self._bytes = _owned(transaction, {one.new.owner for one in submissions})
         self._made: list[Submission] = []
         self._keys: list[dict[str, object]] = []
 
@@ -87,9 +104,8 @@ class _Desk:
             return job_id if body_sha256 == one.body_sha256 else KeyReused(one.key)
         verdict = self._alike.get((one.new.owner, one.new.case_sha256)) if one.reuse else None
         if verdict is None:
-            many = self._unfinished[one.new.owner]
-            if many >= self._quota:
-                return QuotaReached(f"{one.new.owner} has {many} unfinished jobs, and may have {self._quota}")
+            if refusal := self._beyond(one.new.owner):
+                return refusal
             self._unfinished[one.new.owner] += 1
             self._made.append(one)
             verdict = one.new.id
@@ -98,6 +114,17 @@ class _Desk:
             self._keys.append({"owner": one.new.owner, "key": one.key, "body_sha256": one.body_sha256,
                                "job_id": verdict, "created": self._transaction.now})
         return verdict
+
+    def _beyond(self, owner: str) -> QuotaReached | None:
+        """Why this owner may have no job more."""
+        many, held = self._unfinished[owner], self._bytes[owner]
+        if many >= self._terms.unfinished:
+            return QuotaReached(f"{owner} has {many} unfinished jobs, and may have {self._terms.unfinished}: "
+                                "wait for some of them, or cancel them")
+        if self._terms.bytes is not None and held >= self._terms.bytes:
+            return QuotaReached(f"{owner} has {held:,} bytes of datasets, and may have {self._terms.bytes:,}: "
+                                "delete some jobs")
+        return None
 
     def write(self) -> list[Job]:
         """Write the jobs that are new, and what belongs to them; gives the jobs."""
@@ -127,15 +154,20 @@ def _known(transaction: Transaction, marks: Collection[tuple[str, str]]) -> dict
     return {(row.owner, row.key): (row.body_sha256, row.job_id) for row in found}
 
 
-def _alike(transaction: Transaction, hashes: Collection[str]) -> dict[tuple[str, str], str]:
-    """The newest successful job of each case, by owner and hash."""
+def _alike(transaction: Transaction, hashes: Collection[str],
+           looks_good: Callable[[str, str], bool]) -> dict[tuple[str, str], str]:
+    """The newest successful job of each case, by owner and hash, if its dataset looks good."""
     if not hashes:
         return {}
-    found = transaction.connection.execute(ALIKE, {"hashes": list(hashes)})
-    return {(row.owner, row.case_sha256): row.id for row in found}
+    connection = transaction.connection
+    newest = {row.id: (row.owner, row.case_sha256) for row in connection.execute(ALIKE, {"hashes": list(hashes)})}
+    if not newest:
+        return {}
+    published = select(jobs.c.id, jobs.c.dataset_file, jobs.c.dataset_stamp).where(jobs.c.id.in_(newest))
+    return {newest[job_id]: job_id for job_id, *dataset in connection.execute(published) if looks_good(*dataset)}
 
 
-def _unfinished(transaction: Transaction, owners: Collection[str]) -> Counter[str]:
-    """How many unfinished jobs each of the owners has."""
-    found = transaction.connection.execute(UNFINISHED, {"owners": list(owners)})
-    return Counter({row.name: row.unfinished for row in found})
+def _owned(transaction: Transaction, names: Collection[str]) -> tuple[Counter[str], Counter[str]]:
+    """How many unfinished jobs, and bytes of datasets, each of some owners has."""
+    found = transaction.connection.execute(OWNED, {"names": list(names)}).all()
+    return Counter({row.name: row.unfinished for row in found}), Counter({row.name: row.bytes for row in found})

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 
 from service.jobs.database import Database
 from service.jobs.job import Job
-from service.jobs.submission import Submission, submit_all
+from service.jobs.submission import Submission, Terms, submit_all
 
 AT_ONCE = 200
 PAUSE = 0.05  # s between two tellings: in a rush of submissions they would cost as much as these
@@ -31,9 +31,8 @@ class Submissions:
     After a commit `committed` is called, by a thread that does nothing else: nobody waits for it.
     """
 
-    def __init__(self, database: Database, quota: int, committed: Callable[[], object]) -> None:
-        """`quota`: the most unfinished jobs of one owner."""
-        self._database, self._quota, self._committed = database, quota, committed
+    def __init__(self, database: Database, terms: Terms, committed: Callable[[], object]) -> None:
+        self._database, self._terms, self._committed = database, terms, committed
         self._waiting: queue.SimpleQueue[Waiting | None] = queue.SimpleQueue()
         self._in_flight: set[tuple[str, str]] = set()
         self._lock = threading.Lock()
@@ -98,7 +97,7 @@ class Submissions:
             with self._database.writing() as transaction:
                 if again:
                     batch += self._more()
-                results = submit_all(transaction, [submission for submission, _ in batch], self._quota)
+                results = submit_all(transaction, [submission for submission, _ in batch], self._terms)
         except Exception as error:
             for one in batch:
                 if again:

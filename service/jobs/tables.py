@@ -67,18 +67,27 @@ jobs = Table(
     Column("drift_method", String(16)),
     Column("drift_topology", Double),
     Column("drift_energy", Double),
+    Column("pinned", Boolean, nullable=False, default=False),
+    Column("deleted", Double),
+    Column("deleted_by", String(64), nullable=False, default=""),
+    Column("dataset_stamp", String(80), nullable=False, default=""),
+    Column("dataset_fault", Text, nullable=False, default=""),
     Index("jobs_by_status", "status", "id"),
     Index("jobs_by_owner", "owner", "id"),
     Index("jobs_by_case", "case_sha256", "status"),
     Index("jobs_in_turn", "status", "owner", "priority", "id"),
+    Index("jobs_by_end", "deleted", "finished"),
+    Index("jobs_by_bytes", "owner", "dataset_bytes"),
 )
 
 owners = Table(
-    "owners",  # all who ever submitted a job; `served` orders their latest claims, `unfinished` counts their jobs
+    "owners",  # all who ever submitted a job; `served` orders their latest claims, `unfinished` counts their jobs,
+    # `bytes` is the size of their datasets
     metadata,
     Column("name", String(64), primary_key=True),
     Column("served", BigInteger, nullable=False, default=0),
     Column("unfinished", BigInteger, nullable=False, default=0),
+    Column("bytes", BigInteger, nullable=False, default=0),
 )
 
 events = Table(
@@ -89,6 +98,12 @@ events = Table(
     Column("time", Double, nullable=False),
     Column("kind", String(32), nullable=False),
     Column("data", Text, nullable=False),
+)
+
+removals = Table(
+    "removals",  # datasets of deleted jobs: their files are to be removed
+    metadata,
+    Column("file", Text, primary_key=True),
 )
 
 idempotency_keys = Table(
@@ -167,6 +182,7 @@ processes = Table(
     Column("stuck", Text, nullable=False),
 )
 
+DATASET = tuple(field.name for field in dataclasses.fields(Dataset))
 REACHED = tuple(field.name for field in dataclasses.fields(Reached))
 NOT_OF_THE_JOB = ("case_json", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
 JOB_COLUMNS = [column for column in jobs.columns if column.name not in NOT_OF_THE_JOB]
@@ -180,7 +196,7 @@ def job_of(row: Mapping[Any, Any]) -> Job:
     fields = dict(row)
     reached = Reached(*(fields.pop(name) for name in REACHED))
     limits = Limits(*(fields.pop(f"limit_{name}") for name in ("wall", "memory", "disk")))
-    file, sha256, size = (fields.pop(f"dataset_{name}") for name in ("file", "sha256", "bytes"))
-    dataset = Dataset(file, sha256, size) if file is not None else None
+    told = [fields.pop(f"dataset_{name}") for name in DATASET]
+    dataset = Dataset(*told) if told[0] is not None else None
     return Job(**fields | {"status": Status(fields["status"]), "reached": reached, "limits": limits,
                            "dataset": dataset, "attributes": json.loads(fields["attributes"])})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from functools import cache
@@ -36,6 +37,13 @@ class Bucket:
         with _answering(name):
             answer = client().get_object(Bucket=self._bucket, Key=self._key(name), Range=f"bytes={start}-{stop - 1}")
         return _chunks(name, answer["Body"])
+
+    def sha256(self, name: str, size: int) -> str:
+        """The checksum of an object, hexadecimal. Raises FileNotFoundError, StoreUnreachable."""
+        digest = hashlib.sha256()
+        for chunk in self.read(name, 0, size):
+            digest.update(chunk)
+        return digest.hexdigest()
 
     def remove(self, name: str) -> None:
         """Remove an object, if it is there. Raises StoreUnreachable."""

@@ -10,10 +10,12 @@ from contextlib import suppress
 from pathlib import Path
 
 from service.results.bucket import Bucket, StoreUnreachable
-from service.results.durable import scratch, sha256_of
+from service.results.durable import scratch, sha256_of, stamp_of
 
 ROOM = 10_000_000_000
 """Bytes of copies that a host keeps."""
+OBJECT = "object"
+"""The stamp of what is no file."""
 IN_USE = 60.0
 """Seconds for which a copy is kept in any case after it was asked for."""
 
@@ -53,6 +55,22 @@ class Datasets:
         if self._bucket is None:
             raise FileNotFoundError(errno.ENOENT, "there is no such dataset", name)
         return self._bucket
+
+    def stamp(self, name: str) -> str:
+        """What the file looks like (durable.stamp_of); an object has none. Raises FileNotFoundError."""
+        place = self.find(name)
+        return stamp_of(place) if isinstance(place, Path) else OBJECT
+
+    def sha256(self, name: str, size: int) -> str:
+        """The checksum of what is there. Raises FileNotFoundError, StoreUnreachable."""
+        place = self.find(name)
+        return sha256_of(place) if isinstance(place, Path) else place.sha256(name, size)
+
+    def looks_good(self, name: str, stamp: str) -> bool:
+        """Whether a dataset looks as it did when it was known to be good. An object is not looked at."""
+        with suppress(FileNotFoundError):
+            return self.stamp(name) == stamp
+        return False
 
     def file(self, name: str, size: int, sha256: str) -> Path:
         """A dataset as a file, copied to this host if need be. Raises FileNotFoundError, StoreUnreachable."""

@@ -99,6 +99,22 @@ def test_a_job_is_cancelled(client, slow):
     assert refused.value.name == "no_dataset"
 
 
+def test_a_job_is_pinned_and_deleted(client, quick, slow):
+    job = client.submit(quick).wait()
+    assert job.pin().state.pinned
+    with pytest.raises(Problem, match="is pinned: unpin it"):
+        job.delete()
+    assert not job.unpin().state.pinned
+    job.delete()
+    with pytest.raises(Problem, match=f"job {job.id} was deleted by local at") as gone:
+        job.refresh()
+    assert (gone.value.status, gone.value.name) == (410, "job_deleted")
+    running = client.submit(slow)
+    with pytest.raises(HockleError, match="cancel it, and wait for its end"):
+        running.delete()
+    running.cancel()
+
+
 def test_waiting_has_an_end(client, slow):
     job = client.submit(slow)
     with pytest.raises(TimeoutError, match=f"job {job.id} has not ended within 0.2 s"):

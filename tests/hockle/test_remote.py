@@ -113,6 +113,16 @@ def test_a_job_is_watched_and_cancelled(slow, quick, tmp_path, capsys):
     assert f"{ids[0]}: dismissed" in capsys.readouterr().out
 
 
+def test_a_job_is_pinned_unpinned_and_deleted(quick, tmp_path, capsys):
+    (tmp_path / "case.json").write_text(json.dumps(quick))
+    assert main(["submit", str(tmp_path / "case.json"), "--wait"]) == 0
+    job_id = capsys.readouterr().out.split()[0].rstrip(":")
+    assert main(["pin", job_id]) == 0
+    assert f"job {job_id} is pinned" in refusal(capsys, "delete", job_id)
+    assert main(["unpin", job_id]) == main(["delete", job_id]) == 0
+    assert f"job {job_id} was deleted by local" in refusal(capsys, "status", job_id)
+
+
 @pytest.mark.parametrize("command", [["cancel", "nobody"], ["watch", "nobody"]])
 def test_what_is_not_there_is_neither_cancelled_nor_watched(capsys, command):
     assert "there is no job 'nobody'" in refusal(capsys, *command)

@@ -20,8 +20,8 @@ class WrongSchema(Exception):
     """The database was written by another version of hockle."""
 
 
-def migrate(connection: Connection) -> None:
-    """Bring the tables to the newest version, within the transaction of `connection`.
+def migrate(connection: Connection, version: str = "head") -> None:
+    """Bring the tables to the newest version, or another one, within the transaction of `connection`.
 
     Raises WrongSchema if they are of a version that this hockle does not know.
     """
@@ -34,6 +34,6 @@ def migrate(connection: Connection) -> None:
     config.set_main_option("script_location", "service.jobs:migrations")
     config.attributes["connection"] = connection
     try:
-        command.upgrade(config, "head")
+        command.upgrade(config, version)
     except CommandError as error:
         raise WrongSchema(f"the registry was written by a newer hockle than this one: {error}") from None

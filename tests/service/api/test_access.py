@@ -16,7 +16,7 @@ from service.jobs.audit import trail
 
 HOUR = 3600.0
 FILLED = {"{job_id}": "", "{name}": "elastica"}
-SCOPE = {"GET": "read", "HEAD": "read", "POST": "submit", "DELETE": "submit"}
+SCOPE = {"GET": "read", "HEAD": "read", "POST": "submit", "PUT": "submit", "DELETE": "submit"}
 OPERATORS = {"/metrics", "/v1/audit"}
 
 

@@ -124,7 +124,7 @@ def test_a_cancelled_job_has_no_results_ever(client, case, what):
 def test_a_dataset_that_somebody_removed_is_a_problem_not_a_crash(client, registry, done, what):
     client.app.state.parts.datasets.discard(registry.get(done).dataset.file)
     answer = client.get(f"/v1/jobs/{done}/{what}")
-    assert (answer.status_code, answer.json()["type"]) == (404, "urn:hockle:problem:no_dataset")
+    assert (answer.status_code, answer.json()["type"]) == (404, "urn:hockle:problem:dataset_lost")
 
 
 @pytest.mark.parametrize("what", ["dataset", "data?variables=Tw"])

@@ -58,7 +58,7 @@ class Ran(NamedTuple):
     keys: list[str | None]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def ran(tmp_path_factory: pytest.TempPathFactory) -> Ran:
     told = Settings(data=tmp_path_factory.mktemp("data"))
     told.make_directories()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+
 from service.jobs import Dataset, Reached, Status
 from service.jobs.held import claim
 
@@ -96,7 +98,7 @@ def test_a_failed_job_says_why_and_still_gives_its_frames(client, registry, sett
     job_id = client.post("/v1/jobs", json=case).json()["id"]
     held = claim(registry.database, job_id, 9.0, "here")
     (settings.datasets / "part.nc").write_bytes(b"frames so far")
-    part = Dataset("part.nc", "ab" * 32, 13)
+    part = Dataset("part.nc", hashlib.sha256(b"frames so far").hexdigest(), 13)
     held.finish(Status.FAILED, "step_too_small", "soften it", part, Reached(1.0, 34.0))
     told = client.get(f"/v1/jobs/{job_id}").json()
     assert (told["outcome"], told["message"]) == ("step_too_small", "soften it")

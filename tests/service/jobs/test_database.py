@@ -10,10 +10,18 @@ from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import create_engine, select, text
 
-from service.jobs import Database, NewJob
+from service.jobs import Database, NewJob, Registry
 from service.jobs.database import _patiently
-from service.jobs.migrations import WrongSchema
+from service.jobs.migrations import WrongSchema, migrate
 from service.jobs.tables import metadata, owners
+
+OLD_JOB = text("""
+INSERT INTO jobs (id, owner, status, title, label, priority, case_json, case_sha256, progress, t, steps, steps_redone,
+                  wall, outcome, message, cancel_requested, created, attempts, fruitless, checkpoint_steps, epoch,
+                  version, worker, limit_wall, limit_memory, limit_disk, dataset_file, dataset_sha256, dataset_bytes)
+VALUES (:id, 'alice', :status, '', '', 0, '{}', '', 0, 0, 0, 0, 0, '', '', false, 1, 0, 0, 0, 0, 1, '', 1, 64000000, 1,
+        'f.nc', '', :size)
+""")
 
 
 def test_the_migrations_make_the_tables_that_the_code_knows(database):
@@ -41,18 +49,18 @@ def test_opening_waits_for_another_process_that_makes_the_file(tmp_path):
         Database(f"sqlite:///{tmp_path}/registry.db").close()
 
 
-def test_an_older_registry_is_upgraded_with_its_unfinished_jobs_counted(database, registry, url):
-    first, _ = registry.submit(NewJob({})), registry.submit(NewJob({}))
-    registry.cancel(first.id)
-    with database.engine.begin() as connection:
-        for made in ("links", "leader", "processes"):
-            connection.execute(text(f"DROP TABLE {made}"))
-        for added in ("owners DROP COLUMN unfinished", "jobs DROP COLUMN phase", "jobs DROP COLUMN attributes"):
-            connection.execute(text(f"ALTER TABLE {added}"))
-        connection.execute(text("UPDATE alembic_version SET version_num = '0003'"))
+def test_an_older_registry_is_upgraded_with_what_its_owners_have_counted(url):
+    engine = create_engine(url)
+    with engine.begin() as connection:
+        migrate(connection, "0003")
+        connection.execute(text("INSERT INTO owners (name, served) VALUES ('alice', 0)"))
+        for name, status, size in (("a", "running", None), ("b", "successful", 30), ("c", "failed", 12)):
+            connection.execute(OLD_JOB, {"id": name, "status": status, "size": size})
+    engine.dispose()
     upgraded = Database(url)
     with upgraded.reading() as connection:
-        assert connection.scalar(select(owners.c.unfinished)) == 1
+        assert connection.execute(select(owners.c.unfinished, owners.c.bytes)).one() == (1, 42)
+    assert {job.id: job.pinned for job in Registry(upgraded).page(9).jobs} == dict.fromkeys("abc", False)
     upgraded.close()
 
 

@@ -12,10 +12,10 @@ from service.jobs import Dataset, Job, NewJob, Reached, Registry, Status
 from service.jobs.audit import Actor, trail
 from service.jobs.held import claim
 from service.jobs.reconciler import beats, take_back
-from service.jobs.submission import REMEMBERED, KeyReused, QuotaReached, Submission, submit_all
+from service.jobs.submission import REMEMBERED, KeyReused, QuotaReached, Submission, Terms, submit_all
 from service.jobs.submissions import InFlight, Submissions
 
-MANY = 1000
+MANY = Terms(1000)
 ALICE = Actor("alice", "0123456789ab")
 
 
@@ -23,9 +23,9 @@ def wanted(case=None, owner="alice", **terms):
     return Submission(NewJob(case or {"t_end": 1.0}, owner=owner), Actor(owner), **terms)
 
 
-def submit(database, *submissions, quota=MANY):
+def submit(database, *submissions, terms=MANY):
     with database.writing() as transaction:
-        return submit_all(transaction, submissions, quota)
+        return submit_all(transaction, submissions, terms)
 
 
 def run(database, job, status=Status.SUCCESSFUL):
@@ -95,16 +95,16 @@ def test_neither_an_unfinished_nor_a_failed_job_nor_anothers_is_reused(database)
 
 
 def test_a_quota_bounds_the_unfinished_jobs_of_an_owner(database):
-    made = submit(database, wanted(), wanted(), wanted(), wanted(owner="bob"), quota=2)
+    made = submit(database, wanted(), wanted(), wanted(), wanted(owner="bob"), terms=Terms(2))
     assert [type(one) for one in made] == [Job, Job, QuotaReached, Job]
     run(database, made[0])
-    assert [type(one) for one in submit(database, wanted(), wanted(), quota=2)] == [Job, QuotaReached]
+    assert [type(one) for one in submit(database, wanted(), wanted(), terms=Terms(2))] == [Job, QuotaReached]
 
 
 def test_a_job_counts_for_the_quota_until_it_has_ended_however_it_ends(database, registry):
     def room() -> int:
         with database.writing() as transaction:
-            made = submit_all(transaction, [wanted() for _ in range(9)], quota=9)
+            made = submit_all(transaction, [wanted() for _ in range(9)], terms=Terms(9))
             transaction.connection.rollback()
         return sum(isinstance(one, Job) for one in made)
 

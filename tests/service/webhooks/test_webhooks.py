@@ -17,7 +17,7 @@ from service.access import KeyStore, Scope
 from service.jobs import Database, NewJob, Reached, Status
 from service.jobs.audit import Actor
 from service.jobs.held import claim
-from service.jobs.submission import Submission, submit_all
+from service.jobs.submission import Submission, Terms, submit_all
 from service.webhooks import Notifier
 from service.webhooks.deliveries import HELD, WAITS, Delivery, settle, take_due
 from service.webhooks.public import NotPublic, PublicOnly, is_public
@@ -83,7 +83,7 @@ def ended(database, key):
     def make(url: str) -> str:
         wanted = Submission(NewJob({}, owner="alice"), Actor("alice", key.prefix), webhook=url)
         with database.writing() as transaction:
-            [job] = submit_all(transaction, [wanted], 10)
+            [job] = submit_all(transaction, [wanted], Terms(10))
         held = claim(database, job.id, 9.0, "here")
         held.finish(Status.FAILED, "step_too_small", "soften it", None, Reached())
         return job.id
@@ -107,7 +107,7 @@ def test_its_owner_can_check_the_signature(database, key, ended, receiver):
 def test_nothing_is_due_before_the_end(database, key):
     wanted = Submission(NewJob({}, owner="alice"), Actor("alice", key.prefix), webhook="http://x/")
     with database.writing() as transaction:
-        submit_all(transaction, [wanted], 10)
+        submit_all(transaction, [wanted], Terms(10))
     assert take_due(database, 9) == []
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hockle.failure import Failure
+from hockle.here import add_data, registry_of, settings_of
 
 if TYPE_CHECKING:
     from service.access import KeyStore
@@ -34,8 +33,7 @@ def register(subparsers: Any) -> None:
     revoking = below.add_parser("revoke", help="make a key useless from now on")
     revoking.add_argument("prefix", metavar="PREFIX", help="as `list` shows it")
     revoking.set_defaults(run=revoke)
-    for parser in (creating, listing, revoking):
-        parser.add_argument("--data", type=Path, help="directory of the service (default HOCKLE_DATA, or ./var)")
+    add_data(creating, listing, revoking)
 
 
 def create(told: argparse.Namespace) -> int:
@@ -83,15 +81,6 @@ def revoke(told: argparse.Namespace) -> int:
 @contextmanager
 def _store(told: argparse.Namespace) -> Iterator[KeyStore]:
     from service.access import KeyStore
-    from service.jobs import Database
-    from service.settings import from_environment
 
-    settings = from_environment()
-    if told.data is not None:
-        settings = replace(settings, data=told.data)
-    settings.make_directories()
-    database = Database(settings.database_url)
-    try:
+    with registry_of(settings_of(told)) as database:
         yield KeyStore(database)
-    finally:
-        database.close()

@@ -12,10 +12,12 @@ from pathlib import Path
 from sqlalchemy import Connection, Engine, func, insert, select, text
 
 from service.jobs import Database, Dataset
-from service.jobs.tables import audit, metadata
+from service.jobs.tables import audit, leader, metadata, processes
 from service.results.durable import sync
 
 AT_ONCE = 1000
+KEPT = [table for table in metadata.sorted_tables if table not in (leader, processes)]
+"""What is copied row by row: not who runs at the moment."""
 
 
 def save(database: Database, path: Path) -> None:
@@ -63,7 +65,7 @@ def _save_sqlite(source: Path, target: Path) -> None:
 
 def _into_empty(path: Path, database: Database) -> Database:
     with database.reading() as connection:
-        if any(connection.scalar(select(func.count()).select_from(table)) for table in metadata.sorted_tables):
+        if any(connection.scalar(select(func.count()).select_from(table)) for table in KEPT):
             raise FileExistsError("the database has jobs or keys already")
     upgraded = path.with_name(f"{path.name}.upgraded")
     shutil.copyfile(path, upgraded)
@@ -90,7 +92,7 @@ def _copy_rows(source: Engine, target: Engine) -> None:
     with source.connect() as reading, target.begin() as writing:
         if source.dialect.name == "postgresql":
             reading = reading.execution_options(isolation_level="REPEATABLE READ")
-        for table in metadata.sorted_tables:
+        for table in KEPT:
             for rows in reading.execute(select(table)).mappings().partitions(AT_ONCE):
                 writing.execute(insert(table), [dict(row) for row in rows])
         if target.dialect.name == "postgresql":

@@ -5,9 +5,15 @@ from __future__ import annotations
 import importlib.util
 import shutil
 import socket
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from hockle.children import Child
+
+PREFIX = "hockle-"
 
 
 def redis_binary() -> str | None:
@@ -25,7 +31,31 @@ def redis_child(binary: str, socket_path: Path, directory: Path, log: Path) -> C
     directory.mkdir(mode=0o700, parents=True, exist_ok=True)
     command = [binary, "--port", "0", "--unixsocket", str(socket_path), "--unixsocketperm", "700",
                "--dir", str(directory), "--appendonly", "yes", "--save", "", "--daemonize", "no"]
-    return Child("broker", command, log)
+    return Child("broker", command, log, lambda _: time.monotonic() if answers(socket_path) else None)
+
+
+@contextmanager
+def short_directory(home: Path) -> Iterator[Path]:
+    """A private directory with a path that is short enough for a socket, while the block runs.
+
+    `home`, which one process at a time has, remembers it: what one that was killed has left is removed by the next.
+    """
+    home.mkdir(mode=0o700, parents=True, exist_ok=True)
+    note = home / "socket-directory"
+    if note.is_file():
+        _remove(Path(note.read_text()))
+    made = Path(tempfile.mkdtemp(prefix=PREFIX))
+    note.write_text(str(made))
+    try:
+        yield made
+    finally:
+        _remove(made)
+        note.unlink(missing_ok=True)
+
+
+def _remove(directory: Path) -> None:
+    if directory.name.startswith(PREFIX) and directory.parent == Path(tempfile.gettempdir()):
+        shutil.rmtree(directory, ignore_errors=True)
 
 
 def answers(socket_path: Path) -> bool:

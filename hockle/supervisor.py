@@ -1,25 +1,23 @@
-"""Broker, API and worker as one: started together, restarted when one dies, stopped together."""
+"""Broker, API and worker as one: started together, restarted when one dies or stands still, stopped together."""
 
 from __future__ import annotations
 
 import fcntl
-import shutil
 import signal
 import sys
-import tempfile
 import time
-from collections import deque
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
-from hockle.broker import answers, redis_binary, redis_child
+from hockle.broker import answers, redis_binary, redis_child, short_directory
 from hockle.children import Child
 from hockle.failure import Failure
 from hockle.parts import SINGLE_THREADED
 from service.access import has_keys
 from service.api.listening import listen
+from service.pulse import last_beat
 from service.settings import Settings
 
 START_WITHIN = 120.0
@@ -27,8 +25,6 @@ APIS = 2
 """Processes that answer requests: one of them may be busy, or dead for a moment."""
 
 HOCKLE = (sys.executable, "-m", "hockle")
-
-DEATHS, WITHIN = 5, 60.0
 
 ENVIRONMENT = SINGLE_THREADED | {"MALLOC_ARENA_MAX": "2"}
 """Two heaps, where glibc would give the threads of an API
@@ -46,7 +42,6 @@ class Services:
         self._host, self._port = host, port
         self._cleanup = ExitStack()
         self.children: dict[str, Child] = {}
-        self._deaths: dict[str, deque[float]] = {}
 
     def __enter__(self) -> Services:
         try:
@@ -66,12 +61,10 @@ class Services:
         return f"http://{host}:{self._port}"
 
     def look_after(self) -> None:
-        """Start again what has died. Raises Failure for one that dies again and again."""
+        """Start again what has died, and what stands still."""
         for child in self.children.values():
-            if child.ended:
-                self._mourn(child)
-                child.make_stop()
-                child.start()
+            if happened := child.look_after():
+                print(f"the {child.name} {happened}; see {child.log}", file=sys.stderr, flush=True)
 
     def stop(self) -> None:
         """Stop every process and remove the broker's socket; further signals do not hinder it."""
@@ -98,14 +91,17 @@ class Services:
         self._port = sockets[0].getsockname()[1]
         self.settings.make_directories()
         self._hold_data_directory()
+        for left in self.settings.pulses.iterdir():
+            left.unlink()
         self._start_broker()
         environment = self.settings.environment() | ENVIRONMENT
         apis = [f"api-{number}" for number in range(1, APIS + 1)]
         for name, listening in zip(apis, sockets, strict=True):
             api = [*HOCKLE, "api", "--fd", str(listening.fileno())]
-            self._add(Child(name, api, self._log(name), environment, keep_fds=(listening.fileno(),)))
+            self._add(Child(name, api, self._log(name), self._beat("api"), environment, keep_fds=(listening.fileno(),)))
         worker = [*HOCKLE, "worker", "--workers", str(self._workers)]
-        self._add(Child("worker", worker, self._log("worker"), environment, stop_signal=signal.SIGQUIT))
+        self._add(Child("worker", worker, self._log("worker"), self._beat("worker"), environment,
+                        stop_signal=signal.SIGQUIT))
         for name in apis:
             self._await(name, self._api_answers)
 
@@ -113,9 +109,7 @@ class Services:
         binary = None if self.settings.broker else redis_binary()
         if binary is None:
             return
-        private = Path(tempfile.mkdtemp(prefix="hockle-"))  # a socket's path must be short
-        self._cleanup.callback(shutil.rmtree, private, ignore_errors=True)
-        socket_path = private / "broker.sock"
+        socket_path = self._cleanup.enter_context(short_directory(self.settings.data / "broker")) / "broker.sock"
         self._add(redis_child(binary, socket_path, self.settings.data / "broker", self._log("broker")))
         self._await("broker", lambda: answers(socket_path))
         self.settings = replace(self.settings, broker=f"redis+socket://{socket_path}")
@@ -127,6 +121,9 @@ class Services:
         except BlockingIOError:
             raise Failure(f"another hockle serves from {self.settings.data.absolute()}: stop it, "
                           "or give this one another directory with --data") from None
+
+    def _beat(self, kind: str) -> Callable[[int], int]:
+        return lambda pid: last_beat(self.settings.pulses, kind, pid)
 
     def _add(self, child: Child) -> None:
         self.children[child.name] = child
@@ -152,13 +149,6 @@ class Services:
             return httpx.get(f"{self.address}/readyz", timeout=1.0, trust_env=False).status_code == 200
         except httpx.TransportError:
             return False
-
-    def _mourn(self, child: Child) -> None:
-        deaths = self._deaths.setdefault(child.name, deque(maxlen=DEATHS))
-        deaths.append(time.monotonic())
-        if len(deaths) == DEATHS and deaths[-1] - deaths[0] < WITHIN:
-            raise Failure(f"the {child.name} died {DEATHS} times in {WITHIN:.0f} s; {_last_words(child.log)}")
-        print(f"the {child.name} died and is started again; see {child.log}", file=sys.stderr)
 
 
 def stop_on_signals() -> None:

@@ -12,7 +12,7 @@ log = logging.getLogger(__name__)
 
 
 class Rounds:
-    """Does `once` every so many seconds while the block runs, whatever goes wrong in it; tells when it last got on."""
+    """Does `once` every so many seconds, whatever goes wrong in it; tells when it last got on. Also a context."""
 
     def __init__(self, name: str, seconds: float, once: Callable[[], object]) -> None:
         self._name, self._seconds, self._once = name, seconds, once
@@ -21,10 +21,18 @@ class Rounds:
         self._thread = threading.Thread(target=self._run, name=name, daemon=True)
 
     def __enter__(self) -> Self:
-        self._thread.start()
+        self.start()
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def start(self) -> None:
+        """Begin; it ends with the process, if not before."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End, after the round that is being done."""
         self._stopped.set()
         self._thread.join()
 

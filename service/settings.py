@@ -145,9 +145,14 @@ class Settings:
         """The directory of the messages when no broker process runs."""
         return self.data / "messages"
 
+    @property
+    def pulses(self) -> Path:
+        """The directory of the files by which the processes of this host show that they get on."""
+        return self.data / "pulses"
+
     def make_directories(self) -> None:
         """Make the data directory and what it holds, for this user only."""
-        for directory in (self.data, self.datasets, self.copies, self.work, self.locks, self.messages):
+        for directory in (self.data, self.datasets, self.copies, self.work, self.locks, self.messages, self.pulses):
             directory.mkdir(mode=0o700, parents=True, exist_ok=True)
 
     def environment(self) -> dict[str, str]:

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from celery import Celery
-from celery.signals import setup_logging, worker_init, worker_process_init
+from celery.signals import setup_logging, worker_init, worker_process_init, worker_process_shutdown
 
 import solver
 from service.jobs import Database
@@ -18,12 +18,15 @@ from service.jobs.reconciler import ring_for_all
 from service.logs import write_json
 from service.settings import from_environment
 from worker import run
+from worker.beating import Child, Parent, step_of
 from worker.parent import die_with_parent
 
 settings = from_environment()
 app = Celery("hockle")
 app.conf.update(celery_settings(settings))
 main_process = os.getpid()
+parent = Parent(settings.pulses, settings.lease)
+app.steps["consumer"].add(step_of(parent))
 
 
 @cache
@@ -39,6 +42,12 @@ def database() -> Database:
 def doorbell() -> Doorbell:
     """What a child rings, with connections of its own."""
     return Doorbell(settings)
+
+
+@cache
+def child() -> Child:
+    """This process, where it is one of the pool."""
+    return Child(database(), settings.pulses, main_process)
 
 
 @app.task(name=TASK)
@@ -59,6 +68,7 @@ def log_as_json(**_: Any) -> None:
 def prepare(**_: Any) -> None:
     """Before the first fork: directories, the compiled kernels and the registry, which the children then share."""
     settings.make_directories()
+    parent.rounds().start()
     solver.warm()
     try:
         database()  # may fail; then each child tries
@@ -68,5 +78,12 @@ def prepare(**_: Any) -> None:
 
 @worker_process_init.connect
 def start_child(**_: Any) -> None:
-    """In each child: end when the worker ends."""
+    """In each child: end when the worker ends, and show until then that it gets on."""
     die_with_parent(main_process)
+    child().start()
+
+
+@worker_process_shutdown.connect
+def end_child(**_: Any) -> None:
+    """In each child that is told to end."""
+    child().end()

@@ -28,6 +28,7 @@ from service.api import (
 from service.api.description import describe
 from service.api.feed import Feed
 from service.api.gate import Gate
+from service.api.health import Health, Part
 from service.api.parts import Parts
 from service.cases import load_case, parse_case, shipped_cases
 from service.jobs import Database, Registry
@@ -63,15 +64,20 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
         registry, doorbell = Registry(database), Doorbell(settings)
         published = Datasets(settings.datasets, settings.copies, settings.objects)
         terms = Terms(settings.quota, settings.quota_bytes, published.looks_good)
-        with (Reconciler(database, doorbell, settings).rounds(), Notifier(database).rounds(),
+        reconciler = Reconciler(database, doorbell, settings)
+        with (reconciler.rounds() as reconciling, Notifier(database).rounds() as notifying,
               Keeper(database, published, settings).rounds(),
               Submissions(database, terms, lambda: ring_for_all(database, doorbell)) as submissions):
             async with Feed(registry).running() as feed:
                 limit = RateLimit(settings.rate, int(settings.rate * BURST))
-                app.state.parts = Parts(settings, registry, doorbell, KeyStore(database), limit, submissions, feed,
-                                        published)
-                _warm_up()
-                yield
+                threads: dict[str, Part] = {"reconciler": reconciling, "notifier": notifying,
+                                            "submissions": submissions, "feed": feed}
+                with Health(database, doorbell, settings, reconciler.leader, threads) as health:
+                    app.state.parts = Parts(settings, registry, doorbell, KeyStore(database), limit, submissions, feed,
+                                            published, health)
+                    _warm_up()
+                    async with health.shown():
+                        yield
         doorbell.close()
         database.close()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import time
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
@@ -28,6 +29,12 @@ class Feed:
     def __init__(self, registry: Registry) -> None:
         self._registry = registry
         self._waiters: set[_Waiter] = set()
+        self._moved = time.monotonic()
+
+    @property
+    def silent(self) -> float:
+        """Seconds since the last look."""
+        return time.monotonic() - self._moved
 
     @asynccontextmanager
     async def running(self) -> AsyncIterator[Feed]:
@@ -53,6 +60,7 @@ class Feed:
     async def _run(self) -> None:
         while True:
             await asyncio.sleep(TICK)
+            self._moved = time.monotonic()
             try:
                 self._look()
             except Exception:

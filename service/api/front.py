@@ -2,39 +2,36 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 from typing import Literal
 
 from fastapi import APIRouter, Response
 from fastapi.responses import FileResponse
 from pydantic import BaseModel
-from sqlalchemy.exc import SQLAlchemyError
 
+from service.api.health import Led, Reached, Room, Workers
 from service.api.parts import InParts
 from service.api.problems import Problem
 
 POLICY = "default-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'self'; frame-ancestors 'none'"
 FRESH = {"Cache-Control": "no-cache", "X-Content-Type-Options": "nosniff"}
-LEAST_FREE = 50_000_000
-"""Bytes of free disk, below which no job is sure to be kept."""
 DASHBOARD = Path(__file__).parent.parent / "dashboard"
 KINDS = {".js": "text/javascript", ".css": "text/css"}
 PARTS = {path.name: path for path in DASHBOARD.iterdir() if path.suffix in KINDS}
 """The dashboard's modules and style by name."""
 router = APIRouter()
 
-Reached = Literal["ok", "unreachable"]
-Room = Literal["ok", "full"]
-
-
 class Readiness(BaseModel):
-    """State of database, broker and disk. Without a broker jobs wait; without a database or disk nothing works."""
+    """State of the parts. Without a broker or workers jobs wait; without a database that takes writes, or a disk with
+    room, nothing works. `standing_still` names processes, and parts of them, that do not get on or are lost."""
 
     status: Literal["ok", "degraded"]
     database: Reached
     broker: Reached
     disk: Room
+    workers: Workers
+    leader: Led
+    standing_still: list[str]
 
 
 @router.get("/", include_in_schema=False)
@@ -60,16 +57,13 @@ async def alive() -> Literal["ok"]:
 @router.get("/healthz", include_in_schema=False)
 @router.get("/readyz", tags=["service"], responses={503: {"model": Readiness, "description": "No database, no room"}})
 def ready(parts: InParts, response: Response) -> Readiness:
-    """Whether jobs can be taken: 200 with a database and a disk with room, else 503; a missing broker is told."""
-    database: Reached = "ok"
-    try:
-        parts.registry.page(1)
-    except SQLAlchemyError:
-        database = "unreachable"
+    """Whether jobs can be taken: 200 with a database that takes writes and a disk with room, else 503; what else does
+    not get on is told: `status` is `ok` only where all does."""
+    health = parts.health
+    told = {"database": health.database, "broker": health.broker, "disk": health.disk, "workers": health.workers,
+            "leader": health.leader}  # fmt: skip
+    still = health.silent
+    good = not still and set(told.values()) == {"ok"}
+    if (told["database"], told["disk"]) != ("ok", "ok"):
         response.status_code = 503
-    broker: Reached = "ok" if parts.doorbell.reachable() else "unreachable"
-    disk: Room = "ok" if shutil.disk_usage(parts.settings.data).free >= LEAST_FREE else "full"
-    if disk == "full":
-        response.status_code = 503
-    status: Literal["ok", "degraded"] = "ok" if (database, broker, disk) == ("ok", "ok", "ok") else "degraded"
-    return Readiness(status=status, database=database, broker=broker, disk=disk)
+    return Readiness.model_validate(told | {"status": "ok" if good else "degraded", "standing_still": still})

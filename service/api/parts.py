@@ -12,6 +12,7 @@ from fastapi.security.base import SecurityBase
 from service.access import Caller, KeyStore, Scope
 from service.access.limits import RateLimit
 from service.api.feed import Feed
+from service.api.health import Health
 from service.api.problems import Problem
 from service.jobs import Registry
 from service.jobs.doorbell import Doorbell
@@ -32,6 +33,7 @@ class Parts:
     submissions: Submissions
     feed: Feed
     datasets: Datasets
+    health: Health
 
 
 class _With(SecurityBase):

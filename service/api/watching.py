@@ -15,6 +15,7 @@ from prometheus_client.registry import Collector
 from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.description import problems
+from service.api.health import Health
 from service.api.numbers import WHOLE
 from service.api.parts import InParts, Operator
 from service.jobs.audit import trail
@@ -54,10 +55,13 @@ class Stretch(BaseModel):
 
 @router.get("/metrics", response_class=Response, responses={**TEXT})
 def metrics(parts: InParts, _: Operator) -> Response:
-    """Queue, leases, steps, outcomes, bytes and drift, from the registry, in the text format of Prometheus."""
+    """Parts and processes, queue, leases, steps, outcomes, bytes and drift, in the text format of Prometheus; only the
+    parts while the database is away."""
     registry = CollectorRegistry()
-    measures = measure(parts.registry.database, parts.settings.lease, time.time())
-    registry.register(_Told(measures, shutil.disk_usage(parts.settings.datasets).free))
+    registry.register(_Parts(parts.health))
+    if parts.health.database == "ok":
+        measures = measure(parts.registry.database, parts.settings.lease, time.time())
+        registry.register(_Told(measures, shutil.disk_usage(parts.settings.datasets).free))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
 
 
@@ -69,6 +73,29 @@ def audit(_: Operator, stretch: Annotated[Stretch, Query()], parts: InParts) -> 
     documents = [DeedDocument(**vars(deed) | {"time": datetime.fromtimestamp(deed.time, UTC)}) for deed in deeds]
     following = f"/v1/audit?limit={stretch.limit}&before={documents[-1].id}" if more else None
     return TrailDocument(deeds=documents, next=following)
+
+
+class _Parts(Collector):
+    """The parts of the service as Prometheus names them."""
+
+    def __init__(self, health: Health) -> None:
+        self._health = health
+
+    def collect(self) -> Iterator[Metric]:
+        health = self._health
+        good = GaugeMetricFamily("hockle_part_ok", "1 where a part does its work, 0 where not", labels=["part"])
+        for part in ("database", "broker", "disk", "workers", "leader"):
+            good.add_metric([part], float(getattr(health, part) == "ok"))
+        yield good
+        still = GaugeMetricFamily("hockle_standing_still", "1 for each process, or part of one, that does not get on",
+                                  labels=["process"])  # fmt: skip
+        for name in health.silent:
+            still.add_metric([name], 1.0)
+        yield still
+        ages = GaugeMetricFamily("hockle_process_age_seconds", "Since a process last got on", labels=["process"])
+        for name, age in health.ages.items():
+            ages.add_metric([name], age)
+        yield ages
 
 
 class _Told(Collector):

@@ -56,7 +56,8 @@ function askForKey(told) {
 
 async function health() {
   const state = await (await fetch("/readyz")).json();
-  const told = `database ${state.database}, broker ${state.broker}, disk ${state.disk}`;
+  const parts = ["database", "broker", "disk", "workers", "leader"].filter((part) => state[part] !== "ok");
+  const told = [...parts.map((part) => `${part}: ${state[part]}`), ...state.standing_still].join(", ");
   tellHealth(state.status === "ok", state.status === "ok" ? "serving" : told);
 }
 

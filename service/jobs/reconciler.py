@@ -16,6 +16,7 @@ from service.jobs.database import Database
 from service.jobs.doorbell import Doorbell
 from service.jobs.leader import Deposed, Leader
 from service.jobs.lifecycle import Status
+from service.jobs.processes import forget_lost
 from service.jobs.tables import jobs, owners
 from service.rounds import Rounds
 from service.settings import Settings
@@ -171,4 +172,5 @@ class Reconciler:
         ring_for_all(self._database, self._doorbell, least=int(tidy))
         if tidy:
             recount(self.leader)
+            forget_lost(self.leader)
             self._tidy_at = time.monotonic() + TIDY

@@ -36,6 +36,8 @@ class Submissions:
         self._waiting: queue.SimpleQueue[Waiting | None] = queue.SimpleQueue()
         self._in_flight: set[tuple[str, str]] = set()
         self._lock = threading.Lock()
+        self._since: float | None = None
+        """When the batch was taken that is being written (time.monotonic)."""
         self._news: queue.SimpleQueue[bool] = queue.SimpleQueue()
         self._threads = [threading.Thread(target=work, name=work.__name__, daemon=True)
                          for work in (self._commit, self._tell)]  # fmt: skip
@@ -49,6 +51,12 @@ class Submissions:
         self._waiting.put(None)
         for thread in self._threads:
             thread.join()
+
+    @property
+    def silent(self) -> float:
+        """Seconds for which the batch that is being written has been waited for; 0 while nothing is."""
+        since = self._since
+        return 0.0 if since is None else time.monotonic() - since
 
     @contextmanager
     def put(self, submission: Submission) -> Iterator[Future[Job]]:
@@ -71,7 +79,9 @@ class Submissions:
     def _commit(self) -> None:
         while (first := self._waiting.get()) is not None:
             if first[1].set_running_or_notify_cancel():
+                self._since = time.monotonic()
                 self._settle([first])
+                self._since = None
                 self._news.put(True)
         self._news.put(False)
 

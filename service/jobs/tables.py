@@ -176,7 +176,6 @@ processes = Table(
     Column("kind", String(8), nullable=False),
     Column("host", Text, nullable=False),
     Column("pid", Integer, nullable=False),
-    Column("places", Integer, nullable=False),
     Column("beat", BigInteger, nullable=False),
     Column("seen", Double, nullable=False),
     Column("stuck", Text, nullable=False),

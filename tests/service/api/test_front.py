@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import re
 
-import pytest
-from sqlalchemy.exc import OperationalError
-
 from service.cases import parse_case, shipped_cases
 
 
@@ -27,33 +24,6 @@ def test_validation_says_what_a_case_asks_for_and_makes_no_job(client, case):
     assert (told["cost"]["nodes"], told["cost"]["frames"]) == (9, 6)
     assert told["case"]["numerics"]["intervals"] == 8
     assert client.get("/v1/jobs").json()["jobs"] == []
-
-
-@pytest.mark.parametrize("path", ["/readyz", "/healthz"])
-def test_health_tells_of_database_and_broker(client, path):
-    assert client.get(path).json() == {"status": "ok", "database": "ok", "broker": "ok", "disk": "ok"}
-
-
-def test_without_its_broker_the_service_is_degraded_but_there(client, monkeypatch):
-    monkeypatch.setattr("service.jobs.doorbell.Doorbell.reachable", lambda _: False)
-    answer = client.get("/readyz")
-    assert answer.status_code == 200
-    assert answer.json() == {"status": "degraded", "database": "ok", "broker": "unreachable", "disk": "ok"}
-
-
-def test_without_its_database_the_service_is_unavailable(client, monkeypatch):
-    def away(*_):
-        raise OperationalError("SELECT", {}, Exception("locked"))
-
-    monkeypatch.setattr("service.jobs.Registry.page", away)
-    answer = client.get("/readyz")
-    assert (answer.status_code, answer.json()["database"]) == (503, "unreachable")
-
-
-def test_without_room_on_its_disk_the_service_is_unavailable(client, monkeypatch):
-    monkeypatch.setattr("service.api.front.LEAST_FREE", 10**18)
-    answer = client.get("/readyz")
-    assert (answer.status_code, answer.json()["status"], answer.json()["disk"]) == (503, "degraded", "full")
 
 
 def test_no_other_page_may_frame_the_dashboard_and_it_asks_by_a_form(client):

@@ -24,7 +24,6 @@ def upgrade() -> None:
         sa.Column("kind", sa.String(8), nullable=False),
         sa.Column("host", sa.Text, nullable=False),
         sa.Column("pid", sa.Integer, nullable=False),
-        sa.Column("places", sa.Integer, nullable=False),
         sa.Column("beat", sa.BigInteger, nullable=False),
         sa.Column("seen", sa.Double, nullable=False),
         sa.Column("stuck", sa.Text, nullable=False),

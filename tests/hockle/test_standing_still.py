@@ -1,0 +1,53 @@
+"""What is stopped is there, but gets on no more: it is told, ended and started again, and no job is lost."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from contextlib import suppress
+
+import httpx
+import pytest
+
+from hockle_client import Client
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
+
+API, WORKER, BROKER = "hockle api", "hockle worker", "unixsocket:"
+
+
+def readiness(server) -> dict:
+    with suppress(httpx.TransportError):
+        return httpx.get(f"{server.address}/readyz", timeout=2.0, trust_env=False).json()
+    return {}
+
+
+def silent(server) -> set[str]:
+    """The kinds of the processes that stand still, as the API process that answers says."""
+    return {name.split()[0] for name in readiness(server).get("standing_still", ())}
+
+
+def test_a_stopped_api_process_worker_and_broker_are_replaced_and_their_job_ends(start, slow, until, tmp_path):
+    with start(tmp_path) as server, Client(server.address, patience=120.0) as client:
+        until(lambda: readiness(server).get("status") == "ok", "all parts are there")
+        job = client.submit(slow)
+        until(lambda: client.job(job.id).progress > 0.02, "the job runs")
+        stopped = {words: server.service(words) for words in (API, WORKER, BROKER)}
+        for pid in stopped.values():
+            os.kill(pid, signal.SIGSTOP)
+        until(lambda: {"api", "worker"} <= silent(server), "they are told to be silent")
+        until(lambda: not set(stopped.values()) & set(server.below()), "they are replaced")
+        until(lambda: readiness(server).get("status") == "ok", "all parts are there again")
+        assert client.job(job.id).wait().status == "successful"
+
+
+def test_a_stopped_child_of_the_pool_is_replaced_and_its_job_ends(start, slow, until, tmp_path):
+    with start(tmp_path) as server, Client(server.address, patience=120.0) as client:
+        job = client.submit(slow)
+        until(lambda: client.job(job.id).progress > 0.02, "the job runs")
+        child, *_ = server.below(server.service(WORKER))
+        os.kill(child, signal.SIGSTOP)
+        until(lambda: child not in server.below(), "it is replaced")
+        done = client.job(job.id).wait()
+        assert (done.status, done.state.attempts) == ("successful", 2)

@@ -28,12 +28,20 @@ def settings_of(told: argparse.Namespace) -> Settings:
 
     try:
         settings = from_environment()
-        if told.data is not None:
-            settings = replace(settings, data=told.data)
-        settings.make_directories()
-    except (OSError, ValueError) as error:
+    except ValueError as error:
         raise Failure(str(error)) from None
+    if getattr(told, "data", None) is not None:
+        settings = replace(settings, data=told.data)
+    made(settings)
     return settings
+
+
+def made(settings: Settings) -> None:
+    """Make its directories. Raises Failure."""
+    try:
+        settings.make_directories()
+    except OSError as error:
+        raise Failure(f"the directory {error.filename} cannot be used: {error.strerror}") from None
 
 
 @contextmanager

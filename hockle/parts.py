@@ -4,10 +4,16 @@ from __future__ import annotations
 
 import argparse
 import os
+import socket
 import time
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from hockle.failure import Failure
+from hockle.here import registry_of, settings_of
+
+if TYPE_CHECKING:
+    from service.settings import Settings
 
 SINGLE_THREADED = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 """One job, one core; and small matrices are slower on more."""
@@ -16,40 +22,65 @@ SINGLE_THREADED = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 def register(subparsers: Any) -> None:
     """Add `hockle api` and `hockle worker`."""
     parser = subparsers.add_parser("api", help="run the API alone, in this process")
-    parser.add_argument("--host", default="127.0.0.1", help="any other than loopback needs API keys")
-    parser.add_argument("--port", type=int, default=8000, help="0 for any free one")
+    add_address(parser)
     parser.add_argument("--fd", type=int, help="serve on this inherited socket instead")
     parser.set_defaults(run=api)
     parser = subparsers.add_parser("worker", help="run a worker alone; SIGTERM: finish running jobs, SIGQUIT: "
                                    "hand them to others with a checkpoint")
-    parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="jobs at the same time")
+    add_workers(parser)
     parser.set_defaults(run=worker)
+
+
+def add_address(parser: argparse.ArgumentParser) -> None:
+    """Let a command say where the API listens."""
+    parser.add_argument("--host", default="127.0.0.1", help="any other than loopback needs API keys")
+    parser.add_argument("--port", type=_whole(0, 65535), default=8000, help="0 for any free one")
+
+
+def add_workers(parser: argparse.ArgumentParser) -> None:
+    """Let a command say how many jobs run at the same time."""
+    parser.add_argument("--workers", type=_whole(1, 1024), default=os.cpu_count() or 1, help="jobs at the same time")
+
+
+def _whole(least: int, most: int) -> Callable[[str], int]:
+    def number(text: str) -> int:
+        if not (text.isdecimal() and least <= int(text) <= most):
+            raise argparse.ArgumentTypeError(f"must be a whole number from {least} to {most}, got {text!r}")
+        return int(text)
+
+    return number
 
 
 def api(told: argparse.Namespace) -> int:
     """Serve HTTP on an address, or on a listening socket that the parent process hands down, until a signal."""
-    import socket
-
-    from service.access import has_keys
-    from service.api.listening import listen
     from service.api.serving import serve
-    from service.settings import from_environment
 
-    settings = from_environment()
+    settings = settings_of(told)
     if told.fd is not None:
         serve(settings, socket.socket(fileno=told.fd))
         return 0
-    try:
-        [listening] = listen(told.host, told.port, has_keys(settings, time.time()))
-    except (OSError, ValueError) as error:
-        raise Failure(f"cannot listen on {told.host} port {told.port}: {error}") from None
+    [listening] = listening_on(settings, told.host, told.port)
     serve(settings, listening)
     return 0
+
+
+def listening_on(settings: Settings, host: str, port: int, many: int = 1) -> list[socket.socket]:
+    """Sockets that listen there, beyond loopback only if there are API keys. Raises Failure."""
+    from service.access import KeyStore
+    from service.api.listening import listen
+
+    with registry_of(settings) as database:
+        keys = KeyStore(database).any_good(time.time())
+    try:
+        return listen(host, port, keys, many)
+    except (OSError, ValueError) as error:
+        raise Failure(f"cannot listen on {host} port {port}: {error}") from None
 
 
 def worker(told: argparse.Namespace) -> int:
     """Run jobs until a signal."""
     os.environ.update(SINGLE_THREADED | os.environ)
+    settings_of(told)
     from worker.app import app
 
     app.worker_main(["worker", "--loglevel", "INFO", "--concurrency", str(told.workers),

@@ -14,9 +14,9 @@ from pathlib import Path
 from hockle.broker import answers, redis_binary, redis_child, short_directory
 from hockle.children import Child
 from hockle.failure import Failure
-from hockle.parts import SINGLE_THREADED
-from service.access import has_keys
-from service.api.listening import listen
+from hockle.here import made
+from hockle.parts import SINGLE_THREADED, listening_on
+from hockle.rotation import rotate
 from service.pulse import last_beat
 from service.settings import Settings
 
@@ -61,8 +61,9 @@ class Services:
         return f"http://{host}:{self._port}"
 
     def look_after(self) -> None:
-        """Start again what has died, and what stands still."""
+        """Start again what has died, and what stands still; begin full logs anew."""
         for child in self.children.values():
+            rotate(child.log, self.settings.log_bytes)
             if happened := child.look_after():
                 print(f"the {child.name} {happened}; see {child.log}", file=sys.stderr, flush=True)
 
@@ -81,15 +82,11 @@ class Services:
             self._cleanup.close()
 
     def _start(self) -> None:
-        try:
-            keys = has_keys(self.settings, time.time())
-            sockets = listen(self._host, self._port, keys, APIS)
-        except (OSError, ValueError) as error:
-            raise Failure(f"cannot listen on {self._host} port {self._port}: {error}") from None
+        made(self.settings)
+        sockets = listening_on(self.settings, self._host, self._port, APIS)
         for listening in sockets:
             self._cleanup.enter_context(listening)
         self._port = sockets[0].getsockname()[1]
-        self.settings.make_directories()
         self._hold_data_directory()
         for left in self.settings.pulses.iterdir():
             left.unlink()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import tomllib
 from collections.abc import Mapping
@@ -13,6 +14,8 @@ from urllib.parse import urlsplit
 
 from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
+from sqlalchemy import make_url
+from sqlalchemy.exc import ArgumentError
 
 from service.jobs.job import LEAST_MEMORY, Limits
 from service.meaning import means
@@ -30,6 +33,8 @@ def _kombu_url(url: str) -> str:
         return f"redis+socket://{parts.path}"
     if url and parts.scheme not in ("redis", "rediss", "redis+socket"):
         raise ValueError(f"must be redis://, rediss:// or unix://, got scheme {parts.scheme!r}")
+    if parts.port == 0:  # to ask for it is to have it checked
+        raise ValueError("must have a port from 1 to 65535, got 0")
     return url
 
 
@@ -47,9 +52,14 @@ def _sqlalchemy_url(url: str) -> str:
     """A PostgreSQL address as SQLAlchemy spells it, with the driver that is installed."""
     scheme, separator, rest = url.partition("://")
     if scheme in ("postgres", "postgresql"):
-        return f"postgresql+psycopg{separator}{rest}"
-    if url and scheme not in ("postgresql+psycopg", "sqlite"):
+        url = f"postgresql+psycopg{separator}{rest}"
+    elif url and scheme not in ("postgresql+psycopg", "sqlite"):
         raise ValueError(f"must be postgresql:// or sqlite://, got scheme {scheme!r}")
+    try:
+        if url and not make_url(url).database:
+            raise ValueError("must name a database after the host, as postgresql://host/name")
+    except ArgumentError:
+        raise ValueError("must be an address, as postgresql://user@host:5432/name") from None
     return url
 
 
@@ -104,6 +114,10 @@ class Settings:
     rate: Annotated[float, Positive, means("the most requests of one owner who has a key", "1/s")] = 100.0
     require_keys: Annotated[bool, means("ask for API keys on loopback too, as behind a proxy")] = False
     hosts: Annotated[str, means("names by which clients know the service, with commas between")] = ""
+    log_bytes: Annotated[
+        int, Positive,
+        means("the largest that a log of `hockle serve` grows; four older ones are kept of each", "bytes"),
+    ] = 50_000_000  # fmt: skip
     limit_wall: Annotated[float, Positive, means("the longest that one job may run", "s")] = Limits.wall
     limit_memory: Annotated[
         int, Field(ge=LEAST_MEMORY), means("the most memory that one job may use", "bytes")
@@ -151,15 +165,34 @@ class Settings:
         return self.data / "pulses"
 
     def make_directories(self) -> None:
-        """Make the data directory and what it holds, for this user only."""
+        """Make the data directory and what it holds, for this user only, as is all that this process makes from now on.
+
+        Raises OSError that names a directory that cannot be made, written, or kept from others.
+        """
+        os.umask(0o077)
         for directory in (self.data, self.datasets, self.copies, self.work, self.locks, self.messages, self.pulses):
             directory.mkdir(mode=0o700, parents=True, exist_ok=True)
+            if not os.access(directory, os.W_OK | os.X_OK):
+                raise PermissionError(errno.EACCES, "this user cannot write there", str(directory.absolute()))
+        _close(self.data)
 
     def environment(self) -> dict[str, str]:
         """The environment variables from which `from_environment` makes the same settings, without a file."""
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         values |= {name: path.absolute() for name, path in values.items() if isinstance(path, Path)}
         return {FILE: ""} | {variable(name): "" if value is None else str(value) for name, value in values.items()}
+
+
+def _close(directory: Path) -> None:
+    """Keep others from a directory that somebody made beforehand. Raises PermissionError."""
+    open_to_others = directory.stat().st_mode & 0o077
+    if not open_to_others:
+        return
+    try:
+        directory.chmod(0o700)
+    except PermissionError:
+        raise PermissionError(errno.EPERM, "other users may enter it, and it is not this user's to close: chmod 700 it",
+                              str(directory.absolute())) from None
 
 
 def variable(field: str) -> str:
@@ -170,21 +203,30 @@ def variable(field: str) -> str:
 def from_environment(environment: Mapping[str, str] = os.environ) -> Settings:
     """The settings of the file that HOCKLE_SETTINGS names, if any, with those of the environment over them.
 
-    Raises ValueError that names the setting, its value and the rule; OSError where there is no such file.
+    Raises ValueError with a line for each fault that names the setting, its value and the rule.
     """
     values: dict[str, Any] = {}
     if path := environment.get(FILE):
-        values = tomllib.loads(Path(path).read_text())
+        values = _read(path)
     names = {field.name: variable(field.name) for field in fields(Settings)}
     values |= {name: environment[its] for name, its in names.items() if environment.get(its)}
     try:
         return TypeAdapter(Settings).validate_python(values)
     except ValidationError as error:
-        raise ValueError("; ".join(_sentence(fault, names) for fault in error.errors())) from None
+        raise ValueError("\n".join(_sentence(fault, names) for fault in error.errors())) from None
+
+
+def _read(path: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(Path(path).read_text())
+    except OSError as error:
+        raise ValueError(f"{FILE}: must name a file that can be read, got {path!r}: {error.strerror}") from None
+    except ValueError as error:
+        raise ValueError(f"{FILE}: must name a file in TOML, got {path!r}: {error}") from None
 
 
 def _sentence(fault: Any, names: Mapping[str, str]) -> str:
     """One fault. The value of an address is not shown, nor of what is no setting: it may hold a password."""
     name = str(fault["loc"][0])
     value = "" if name in ("database", "broker") or name not in names else f", got {fault['input']!r}"
-    return f"{names.get(name, name)}: {fault['msg']}{value}"
+    return f"{names.get(name, name)}: {fault['msg'].removeprefix('Value error, ')}{value}"

@@ -21,7 +21,10 @@ from worker import run
 from worker.beating import Child, Parent, step_of
 from worker.parent import die_with_parent
 
-settings = from_environment()
+try:
+    settings = from_environment()
+except ValueError as error:
+    sys.exit(f"hockle: {error}")
 app = Celery("hockle")
 app.conf.update(celery_settings(settings))
 main_process = os.getpid()

@@ -2,7 +2,6 @@
 
 from service.access.caller import LOCAL, Caller, Refused, authenticate
 from service.access.key import ApiKey, NewKey, Scope
-from service.access.store import KeyStore, UnknownKey, has_keys
+from service.access.store import KeyStore, UnknownKey
 
-__all__ = ["LOCAL", "ApiKey", "Caller", "KeyStore", "NewKey", "Refused", "Scope", "UnknownKey", "authenticate",
-           "has_keys"]
+__all__ = ["LOCAL", "ApiKey", "Caller", "KeyStore", "NewKey", "Refused", "Scope", "UnknownKey", "authenticate"]

@@ -11,7 +11,6 @@ from service.access.key import ApiKey, NewKey, Scope, sha256
 from service.jobs import Database
 from service.jobs.audit import CONSOLE, note
 from service.jobs.tables import api_keys
-from service.settings import Settings
 
 
 class UnknownKey(Exception):
@@ -61,16 +60,6 @@ class KeyStore:
                 return
         if self.find(prefix) is None:
             raise UnknownKey(prefix)
-
-
-def has_keys(settings: Settings, now: float) -> bool:
-    """Whether the service of these settings has a key with which somebody could use it."""
-    settings.make_directories()
-    database = Database(settings.database_url)
-    try:
-        return KeyStore(database).any_good(now)
-    finally:
-        database.close()
 
 
 def _key(row: Mapping[Any, Any]) -> ApiKey:

@@ -24,6 +24,8 @@ ALIKE = (
            jobs.c.deleted.is_(None), jobs.c.dataset_fault == "")
     .group_by(jobs.c.owner, jobs.c.case_sha256)
 )
+MOST_KEYS = 100_000
+"""Idempotency keys that are remembered of one owner: whoever sends more must wait until some are forgotten."""
 OWNED = (
     select(owners.c.name, owners.c.unfinished, owners.c.bytes)
     .where(owners.c.name.in_(bindparam("names", expanding=True)))
@@ -94,6 +96,7 @@ class _Desk:
         self._known = _known(transaction, {one.mark for one in submissions if one.key})
         self._alike = _alike(transaction, {one.new.case_sha256 for one in submissions if one.reuse}, terms.looks_good)
         self._unfinished, self._bytes = _owned(transaction, {one.new.owner for one in submissions})
+        self._remembered = _remembered(transaction, {one.new.owner for one in submissions if one.key})
         self._made: list[Submission] = []
         self._keys: list[dict[str, object]] = []
 
@@ -102,6 +105,9 @@ class _Desk:
         if one.key and one.mark in self._known:
             body_sha256, job_id = self._known[one.mark]
             return job_id if body_sha256 == one.body_sha256 else KeyReused(one.key)
+        if one.key and self._remembered[one.new.owner] >= MOST_KEYS:
+            return QuotaReached(f"{one.new.owner} has {MOST_KEYS:,} idempotency keys that are remembered for three "
+                                "days, and may have no more: wait, or send none")
         verdict = self._alike.get((one.new.owner, one.new.case_sha256)) if one.reuse else None
         if verdict is None:
             if refusal := self._beyond(one.new.owner):
@@ -110,6 +116,7 @@ class _Desk:
             self._made.append(one)
             verdict = one.new.id
         if one.key:
+            self._remembered[one.new.owner] += 1
             self._known[one.mark] = one.body_sha256, verdict
             self._keys.append({"owner": one.new.owner, "key": one.key, "body_sha256": one.body_sha256,
                                "job_id": verdict, "created": self._transaction.now})
@@ -147,11 +154,26 @@ def _known(transaction: Transaction, marks: Collection[tuple[str, str]]) -> dict
         return {}
     table = idempotency_keys.c
     connection = transaction.connection
-    connection.execute(delete(idempotency_keys).where(table.created < transaction.now - REMEMBERED))
+    forget_keys(transaction)
     found = connection.execute(
         select(table.owner, table.key, table.body_sha256, table.job_id).where(tuple_(table.owner, table.key).in_(marks))
     )
     return {(row.owner, row.key): (row.body_sha256, row.job_id) for row in found}
+
+
+def forget_keys(transaction: Transaction) -> None:
+    """Forget the idempotency keys that are remembered no longer."""
+    old = idempotency_keys.c.created < transaction.now - REMEMBERED
+    transaction.connection.execute(delete(idempotency_keys).where(old))
+
+
+def _remembered(transaction: Transaction, names: Collection[str]) -> Counter[str]:
+    """How many idempotency keys of some owners are remembered, counted up to MOST_KEYS."""
+    many = Counter[str]()
+    for name in names:
+        some = select(idempotency_keys.c.key).where(idempotency_keys.c.owner == name).limit(MOST_KEYS).subquery()
+        many[name] = transaction.connection.scalar(select(func.count()).select_from(some)) or 0
+    return many
 
 
 def _alike(transaction: Transaction, hashes: Collection[str],

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 
 from service.jobs import Database, Job
+from service.jobs.submission import forget_keys
 from service.results import Datasets, StoreUnreachable
 from service.rounds import Rounds
 from service.settings import Settings
@@ -23,7 +24,8 @@ log = logging.getLogger(__name__)
 
 
 class Keeper:
-    """Deletes what is kept no longer, removes what was deleted, and looks at every dataset each hour."""
+    """Deletes what is kept no longer, removes what was deleted, forgets old idempotency keys; looks at every dataset
+    each hour."""
 
     def __init__(self, database: Database, datasets: Datasets, settings: Settings) -> None:
         self._database, self._datasets, self._settings = database, datasets, settings
@@ -38,6 +40,8 @@ class Keeper:
         """Do what is due."""
         if gone := retain(self._database, self._settings, time.time()):
             log.info("%d jobs are kept no longer", len(gone))
+        with self._database.writing() as transaction:
+            forget_keys(transaction)
         remove_files(self._database, self._datasets)
         self._look_on()
 

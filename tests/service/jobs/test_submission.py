@@ -230,3 +230,18 @@ def test_an_owner_sees_no_others_jobs(database, registry):
             method(alice.id)
     assert registry.get(alice.id) == alice
     assert isinstance(registry, Registry)
+
+
+def test_the_idempotency_keys_of_an_owner_are_bounded_even_if_they_make_no_job(database, clock, monkeypatch):
+    monkeypatch.setattr("service.jobs.submission.MOST_KEYS", 2)
+    [first] = submit(database, wanted(reuse=True, key="1", body_sha256="a"))
+    run(database, first)
+    again, refused, keyless, other = submit(
+        database, wanted(reuse=True, key="2", body_sha256="a"), wanted(reuse=True, key="3", body_sha256="a"),
+        wanted(reuse=True), wanted(key="1", body_sha256="a", owner="bob"),
+    )  # fmt: skip
+    assert again.id == keyless.id == first.id and other.owner == "bob"
+    assert isinstance(refused, QuotaReached) and "alice has 2 idempotency keys" in str(refused)
+    assert submit(database, wanted(key="1", body_sha256="a"))[0].id == first.id
+    clock.now += REMEMBERED + 1
+    assert isinstance(submit(database, wanted(key="3", body_sha256="a"))[0], Job)

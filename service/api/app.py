@@ -16,6 +16,7 @@ from service.api import (
     data,
     datasets,
     events,
+    film,
     front,
     jobs,
     links,
@@ -46,7 +47,7 @@ TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "cases", "description": "What can be simulated, and what it would cost."},
         {"name": "OGC API Processes", "description": "The same jobs as one process of OGC API Processes, Part 1."},
         {"name": "service", "description": "Whether it lives, and how it does."}]
-ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, links, scalars, cases, processes,
+ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, film, links, scalars, cases, processes,
                                     watching, front)]
 BURST = 10.0  # s of an owner's rate that may be spent at once
 

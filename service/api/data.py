@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from fastapi import APIRouter, Query, Response
 
@@ -18,6 +18,7 @@ from service.results.live import LiveSource
 from service.results.part import Part
 from service.results.query import Source, opened
 
+T = TypeVar("T")
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
 
@@ -37,7 +38,7 @@ def data(job_id: str, part: Annotated[VariablesInRanges, Query()], parts: InPart
     return given(replace(found, attributes=told), form, fresh)
 
 
-def part_of(job_id: str, jobs: Registry, parts: Parts, read: Callable[[Source], Part]) -> tuple[Job, Part]:
+def part_of(job_id: str, jobs: Registry, parts: Parts, read: Callable[[Source], T]) -> tuple[Job, T]:
     """A job, and what `read` makes of its frames, or of those that it has so far.
 
     Raises Problem 404, 409, 422 or 503, UnknownJob.

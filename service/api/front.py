@@ -17,8 +17,8 @@ POLICY = "default-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-
 FRESH = {"Cache-Control": "no-cache", "X-Content-Type-Options": "nosniff"}
 DASHBOARD = Path(__file__).parent.parent / "dashboard"
 KINDS = {".js": "text/javascript", ".css": "text/css"}
-PARTS = {path.name: path for path in DASHBOARD.iterdir() if path.suffix in KINDS}
-"""The dashboard's modules and style by name."""
+PARTS = {path.relative_to(DASHBOARD).as_posix(): path for path in DASHBOARD.rglob("*.*") if path.suffix in KINDS}
+"""The dashboard's modules and style by their paths."""
 router = APIRouter()
 
 class Readiness(BaseModel):
@@ -40,7 +40,7 @@ def dashboard() -> FileResponse:
     return FileResponse(DASHBOARD / "index.html", headers={"Content-Security-Policy": POLICY, **FRESH})
 
 
-@router.get("/dashboard/{name}", include_in_schema=False)
+@router.get("/dashboard/{name:path}", include_in_schema=False)
 def part(name: str) -> FileResponse:
     """A module or the style of that page."""
     if name not in PARTS:

@@ -81,6 +81,18 @@ def case(job_id: str, jobs: Jobs) -> dict[str, Any]:
     return jobs.case(job_id)
 
 
+class QueueDocument(BaseModel):
+    """Where a job waits: how many of its owner's jobs go first. Owners take turns, however many jobs each has."""
+
+    before: int
+
+
+@router.get("/{job_id}/queue", responses=problems(404))
+def queue(job_id: str, jobs: Jobs) -> QueueDocument:
+    """How many jobs of its owner go first; 0 also where it does not wait any more."""
+    return QueueDocument(before=jobs.before(jobs.get(job_id)))
+
+
 @router.post("/{job_id}/cancel", responses=problems(404))
 def cancel(job_id: str, jobs: OwnJobs, caller: Submitter) -> JobDocument:
     """Cancel a job: at once if it waits, within a second if it runs, and `dismissed` is how it then ends, however near

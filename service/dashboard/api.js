@@ -7,12 +7,13 @@
  *   attributes: Record<string, number | string>, dataset: {href: string, bytes: number} | null,
  *   links: Record<string, string>}} Job */
 
-/** A refusal of the service; `status` is that of HTTP, 401 where a key is missing or not valid. */
+/** A refusal of the service; `status` is that of HTTP, 401 where a key is missing or not valid; `problem` its document. */
 export class Refusal extends Error {
-  /** @param {number} status @param {string} told */
-  constructor(status, told) {
-    super(told);
+  /** @param {number} status @param {any} problem */
+  constructor(status, problem) {
+    super(problem.detail || problem.title || `the server answers ${status}`);
     this.status = status;
+    this.problem = problem;
   }
 }
 
@@ -22,21 +23,28 @@ export const setKey = (key) => sessionStorage.setItem("key", key);
 /** The answer to a request. Throws Refusal. @param {string} address @param {RequestInit} [options] */
 export async function call(address, options = {}) {
   const key = sessionStorage.getItem("key");
-  const answer = await fetch(address, { ...options, headers: key ? { Authorization: `Bearer ${key}` } : {} });
+  const headers = { ...options.headers, ...(key ? { Authorization: `Bearer ${key}` } : {}) };
+  const answer = await fetch(address, { ...options, headers });
   if (answer.ok) return answer;
   if (answer.status === 401) sessionStorage.removeItem("key");
-  const problem = await answer.json().catch(() => ({}));
-  throw new Refusal(answer.status, problem.detail || problem.title || `the server answers ${answer.status}`);
+  throw new Refusal(answer.status, await answer.json().catch(() => ({})));
 }
 
 /** The JSON in the answer. Throws Refusal. @param {string} address */
 export const read = async (address) => (await call(address)).json();
 
+/** The JSON in the answer to JSON that is sent. Throws Refusal. @param {string} address @param {any} body */
+export const send = async (address, body) => (await call(address, {
+  method: "POST", body: JSON.stringify(body), headers: { "Content-Type": "application/json" } })).json();
+
 /** Save what lies at an address as a file; a plain link would be followed without the key.
  * @param {string} address @param {string} name */
-export async function save(address, name) {
+export const save = async (address, name) => keep(await (await call(address)).blob(), name);
+
+/** Save this as a file. @param {Blob} content @param {string} name */
+export function keep(content, name) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(await (await call(address)).blob());
+  link.href = URL.createObjectURL(content);
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60000);

@@ -1,51 +1,120 @@
 // @ts-check
-/** Curves over time, drawn as SVG. */
+/** Curves over time, drawn as SVG; the pointer or a film shows the values at one time. */
 import { element } from "./page.js";
+import { prefixed, range, ticks, told, widened } from "./scale.js";
 
+/** @typedef {(number | null)[]} Curve */
 const SPACE = "http://www.w3.org/2000/svg";
-const WIDTH = 480, HEIGHT = 220, LEFT = 64, RIGHT = 10, TOP = 10, BOTTOM = 26;
+const WIDTH = 480, HEIGHT = 200, LEFT = 56, RIGHT = 12, TOP = 10, BOTTOM = 24;
 
-/** @param {string} name @param {Record<string, string | number>} attributes */
-function drawn(name, attributes) {
+/** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
+function drawn(name, attributes, text) {
   const made = document.createElementNS(SPACE, name);
   for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
+  if (text !== undefined) made.textContent = text;
   return made;
 }
 
-/** The least and the largest of the numbers that are there. @param {(number | null)[]} values */
-function range(values) {
-  let least = Infinity, largest = -Infinity;
-  for (const value of values) {
-    if (value === null) continue;
-    least = Math.min(least, value);
-    largest = Math.max(largest, value);
+export class Chart {
+  /** A figure of at most six curves, each over a time in s. @param {string} title @param {string} unit
+   * @param {{steps?: boolean}} [options] steps: values that hold until the next one */
+  constructor(title, unit, options = {}) {
+    this.title = title;
+    this.unit = unit;
+    this.steps = options.steps ?? false;
+    this.picture = drawn("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "chart", role: "img" });
+    this.heading = element("figcaption", "", title);
+    this.legend = element("div", "legend");
+    this.figure = element("figure", "", this.heading, this.picture, this.legend);
+    /** @type {[string, number[], Curve][]} */
+    this.curves = [];
+    this.from = this.low = 0;
+    this.to = this.high = this.factor = 1;
+    this.picture.addEventListener("pointermove", (event) => this.mark(this.timeAt(/** @type {PointerEvent} */ (event))));
+    /** The time that is marked, in s. @type {number | null} */
+    this.at = null;
   }
-  return least < largest ? [least, largest] : [least - 0.5, least + 0.5];
+
+  /** Draw these curves instead; a null is a gap. @param {Record<string, [number[], Curve]>} curves */
+  draw(curves) {
+    this.curves = Object.entries(curves).map(([name, [time, values]]) => [name, time, values]);
+    [this.from, this.to] = widened(range(this.curves.flatMap(([, time]) => [time[0], time[time.length - 1]])));
+    const seen = widened(range(this.curves.flatMap(([, , values]) => [range(values) ?? []].flat())));
+    const [factor, name] = prefixed(Math.max(Math.abs(seen[0]), Math.abs(seen[1])), this.unit);
+    [this.factor, this.low, this.high] = [factor, seen[0] / factor, seen[1] / factor];
+    this.heading.textContent = `${this.title} (${name})`;
+    this.picture.setAttribute("aria-label", `${this.title}: ${this.curves.map(([one]) => one).join(", ")} over time`);
+    this.picture.replaceChildren(...this.axes(), ...this.curves.map(([, time, values], place) =>
+      drawn("path", { class: `line${place}`, d: this.path(time, values) })));
+    this.marker = this.picture.appendChild(drawn("line", { class: "marker", y1: TOP, y2: HEIGHT - BOTTOM }));
+    this.mark(this.at);
+  }
+
+  /** @param {number} t */
+  x(t) {
+    return LEFT + (t - this.from) / (this.to - this.from) * (WIDTH - LEFT - RIGHT);
+  }
+
+  /** @param {number} value */
+  y(value) {
+    return HEIGHT - BOTTOM - (value - this.low) / (this.high - this.low) * (HEIGHT - TOP - BOTTOM);
+  }
+
+  axes() {
+    const lines = ticks(this.low, this.high, 4).flatMap((value) => [
+      drawn("line", { class: "axis", x1: LEFT, x2: WIDTH - RIGHT, y1: this.y(value), y2: this.y(value) }),
+      drawn("text", { x: LEFT - 6, y: this.y(value) + 4, "text-anchor": "end" }, told(value))]);
+    const times = ticks(this.from, this.to, 5).map((t) =>
+      drawn("text", { x: Math.min(this.x(t), WIDTH - 14), y: HEIGHT - 7, "text-anchor": "middle" }, told(t)));
+    return [...lines, ...times, drawn("text", { x: LEFT - 6, y: HEIGHT - 7, "text-anchor": "end" }, "t (s)")];
+  }
+
+  /** @param {number[]} time @param {Curve} values */
+  path(time, values) {
+    let d = "", pen = "M";
+    for (let k = 0; k < values.length; k += 1) {
+      const value = values[k];
+      if (value === null) {
+        pen = "M";
+        continue;
+      }
+      const x = this.x(time[k]).toFixed(1), y = this.y(value / this.factor).toFixed(1);
+      d += this.steps && pen === "L" ? `H${x}V${y}` : `${pen}${x} ${y}`;
+      pen = "L";
+    }
+    return d;
+  }
+
+  /** Show the values at a time; null: at the end. @param {number | null} t */
+  mark(t) {
+    this.at = t;
+    this.marker?.toggleAttribute("hidden", t === null);
+    if (t !== null) {
+      const x = this.x(Math.min(Math.max(t, this.from), this.to));
+      this.marker?.setAttribute("x1", String(x));
+      this.marker?.setAttribute("x2", String(x));
+    }
+    this.legend.replaceChildren(...this.curves.map(([name, time, values], place) => {
+      const value = values[t === null ? values.length - 1 : nearest(time, t)] ?? null;
+      return element("span", `line${place}`, `${name} `,
+        element("small", "", value === null ? "none" : told(value / this.factor)));
+    }));
+  }
+
+  /** @param {PointerEvent} event */
+  timeAt(event) {
+    const { left, width } = this.picture.getBoundingClientRect();
+    const share = ((event.clientX - left) / width * WIDTH - LEFT) / (WIDTH - LEFT - RIGHT);
+    return this.from + Math.min(Math.max(share, 0), 1) * (this.to - this.from);
+  }
 }
 
-/** A figure of at most four curves over time in s; null where a curve has a gap.
- * @param {string} title @param {number[]} time @param {Record<string, (number | null)[]>} curves */
-export function chart(title, time, curves) {
-  const [from, to] = range(time), [low, high] = range(Object.values(curves).flat());
-  const x = (/** @type {number} */ t) => LEFT + (t - from) / (to - from) * (WIDTH - LEFT - RIGHT);
-  const y = (/** @type {number} */ v) => HEIGHT - BOTTOM - (v - low) / (high - low) * (HEIGHT - TOP - BOTTOM);
-  const picture = drawn("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "chart", role: "img", "aria-label": title });
-  for (const value of [low, (low + high) / 2, high]) {
-    picture.append(drawn("line", { class: "axis", x1: LEFT, x2: WIDTH - RIGHT, y1: y(value), y2: y(value) }));
-    const label = drawn("text", { x: LEFT - 6, y: y(value) + 4, "text-anchor": "end" });
-    label.textContent = String(Number(value.toPrecision(3)));
-    picture.append(label);
+/** The place of the nearest of the times, which grow. @param {number[]} times @param {number} t */
+export function nearest(times, t) {
+  let low = 0, high = times.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (times[middle] <= t) low = middle; else high = middle;
   }
-  for (const [t, anchor] of /** @type {[number, string][]} */ ([[from, "start"], [to, "end"]])) {
-    const label = drawn("text", { x: x(t), y: HEIGHT - 8, "text-anchor": anchor });
-    label.textContent = `${Number(t.toPrecision(4))} s`;
-    picture.append(label);
-  }
-  const legend = element("div", "legend");
-  Object.entries(curves).forEach(([name, values], place) => {
-    const points = values.flatMap((value, k) => value === null ? [] : [`${x(time[k]).toFixed(1)},${y(value).toFixed(1)}`]);
-    picture.append(drawn("polyline", { class: `line${place}`, points: points.join(" ") }));
-    legend.append(element("span", `line${place}`, name));
-  });
-  return element("figure", "", element("figcaption", "", title), picture, legend);
+  return high > 0 && t - times[low] > times[high] - t ? high : Math.max(low, 0);
 }

@@ -62,16 +62,21 @@ export function actions(job, then) {
 }
 
 /** @param {Job} job @param {() => void} then */
-function askToCancel(job, then) {
-  byId("question").textContent = `Cancel "${job.title}"? It stops, and cannot go on later.`;
-  const ask = byId("ask");
-  ask.returnValue = "no";
-  ask.onclose = async () => {
-    if (ask.returnValue !== "yes") return;
-    await call(`${job.links.self}/cancel`, { method: "POST" }).catch((error) => notice(error.message));
-    then();
-  };
-  ask.showModal();
+async function askToCancel(job, then) {
+  if (!await ask(`Cancel "${job.title}"? It stops, and cannot go on later.`, "Cancel the run", "Keep it running")) return;
+  await call(`${job.links.self}/cancel`, { method: "POST" }).catch((error) => notice(error.message));
+  then();
+}
+
+/** Whether it shall be done. @param {string} question @param {string} yes @param {string} no @returns {Promise<boolean>} */
+export function ask(question, yes, no) {
+  byId("question").textContent = question;
+  const dialog = byId("ask");
+  const [keep, act] = dialog.querySelectorAll("button");
+  [keep.textContent, act.textContent] = [no, yes];
+  dialog.returnValue = "no";
+  dialog.showModal();
+  return new Promise((resolve) => dialog.onclose = () => resolve(dialog.returnValue === "yes"));
 }
 
 /** Tell of a fault; "" takes it away. @param {string} text */

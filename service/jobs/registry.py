@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, bindparam, insert, select, true
+from sqlalchemy import ColumnElement, bindparam, func, insert, select, true
 from sqlalchemy.dialects import postgresql, sqlite
 
 from outcomes import Outcome
@@ -121,6 +121,15 @@ class Registry:
         with self.database.reading() as connection:
             listed = [job_of(row) for row in connection.execute(query).mappings()]
         return Page(listed[:limit], listed[limit - 1].id if len(listed) > limit else None)
+
+    def before(self, job: Job) -> int:
+        """How many waiting jobs of the same owner go first; 0 for a job that does not wait."""
+        if job.status is not Status.ACCEPTED:
+            return 0
+        sooner = (jobs.c.priority > job.priority) | ((jobs.c.priority == job.priority) & (jobs.c.id < job.id))
+        with self.database.reading() as connection:
+            query = select(func.count()).where(jobs.c.status == Status.ACCEPTED, jobs.c.owner == job.owner, sooner)
+            return connection.scalar(query) or 0
 
     def cancel(self, job_id: str, actor: Actor | None = None) -> Job:
         """Dismiss a job that waits; tell the worker of one that runs. Raises UnknownJob, DeletedJob."""

@@ -16,13 +16,18 @@ import pytest
 import uvicorn
 
 from service.api.app import create_app
+from service.cases import apply_settings, load_case, parse_case
 from service.jobs import Database, NewJob, Registry
 from service.jobs.registry import insert_jobs
 from service.settings import Settings
+from worker.run import run_next
 
 CHROMIUM = which("chromium") or which("chromium-browser") or which("google-chrome")
-ARGUMENTS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-             "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+ARGUMENTS = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
+             "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+
+
+CASE = parse_case(load_case("elastica")).document()
 
 
 @contextmanager
@@ -74,13 +79,26 @@ def add(registry: Registry) -> Callable[..., list[str]]:
         database: Database = registry.database
         ids: list[str] = []
         for start in range(0, many, 1000):
-            new = [NewJob({"title": title}, title=f"{title} {k}", **more)
+            new = [NewJob(CASE, title=f"{title} {k}", **more)
                    for k in range(start, min(start + 1000, many))]
             with database.writing() as transaction:
                 ids += [job.id for job in insert_jobs(transaction, new)]
         return ids
 
     return jobs
+
+
+@pytest.fixture
+def run(registry: Registry, settings: Settings) -> Callable[..., str]:
+    """Run a shipped case with some values set; gives the job's id."""
+
+    def job(name: str, **values: object) -> str:
+        spec = parse_case(apply_settings(load_case(name), {key.replace("__", "."): one for key, one in values.items()}))
+        new = registry.submit(NewJob(spec.document(), title=spec.title))
+        assert run_next(registry.database, settings)
+        return new.id
+
+    return job
 
 
 @pytest.fixture

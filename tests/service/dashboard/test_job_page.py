@@ -2,21 +2,88 @@
 
 from __future__ import annotations
 
+from urllib.request import urlopen
 
-def test_twist_writhe_link_and_their_defect_are_drawn(server, add, page):
-    here = f"/v1/jobs/{add(1)[0]}"
-    values = {"Tw": [0.0, 1.0, 2.0], "Wr": [0.0, 0.5, None], "Lk": [0.0, 1.5, 2.5]}
-    data = {"coordinates": {"time": {"units": "s", "values": [0.0, 1.0, 2.0]}},
-            "variables": {name: {"units": "turn", "values": curve} for name, curve in values.items()}}
+QUICK = {"t_end": 1.0, "output__interval": 0.1, "numerics__intervals": 20}
 
-    def ended(route):
-        job = route.fetch().json()
-        route.fulfill(json=job | {"status": "successful", "dataset": {"href": f"{here}/dataset", "bytes": 1}})
 
-    page.route(server.address + here, ended)
-    page.route(f"{server.address}{here}/data?*", lambda route: route.fulfill(json=data))
-    page.goto(f"{server.address}/#{here.removeprefix('/v1')}")
-    page.wait_for_function("() => document.querySelectorAll('#job .chart').length === 2")
-    assert page.locator("#job .legend").all_inner_texts() == ["TwWrLk", "Tw + Wr - Lk"]
-    counts = [len(line.get_attribute("points").split()) for line in page.locator("#job polyline").all()]
-    assert counts == [3, 2, 3, 2]
+def shown(page, server, job_id):
+    page.goto(f"{server.address}/#/jobs/{job_id}")
+    page.wait_for_selector("#job h2")
+
+
+def legend(page, title):
+    return page.locator("#job figure", has_text=title).locator(".legend").inner_text()
+
+
+def test_the_curves_of_a_run_are_drawn_with_their_last_values(server, run, page):
+    shown(page, server, run("cantilever-vibration", **QUICK))
+    page.wait_for_selector("#job .chart")
+    titles = page.locator("#job figcaption").all_inner_texts()
+    for title in ("Twist, writhe, link", "Defect Tw + Wr - Lk", "Energies", "Energy balance", "Tension at the ends",
+                  "Step dt", "Newton iterations"):
+        assert any(one.startswith(title) for one in titles), title
+    assert "s = 0" in legend(page, "Tension") and "s = L" in legend(page, "Tension")
+    assert "bending" in legend(page, "Energies") and "torsion" not in legend(page, "Energies")  # it is noise here
+
+
+def test_a_running_job_is_drawn_as_its_frames_come(server, add, page):
+    job_id, frames = add(1)[0], [2]
+
+    def running(route):
+        now = {"status": "running", "phase": "running", "progress": 0.4, "remaining": 90}
+        route.fulfill(json=route.fetch().json() | now)
+
+    def data(route):
+        names = route.request.url.split("variables=")[1].split("&")[0].split(",")
+        time = [0.25 * k for k in range(frames[0])]
+        value = {"f": [[[0.0, 0.0, 1.0]] for _ in time]}
+        route.fulfill(json={"coordinates": {"time": {"values": time}}, "variables": {
+            name: {"units": "1", "values": value.get(name, time)} for name in names}})
+
+    here = f"{server.address}/v1/jobs/{job_id}"
+    page.route(here, running)
+    page.route(f"{here}/data?*", data)
+    shown(page, server, job_id)
+    page.wait_for_function("() => document.querySelector('#job .legend')?.innerText.includes('Tw 0.25')")
+    assert "running, t = 0.00 s, 1 min 30 s left" in page.inner_text("#job")
+    frames[0] = 5
+    page.wait_for_function("() => document.querySelector('#job .legend').innerText.includes('Tw 1')")
+
+
+def test_the_outcome_comes_with_its_remedy(server, add, page):
+    job_id = add(1)[0]
+    page.route(f"{server.address}/v1/jobs/{job_id}", lambda route: route.fulfill(json=route.fetch().json() | {
+        "status": "failed", "outcome": "newton_stalled", "message": "use shorter steps"}))
+    shown(page, server, job_id)
+    assert page.inner_text("#job .outcome") == "newton_stalled: use shorter steps"
+
+
+def test_what_differs_from_the_shipped_case_is_listed(server, run, page):
+    shown(page, server, run("cantilever-vibration", **QUICK))
+    page.wait_for_selector("#job .changes")
+    rows = [row.split("\t") for row in page.locator("#job .changes tbody tr").all_inner_texts()]
+    assert ["numerics.intervals", "20", "60"] in rows
+    assert sorted(row[0] for row in rows) == ["numerics.intervals", "t_end"]
+
+
+def test_a_waiting_job_tells_how_many_go_first(server, add, page):
+    shown(page, server, max(add(3)))
+    assert page.inner_text("#job .status") == "accepted: 2 jobs of local go first"
+
+
+def test_a_share_link_opens_the_dataset(server, run, page):
+    shown(page, server, run("cantilever-vibration", **QUICK))
+    page.click("text=Share link")
+    address = page.get_attribute("#job .shared a", "href")
+    with urlopen(address) as answer:
+        assert answer.read(4) == b"\x89HDF"
+
+
+def test_dataset_and_case_are_saved(server, run, page):
+    job_id = run("cantilever-vibration", **QUICK)
+    shown(page, server, job_id)
+    for label, name in (("Dataset", f"{job_id}.nc"), ("Case file", f"{job_id}.json")):
+        with page.expect_download() as saved:
+            page.click(f"#job button:has-text('{label}')")
+        assert saved.value.suggested_filename == name

@@ -101,7 +101,7 @@ def test_keys_lead_to_a_job_and_its_address_opens_it_again(server, add, page):
     assert page.url.endswith(f"#/jobs/{newest}")
     page.reload()
     page.wait_for_selector("#job h2")
-    assert newest in page.inner_text("#job dl")
+    assert newest in page.text_content("#job dl")
     page.go_back()
     rows(page, 2)
 

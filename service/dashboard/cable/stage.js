@@ -1,0 +1,123 @@
+// @ts-check
+/** A canvas on which rods are drawn, turned with pointer and keys. */
+import { element } from "../page.js";
+import { Camera } from "./camera.js";
+import { Picture } from "./picture.js";
+import { Surroundings, upright } from "./surroundings.js";
+
+/** @typedef {import("./picture.js").Rod} Rod */
+/** @typedef {import("./surroundings.js").Box} Box */
+/** @typedef {import("./vectors.js").Vector} Vector */
+export const VIEWS = /** @type {Record<string, Vector | null>} */ ({
+  free: null, "along e1": [1, 0, 0], "along e2": [0, 1, 0], "along e3": [0, 0, 1] });
+const TURN = 0.008, KEY_TURN = 0.1;
+
+export class Stage {
+  /** @param {string} label what the picture shows */
+  constructor(label) {
+    this.canvas = /** @type {HTMLCanvasElement} */ (element("canvas", "stage"));
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", label);
+    this.picture = new Picture(this.canvas);
+    this.camera = new Camera([0, 0, 1], [1, 0, 0]);
+    /** What is drawn at each frame. @type {() => {rods: Rod[], lines: number[], points: number[]}} */
+    this.content = () => ({ rods: [], lines: [], points: [] });
+    /** @type {Box} */
+    this.box = [[0, 0, 0], [1, 1, 1]];
+    this.waiting = 0;
+    this.sizes = new ResizeObserver(() => this.fit());
+    this.sizes.observe(this.canvas);
+    this.listen();
+  }
+
+  /** Set the vertical, the ground and what is seen, for a case and the box of its rod.
+   * @param {any} shape @param {Box} box @param {Vector} along the rod at first */
+  set(shape, box, along) {
+    const [up, right] = upright(shape, box, along);
+    this.camera = new Camera(up, right);
+    this.surroundings = new Surroundings(shape, box, up);
+    this.box = box;
+    this.fit();
+  }
+
+  /** Look from where `view` says. @param {string} view one of VIEWS */
+  look(view) {
+    this.camera.look(VIEWS[view]);
+    this.fit();
+  }
+
+  /** Show the whole. */
+  fit() {
+    this.picture.resize();
+    const low = this.box[0].slice(), high = this.box[1].slice(), ground = this.surroundings;
+    if (ground) {
+      for (let i = 0; i < 3; i += 1) {
+        const at = ground.onGround(ground.centre)[i];
+        const near = ground.up[i] ** 2 > 0.5 && Math.abs(at - ground.centre[i]) < ground.extent;
+        if (near) [low[i], high[i]] = [Math.min(low[i], at), Math.max(high[i], at)];
+      }
+    }
+    this.camera.fit([low, high], this.picture.aspect);
+    this.redraw();
+  }
+
+  /** Draw once the browser is ready to. */
+  redraw() {
+    if (!this.waiting) this.waiting = requestAnimationFrame(() => this.draw());
+  }
+
+  /** Draw now. */
+  draw() {
+    cancelAnimationFrame(this.waiting);
+    this.waiting = 0;
+    this.picture.resize();
+    const { rods, lines, points } = this.content();
+    const ground = getComputedStyle(this.canvas).backgroundColor.match(/[\d.]+/g) ?? [255, 255, 255];
+    const around = this.surroundings?.lines ?? [];
+    this.picture.draw(this.camera, rods, [...around, ...lines], points, ground.map((one) => Number(one) / 255));
+  }
+
+  listen() {
+    const { canvas } = this;
+    canvas.onpointermove = (event) => {
+      if (!event.buttons) return;
+      canvas.setPointerCapture(event.pointerId);
+      if (event.shiftKey || event.buttons === 2) {
+        this.camera.pan(event.movementX / canvas.clientHeight, -event.movementY / canvas.clientHeight);
+      } else this.turn(-event.movementX * TURN, event.movementY * TURN);
+      this.redraw();
+    };
+    canvas.oncontextmenu = (event) => event.preventDefault();
+    canvas.onwheel = (event) => {
+      event.preventDefault();
+      this.camera.distance *= Math.exp(event.deltaY * 0.0012);
+      this.redraw();
+    };
+    canvas.ondblclick = () => this.fit();
+    canvas.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  /** @param {KeyboardEvent} event */
+  key(event) {
+    const turn = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    const zoom = { "+": 0.9, "-": 1 / 0.9 }[event.key];
+    if (turn) this.turn(turn[0] * KEY_TURN, turn[1] * KEY_TURN);
+    else if (zoom) this.camera.distance *= zoom;
+    else return;
+    event.preventDefault();
+    this.redraw();
+  }
+
+  /** @param {number} yaw @param {number} pitch */
+  turn(yaw, pitch) {
+    this.camera.yaw += yaw;
+    this.camera.pitch = Math.min(Math.max(this.camera.pitch + pitch, -Math.PI / 2), Math.PI / 2);
+  }
+
+  close() {
+    cancelAnimationFrame(this.waiting);
+    this.sizes.disconnect();
+    this.picture.close();
+  }
+}

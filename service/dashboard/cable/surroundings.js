@@ -1,0 +1,129 @@
+// @ts-check
+/** What is around a rod in its picture: the ground with its shadow, a floor, weight, current, the lab axes, contacts. */
+import { NODE } from "./film.js";
+import { ticks } from "../scale.js";
+import { across, add, dot, size, times, unit } from "./vectors.js";
+
+/** @typedef {import("./vectors.js").Vector} Vector */
+/** @typedef {import("./picture.js").Strokes} Strokes */
+/** @typedef {[Vector, Vector]} Box lowest and highest corner */
+
+const GRID = [0.5, 0.55, 0.62, 0.35], SHADOW = [0.35, 0.4, 0.48, 0.6], FLOOR = [0.55, 0.42, 0.3, 0.8];
+const WEIGHT = [0.68, 0.14, 0.11, 1], CURRENT = [0.04, 0.45, 0.7, 1], CONTACT = [0.9, 0.1, 0.15, 1];
+const AXES = [[0.8, 0.15, 0.15, 1], [0.1, 0.55, 0.2, 1], [0.15, 0.35, 0.9, 1]];
+
+/** Up, against gravity; without gravity e3, or -e1 where the rod lies along e3, as in the paper's figures.
+ * And to the right what is longest. @param {any} shape a case @param {Box} box @param {Vector} along the rod at first
+ * @returns {[Vector, Vector]} */
+export function upright(shape, box, along) {
+  const gravity = shape.loads?.gravity ?? [0, 0, 0], lies = size(along) > 0 && Math.abs(unit(along)[2]) > 0.7;
+  const up = size(gravity) > 0 ? unit(times(gravity, -1)) : lies ? [-1, 0, 0] : [0, 0, 1];
+  const extent = add(box[1], box[0], -1);
+  const level = [0, 1, 2].map((i) => add([0, 1, 2].map((j) => i === j ? 1 : 0), up, -up[i]));
+  const longest = [0, 1, 2].reduce((best, i) => extent[i] * size(level[i]) > extent[best] * size(level[best]) * 1.001 ? i : best, 0);
+  return [up, size(level[longest]) > 1e-3 ? unit(level[longest]) : across(up)[0]];
+}
+
+/** The greatest diameter, m. @param {any} shape a case */
+export function diameter(shape) {
+  const given = shape.rod?.diameter;
+  return typeof given === "number" ? given : Math.max(0, ...[given?.value ?? 0].flat());
+}
+
+/** @param {Strokes} into @param {Vector} from @param {Vector} to @param {number[]} colour */
+export function line(into, from, to, colour) {
+  into.push(...from, ...colour, ...to, ...colour);
+}
+
+/** @param {Strokes} into @param {Vector} from @param {Vector} along @param {number[]} colour */
+export function arrow(into, from, along, colour) {
+  const to = add(from, along);
+  line(into, from, to, colour);
+  for (const side of across(unit(along)).flatMap((one) => [one, times(one, -1)])) {
+    line(into, to, add(add(to, along, -0.22), side, 0.09 * size(along)), colour);
+  }
+}
+
+export class Surroundings {
+  /** @param {any} shape the case @param {Box} box of all frames @param {Vector} up */
+  constructor(shape, [low, high], up) {
+    this.shape = shape;
+    this.up = up;
+    const extent = Math.max(...add(high, low, -1));
+    this.centre = times(add(low, high), 0.5);
+    this.extent = extent;
+    const half = [0, 1, 2].reduce((sum, i) => sum + Math.abs(up[i]) * (high[i] - low[i]) / 2, 0);
+    const floor = shape.loads?.floor;
+    this.normal = floor ? unit(floor.normal ?? [0, 0, 1]) : up;
+    const below = dot(this.centre, this.normal) - half - 0.12 * extent;
+    /** How far the ground lies along its normal. */
+    this.height = floor ? floor.height ?? 0 : below;
+    /** @type {Strokes} */
+    this.lines = [];
+    /** The squares of the ground, m. */
+    this.step = ticks(0, extent, 8)[1];
+    this.ground(floor ? FLOOR : GRID, low, high);
+    this.arrows(low);
+  }
+
+  /** @param {Vector} at */
+  onGround(at) {
+    return add(at, this.normal, this.height - dot(at, this.normal));
+  }
+
+  /** @param {number[]} colour @param {Vector} low @param {Vector} high */
+  ground(colour, low, high) {
+    const [first, second] = across(this.normal), middle = this.onGround(this.centre);
+    /** @param {Vector} axis */
+    const reach = (axis) => Math.max(0.2 * this.extent,
+      [0, 1, 2].reduce((sum, i) => sum + Math.abs(axis[i]) * (high[i] - low[i]) / 2, 0)) + this.step;
+    for (const [along, aside] of [[first, second], [second, first]]) {
+      const [long, wide] = [reach(along), reach(aside)], many = Math.ceil(wide / this.step);
+      for (let k = -many; k <= many; k += 1) {
+        const at = add(middle, aside, k * this.step);
+        line(this.lines, add(at, along, -long), add(at, along, long), colour);
+      }
+    }
+  }
+
+  /** The lab axes at the lowest corner, weight and current beside it. @param {Vector} low */
+  arrows(low) {
+    const length = 0.1 * this.extent, corner = this.onGround(low);
+    AXES.forEach((colour, i) => line(this.lines, corner, add(corner, [0, 1, 2].map((j) => i === j ? length : 0)), colour));
+    const gravity = this.shape.loads?.gravity ?? [0, 0, 0], current = this.shape.fluid?.current ?? [0, 0, 0];
+    const from = add(corner, this.up, 2.5 * length);
+    if (size(gravity) > 0) arrow(this.lines, from, times(unit(gravity), length), WEIGHT);
+    if (size(current) > 0) arrow(this.lines, from, times(unit(current), length), CURRENT);
+  }
+
+  /** The shadow of a rod on the ground. @param {Float32Array} nodes @param {Strokes} into */
+  shadow(nodes, into) {
+    let before = null;
+    for (let k = 0; k < nodes.length; k += NODE) {
+      const at = add(this.onGround([nodes[k], nodes[k + 1], nodes[k + 2]]), this.normal, 1e-3 * this.extent);
+      if (before) line(into, before, at, SHADOW);
+      before = at;
+    }
+  }
+}
+
+/** Where strands of a rod are near enough to press on each other. @param {Float32Array} nodes @param {number[]} s
+ * @param {any} shape the case @returns {Strokes} */
+export function touching(nodes, s, shape) {
+  const thick = diameter(shape), { cutoff = 1.1 * thick, skip = 4 * thick } = shape.contact ?? {};
+  const points = [];
+  for (let i = 0; i < s.length; i += 1) {
+    const x = nodes[NODE * i], y = nodes[NODE * i + 1], z = nodes[NODE * i + 2];
+    let nearest = cutoff * cutoff, with_ = -1;
+    for (let j = i + 1; j < s.length; j += 1) {
+      if (s[j] - s[i] <= skip) continue;
+      const dx = nodes[NODE * j] - x, dy = nodes[NODE * j + 1] - y, dz = nodes[NODE * j + 2] - z;
+      const square = dx * dx + dy * dy + dz * dz;
+      if (square < nearest) [nearest, with_] = [square, j];
+    }
+    if (with_ < 0) continue;
+    const j = NODE * with_;
+    points.push((x + nodes[j]) / 2, (y + nodes[j + 1]) / 2, (z + nodes[j + 2]) / 2, ...CONTACT);
+  }
+  return points;
+}

@@ -1,0 +1,124 @@
+"""The film of a cable, in a browser that draws WebGL by software."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import pytest
+
+BENT = {"t_end": 6.0, "output__interval": 0.5, "numerics__intervals": 40}
+
+
+@pytest.fixture
+def film(server, run, page):
+    """The page with the film of a cantilever that bends."""
+    page.goto(f"{server.address}/#/jobs/{run('elastica', **BENT)}")
+    page.wait_for_selector(".player:not([hidden])")
+    return page
+
+
+def seen(page) -> np.ndarray:
+    """The picture's pixels, (rows, columns, 3)."""
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    return matplotlib.image.imread(BytesIO(page.locator(".stage").screenshot()))[..., :3]
+
+
+def scrub(page, t):
+    page.evaluate("t => { const s = document.querySelector('.clock input'); s.value = t; s.oninput() }", t)
+
+
+def orange(pixels: np.ndarray) -> np.ndarray:
+    return (pixels[..., 0] > pixels[..., 1] + 0.05) & (pixels[..., 1] > pixels[..., 2] + 0.12)
+
+
+def blue(pixels: np.ndarray) -> np.ndarray:
+    return (pixels[..., 2] > pixels[..., 0] + 0.05) & (pixels[..., 2] < 0.5)
+
+
+def test_the_cable_is_drawn_with_a_stripe_and_moves_when_it_is_scrubbed(film):
+    scrub(film, 0.0)
+    start = seen(film)
+    scrub(film, 6.0)
+    end = seen(film)
+    for pixels in (start, end):
+        assert orange(pixels).sum() > 500
+    straight, bent = (np.nonzero(orange(pixels)) for pixels in (start, end))
+    assert np.ptp(bent[1]) > 2 * np.ptp(straight[1])  # it stands at first, and then leans to one side
+    assert film.inner_text(".clock output") == "t = 6 s"
+
+
+def test_colours_have_a_scale_with_units(film):
+    options = film.locator("[name=colour] option").all_inner_texts()
+    assert options == ["none", "curvature", "twist", "tension"]
+    plain = seen(film)
+    film.select_option("[name=colour]", "curvature")
+    assert film.inner_text(".scale").endswith("rad/m")
+    coloured = seen(film)
+    assert orange(coloured).sum() < 0.2 * orange(plain).sum()
+
+
+def test_views_differ_and_the_pointer_turns_the_cable(film):
+    pictures, stripe = [seen(film)], []
+    for view in ("along e1", "along e2", "along e3", "free"):
+        film.select_option("[name=view]", view)
+        pictures.append(seen(film))
+        stripe.append(blue(pictures[-1]).sum())
+    assert max(stripe) > 500  # along a1, which one of the views faces
+    box = film.locator(".stage").bounding_box()
+    film.mouse.move(box["x"] + 200, box["y"] + 200)
+    film.mouse.down()
+    film.mouse.move(box["x"] + 400, box["y"] + 150, steps=3)
+    film.mouse.up()
+    pictures.append(seen(film))
+    assert np.abs(pictures[0] - pictures[4]).max() < 0.02  # the first view again
+    for k in (1, 2, 3, 5):
+        assert np.abs(pictures[k] - pictures[0]).max() > 0.3
+
+
+def test_it_plays_to_its_end_and_marks_its_time_in_the_curves(film):
+    scrub(film, 0.0)
+    film.wait_for_selector("#job .chart")
+    film.locator(".stage").press(".")
+    film.wait_for_function("() => document.querySelector('.clock output').innerText === 't = 0.5 s'")
+    before = film.locator("#job .legend").all_inner_texts()
+    film.select_option(".clock select", "5 s")
+    film.click(".clock button")
+    film.wait_for_function("() => document.querySelector('.clock output').innerText === 't = 6 s'")
+    film.wait_for_function("() => document.querySelector('.clock button').innerText === 'Play'")
+    assert film.locator("#job .legend").all_inner_texts() != before
+
+
+def test_a_picture_is_saved_as_it_is_seen(film, tmp_path: Path):
+    with film.expect_download() as saved:
+        film.click("text=PNG")
+    saved.value.save_as(tmp_path / "cable.png")
+    assert saved.value.suggested_filename == "elastica-6s.png"
+    assert orange(matplotlib.image.imread(tmp_path / "cable.png")).sum() > 500
+
+
+def test_a_video_is_recorded(film, tmp_path: Path):
+    film.select_option(".clock select", "5 s")
+    with film.expect_download() as saved:
+        film.click("#video")
+    saved.value.save_as(tmp_path / "cable")
+    content = (tmp_path / "cable").read_bytes()
+    kind = Path(saved.value.suggested_filename).suffix
+    assert {".mp4": content[4:8] == b"ftyp", ".webm": content[:4] == b"\x1aE\xdf\xa3"}[kind]
+    assert len(content) > 20_000
+
+
+def test_contacts_are_marked_where_strands_touch(server, run, page):
+    job_id = run("short-loop", t_end=0.8, output__interval=0.1)
+    page.goto(f"{server.address}/#/jobs/{job_id}")
+    page.wait_for_selector(".player:not([hidden])")
+    page.wait_for_function("() => Number(document.querySelector('.player').dataset.contacts) > 0")
+
+
+def test_without_webgl_the_page_says_so_and_shows_the_curves(server, run, page):
+    page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+    page.goto(f"{server.address}/#/jobs/{run('elastica', **BENT)}")
+    page.wait_for_selector("#job .chart")
+    assert "this browser has no WebGL 2" in page.inner_text("#job")

@@ -93,7 +93,7 @@ export class JobPage {
       ...(job.status === "running" ? [bar(job), element("p", "faint", standing(job))] : []),
       ...(job.outcome && job.status !== "running" ? [this.outcome(job)] : []),
       element("div", "actions", ...actions(job, () => this.refresh()), ...this.more(job)), this.facts(job));
-    if (ended) await this.draw();
+    if (ended) await Promise.all([this.draw(), this.player?.again()]);
   }
 
   /** How it ended, and what to do. @param {Job} job */

@@ -20,6 +20,16 @@ export class Film {
     this.box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   }
 
+  /** Forget all frames. */
+  clear() {
+    this.time = [];
+    this.s = [];
+    this.contacts = [];
+    this.blocks.clear();
+    this.box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    return false;
+  }
+
   get nodes() {
     return this.s.length;
   }
@@ -44,6 +54,7 @@ export class Film {
   append(answer) {
     const length = new DataView(answer).getUint32(0, true);
     const header = JSON.parse(new TextDecoder().decode(new Uint8Array(answer, 4, length)));
+    if (this.s.length && this.s.join() !== header.s.join()) return this.clear(); // a finer run has begun
     if (!header.time.length) return false;
     this.s = header.s;
     this.time.push(...header.time);

@@ -49,12 +49,18 @@ export class Player {
     return `${this.shape.name || "cable"}-${told(this.clock.t)}s.${kind}`;
   }
 
+  /** Read the film from its beginning again: the run has ended, and may have been refined. */
+  again() {
+    this.film.clear();
+    return this.more();
+  }
+
   /** Read what is new of the run; says whether there is a film by now. */
   async more() {
     const first = !this.film.time.length;
     if (await this.film.more(this.job)) {
-      this.clock.set(this.film.time);
       if (first) this.open();
+      this.clock.set(this.film.time);
       this.paint();
     }
     return this.film.time.length > 0;
@@ -63,7 +69,8 @@ export class Player {
   open() {
     this.place.hidden = false;
     this.nodes = new Float32Array(NODE * this.film.nodes);
-    this.colour?.append(...this.film.colours.map((name) => new Option(name)));
+    const shown = [...(this.colour?.options ?? [])].map((one) => one.value);
+    this.colour?.append(...this.film.colours.filter((name) => !shown.includes(name)).map((name) => new Option(name)));
     const r = this.film.values("r"), last = 3 * (this.film.nodes - 1);
     this.stage.set(this.shape, this.film.box, [0, 1, 2].map((i) => r[last + i] - r[i]));
   }

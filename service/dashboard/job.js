@@ -92,7 +92,7 @@ export class JobPage {
       element("p", `status ${job.status}`, job.status, waits === null ? "" : `: ${waits} jobs of ${job.owner} go first`),
       ...(job.status === "running" ? [bar(job), element("p", "faint", standing(job))] : []),
       ...(job.outcome && job.status !== "running" ? [this.outcome(job)] : []),
-      element("div", "actions", ...actions(job, () => this.refresh()), ...this.more(job)), this.facts(job));
+      element("div", "actions", ...actions(job, (deleted) => deleted ? location.assign("#/") : this.refresh()), ...this.more(job)), this.facts(job));
     if (ended) await Promise.all([this.draw(), this.player?.again()]);
   }
 

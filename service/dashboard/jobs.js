@@ -122,9 +122,16 @@ export class JobsTable {
     const progress = element("td", "", ...(job.status === "running" ? [bar(job)] : []), element("small", "", standing(job)));
     if (ended && !isOpen(job)) progress.append(element("small", "", job.message || job.outcome));
     const row = element("tr", "", what, state, progress, element("td", "", new Date(job.created).toLocaleString()),
-      element("td", "", job.owner), element("td", "", ...actions(job, () => this.refresh())));
+      element("td", "", job.owner), element("td", "row", ...actions(job, (deleted) => deleted ? this.remove(job.id) : this.refresh())));
     row.id = job.id;
     return row;
+  }
+
+  /** @param {string} id */
+  remove(id) {
+    this.known.get(id)?.row.remove();
+    this.known.delete(id);
+    this.tell();
   }
 
   /** Tell how many there are. */

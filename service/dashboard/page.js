@@ -51,21 +51,31 @@ export function bar(job) {
   return made;
 }
 
-/** What can be done with a job: cancel it, or save its dataset. @param {Job} job @param {() => void} then */
+/** What can be done with a job: cancel it; or save its dataset, and delete it.
+ * @param {Job} job @param {(deleted: boolean) => void} then */
 export function actions(job, then) {
+  if (isOpen(job)) {
+    const cancel = button(job.cancel_requested ? "Cancelling" : "Cancel", () => asked(job, then));
+    cancel.toggleAttribute("disabled", job.cancel_requested);
+    return [cancel];
+  }
   const dataset = job.dataset;
-  if (dataset) return [button(`Dataset, ${(dataset.bytes / 1e6).toFixed(1)} MB`, () => save(dataset.href, `${job.id}.nc`))];
-  if (!isOpen(job)) return [];
-  const cancel = button(job.cancel_requested ? "Cancelling" : "Cancel", () => askToCancel(job, then));
-  cancel.toggleAttribute("disabled", job.cancel_requested);
-  return [cancel];
+  const kept = dataset ? [button(`Dataset, ${(dataset.bytes / 1e6).toFixed(1)} MB`, () => save(dataset.href, `${job.id}.nc`))] : [];
+  return [...kept, button("Delete", () => asked(job, then))];
 }
 
-/** @param {Job} job @param {() => void} then */
-async function askToCancel(job, then) {
-  if (!await ask(`Cancel "${job.title}"? It stops, and cannot go on later.`, "Cancel the run", "Keep it running")) return;
-  await call(`${job.links.self}/cancel`, { method: "POST" }).catch((error) => notice(error.message));
-  then();
+/** Cancel or delete a job, if that is meant. @param {Job} job @param {(deleted: boolean) => void} then */
+async function asked(job, then) {
+  const open = isOpen(job);
+  const sure = open ? ask(`Cancel "${job.title}"? It stops, and cannot go on later.`, "Cancel the run", "Keep it running")
+    : ask(`Delete "${job.title}" with its dataset? Nobody can bring it back.`, "Delete it", "Keep it");
+  if (!await sure) return;
+  try {
+    await (open ? call(`${job.links.self}/cancel`, { method: "POST" }) : call(job.links.self, { method: "DELETE" }));
+    then(!open);
+  } catch (error) {
+    notice(/** @type {Error} */ (error).message);
+  }
 }
 
 /** Whether it shall be done. @param {string} question @param {string} yes @param {string} no @returns {Promise<boolean>} */

@@ -90,6 +90,22 @@ def test_a_job_is_cancelled_only_after_a_question(server, add, registry, page):
     assert registry.get(job_id).status == "dismissed"
 
 
+def test_an_ended_job_is_deleted_only_after_a_question(server, add, registry, page):
+    kept, gone = add(2)
+    for job_id in (kept, gone):
+        registry.cancel(job_id)
+    page.goto(server.address)
+    page.click(f"#jobs tr[id='{kept}'] button:has-text('Delete')")
+    page.click("#ask button[value=no]")
+    page.click(f"#jobs tr[id='{gone}'] button:has-text('Delete')")
+    page.click("#ask button[value=yes]")
+    rows(page, 1)
+    assert registry.get(kept).id == kept
+    page.reload()
+    rows(page, 1)
+    assert page.locator(ROWS).get_attribute("id") == kept
+
+
 def test_keys_lead_to_a_job_and_its_address_opens_it_again(server, add, page):
     add(2)
     page.goto(server.address)

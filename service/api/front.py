@@ -9,7 +9,7 @@ from fastapi import APIRouter, Response
 from fastapi.responses import FileResponse
 from pydantic import BaseModel
 
-from service.api.health import Led, Reached, Room, Workers
+from service.api.health import Kept, Led, Reached, Room, Workers
 from service.api.parts import InParts
 from service.api.problems import Problem
 
@@ -26,7 +26,7 @@ class Readiness(BaseModel):
     room, nothing works. `standing_still` names processes, and parts of them, that do not get on or are lost."""
 
     status: Literal["ok", "degraded"]
-    database: Reached
+    database: Kept
     broker: Reached
     disk: Room
     workers: Workers

@@ -19,6 +19,7 @@ from service.jobs import Database
 from service.jobs.doorbell import Doorbell
 from service.jobs.leader import LEASE
 from service.jobs.processes import EVERY, Presence, Roll
+from service.jobs.sqlite import FilesReplaced
 from service.pulse import EVERY as BEAT
 from service.pulse import Pulse
 from service.rounds import Rounds
@@ -31,6 +32,7 @@ LEAST_FREE = 50_000_000
 """Bytes of free disk, below which no job is sure to be kept."""
 
 Reached = Literal["ok", "unreachable"]
+Kept = Literal["ok", "unreachable", "replaced"]
 Room = Literal["ok", "full"]
 Workers = Literal["ok", "none", "silent"]
 Led = Literal["ok", "none"]
@@ -71,8 +73,12 @@ class Health:
             self._presence.leave()
 
     @property
-    def database(self) -> Reached:
-        """Whether the registry is read and written."""
+    def database(self) -> Kept:
+        """Whether the registry is read and written, and its files are those that were opened."""
+        try:
+            self._database.check()
+        except FilesReplaced:
+            return "replaced"
         return self._state_of("database")
 
     @property

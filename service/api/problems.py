@@ -19,6 +19,7 @@ from starlette.routing import Match
 
 from service.cases import MOST_TOLD, CaseError
 from service.jobs import DeletedJob, Pinned, UnknownJob
+from service.jobs.sqlite import FilesReplaced
 from service.jobs.submission import KeyReused, QuotaReached
 from service.jobs.submissions import InFlight
 
@@ -140,6 +141,8 @@ async def _database(request: Request, error: Exception) -> JSONResponse:
         return await _bug(request, error)
     log.error("%s %s: the database does not answer: %s", request.method, request.url.path, error)
     detail = "the database does not answer, or has no room: nothing was changed; try again later"
+    if isinstance(error, FilesReplaced):
+        detail = "the registry's files were removed or replaced under the running service: an operator must look at it"
     return Problem(503, "database_unreachable", detail, {"Retry-After": SOON}).response()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sqlite3
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -11,16 +10,12 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, Connection, Engine, create_engine, event, insert, update
-from sqlalchemy.exc import OperationalError
+from sqlalchemy import ColumnElement, Connection, Engine, create_engine, insert, make_url, update
 
 from service.jobs.lifecycle import ENDED, Status, allowed_before
 from service.jobs.migrations import migrate
+from service.jobs.sqlite import BUSY, Files, sqlite_engine, told
 from service.jobs.tables import events, jobs, owners
-from service.jobs.turn import turn
-
-BUSY = 20.0
-"""Seconds for which a write waits for another one, or for a connection."""
 
 FOUND_DEAD = {
     "connect_timeout": 5, "keepalives_idle": 10, "keepalives_interval": 5, "keepalives_count": 3,
@@ -29,10 +24,6 @@ FOUND_DEAD = {
 }  # fmt: skip
 """Of connections to PostgreSQL: each side finds within some 25 s that the other's host is gone, not within hours. Else
 nobody would reconcile, since the lock of a dead leader lies in its session, and no request would be answered."""
-
-PRIMARY = 0xFF
-"""The part of SQLite's error codes that says what, not why: another process may also be recovering the log."""
-
 
 @dataclass(frozen=True)
 class Transaction:
@@ -87,8 +78,12 @@ class Database:
 
     def __init__(self, url: str, clock: Callable[[], float] = time.time) -> None:
         """Open it, making or upgrading its tables. Raises WrongSchema if a newer hockle has written it."""
-        self.engine = _engine(url)
-        self._reading = _engine(url, reading=True)
+        self._files: Files | None = None
+        if url.startswith("sqlite"):
+            self._files = files = Files(make_url(url).database or "")
+            self.engine, self._reading = (sqlite_engine(url, files, reading) for reading in (False, True))
+        else:
+            self.engine, self._reading = (_postgresql(url, reading) for reading in (False, True))
         self._clock = clock
         with self.engine.begin() as connection:
             migrate(connection)
@@ -102,6 +97,12 @@ class Database:
         """A transaction, committed to the disk when the block ends."""
         with self.engine.begin() as connection:
             yield Transaction(connection, round(self._clock(), 6))  # as finely as times are shown
+        self.check()  # what was written into a file that is gone will not be there
+
+    def check(self) -> None:
+        """Raise FilesReplaced unless the files that this process has open are still those that lie there."""
+        if self._files is not None:
+            self._files.check()
 
     def close(self) -> None:
         """Close every connection."""
@@ -109,47 +110,5 @@ class Database:
         self._reading.dispose()
 
 
-def _engine(url: str, reading: bool = False) -> Engine:
-    """Reads have connections of their own: to change the level of one costs as much as a read itself."""
-    told: dict[str, Any] = {"isolation_level": "AUTOCOMMIT"} if reading else {}
-    if not url.startswith("sqlite"):
-        return create_engine(url, connect_args=FOUND_DEAD, pool_pre_ping=True, pool_timeout=BUSY, **told)
-    engine = create_engine(url, connect_args={"timeout": BUSY if reading else 0.0}, pool_timeout=BUSY, **told)
-    event.listen(engine, "connect", _set_up_sqlite)
-    if not reading:
-        event.listen(engine, "begin", _begin_sqlite)
-    return engine
-
-
-def _set_up_sqlite(connection: Any, _record: object) -> None:
-    connection.isolation_level = None  # the driver shall begin nothing by itself
-    _patiently(connection.execute, "PRAGMA journal_mode=WAL")
-    connection.execute("PRAGMA synchronous=FULL")  # a 202 outlives a power cut
-
-
-def _begin_sqlite(connection: Connection) -> None:
-    """Writers wait where they begin, in turn: one that first reads cannot be refused in its middle."""
-    driver: Any = connection.connection.dbapi_connection  # a refusal costs it a fiftieth
-    try:
-        with turn(f"{connection.engine.url.database}-turn"):
-            _patiently(driver.execute, "BEGIN IMMEDIATE")
-    except sqlite3.Error as error:
-        raise OperationalError("BEGIN IMMEDIATE", None, error) from error
-
-
-def _patiently(execute: Callable[[str], object], statement: str) -> None:
-    """Execute what needs the database for itself as soon as it is free.
-
-    SQLite's own waiting does not serve: it sleeps up to 0.1 s while another process writes again and again, and
-    where the journal mode changes it does not wait at all.
-    """
-    deadline = time.monotonic() + BUSY
-    while True:
-        try:
-            execute(statement)
-        except sqlite3.OperationalError as error:
-            if error.sqlite_errorcode & PRIMARY != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
-                raise
-            time.sleep(0.001)
-        else:
-            return
+def _postgresql(url: str, reading: bool) -> Engine:
+    return create_engine(url, connect_args=FOUND_DEAD, pool_pre_ping=True, pool_timeout=BUSY, **told(reading))

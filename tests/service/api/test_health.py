@@ -90,6 +90,20 @@ def test_a_database_that_never_answers_is_told_at_once_by_who_is_asked(client, u
     assert (answer.status_code, answer.json()["database"]) == (503, "unreachable")
 
 
+@pytest.mark.parametrize("ending", ["", "-wal"])
+def test_a_registry_whose_files_vanish_takes_no_jobs_until_they_are_back(client, settings, case, until, ending):
+    assert client.get("/readyz").status_code == 200
+    path, away = settings.data / f"registry.db{ending}", settings.data / "away"
+    path.rename(away)
+    ready, refused = client.get("/readyz"), client.post("/v1/jobs", json=case)
+    assert (ready.status_code, ready.json()["database"]) == (503, "replaced")
+    assert (refused.status_code, refused.headers["Retry-After"]) == (503, "10")
+    assert "removed or replaced" in refused.json()["detail"]
+    away.rename(path)
+    until(lambda: client.get("/readyz").json()["database"] == "ok")
+    assert client.post("/v1/jobs", json=case).status_code == 202
+
+
 def test_without_room_on_its_disk_the_service_is_unavailable(client, monkeypatch):
     monkeypatch.setattr("service.api.health.LEAST_FREE", 10**18)
     answer = client.get("/readyz")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sqlite3
 import threading
 
@@ -11,8 +12,9 @@ from alembic.runtime.migration import MigrationContext
 from sqlalchemy import create_engine, select, text
 
 from service.jobs import Database, NewJob, Registry
-from service.jobs.database import _patiently
 from service.jobs.migrations import WrongSchema, migrate
+from service.jobs.registry import insert_jobs
+from service.jobs.sqlite import FilesReplaced, _patiently
 from service.jobs.tables import metadata, owners
 
 OLD_JOB = text("""
@@ -81,8 +83,6 @@ def test_a_registry_from_before_the_migrations_is_refused(url):
 
 
 def test_what_fails_in_its_middle_changes_nothing(registry):
-    from service.jobs.registry import insert_jobs
-
     with pytest.raises(ZeroDivisionError), registry.database.writing() as transaction:
         insert_jobs(transaction, [NewJob({})])
         raise ZeroDivisionError
@@ -100,3 +100,50 @@ def test_opening_waits_for_another_process_that_recovers_the_log():
 
     _patiently(execute, "PRAGMA journal_mode=WAL")
     assert refusals == []
+
+
+@pytest.mark.parametrize("ending", ["", "-wal", "-shm"])
+@pytest.mark.parametrize("replaced", [False, True])
+def test_a_file_that_is_removed_or_replaced_under_a_process_is_noticed_before_it_writes(tmp_path, ending, replaced):
+    database = Database(f"sqlite:///{tmp_path}/registry.db")
+    registry = Registry(database)
+    job = registry.submit(NewJob({}))
+    path, away = tmp_path / f"registry.db{ending}", tmp_path / "away"
+    path.rename(away)
+    if replaced:
+        shutil.copyfile(away, path)
+    with pytest.raises(FilesReplaced, match=f"registry.db{ending} was removed or replaced"):
+        registry.submit(NewJob({}))
+    away.rename(path)
+    again = registry.submit(NewJob({}))
+    database.close()
+    opened = Database(f"sqlite:///{tmp_path}/registry.db")
+    assert [one.id for one in Registry(opened).page(9).jobs] == sorted([job.id, again.id], reverse=True)
+    opened.close()
+
+
+def test_a_file_that_vanishes_while_a_process_writes_is_noticed_before_it_says_that_all_is_well(tmp_path):
+    database = Database(f"sqlite:///{tmp_path}/registry.db")
+    with pytest.raises(FilesReplaced), database.writing() as transaction:
+        insert_jobs(transaction, [NewJob({})])
+        (tmp_path / "registry.db-wal").unlink()
+    database.close()
+
+
+def test_no_connection_is_opened_to_another_database_than_the_first(tmp_path):
+    database = Database(f"sqlite:///{tmp_path}/registry.db")
+    (tmp_path / "registry.db").rename(tmp_path / "away")
+    with pytest.raises(FilesReplaced), database.reading():
+        pass
+    assert not (tmp_path / "registry.db").exists()
+    database.close()
+
+
+def test_a_database_that_a_process_has_closed_may_change_its_files(tmp_path):
+    database = Database(f"sqlite:///{tmp_path}/registry.db")
+    database.close()
+    assert not (tmp_path / "registry.db-wal").exists()
+    with sqlite3.connect(tmp_path / "registry.db"):
+        pass
+    Registry(database).submit(NewJob({}))
+    database.close()

@@ -27,6 +27,14 @@ SHARED = "/v1/shared/"
 """Below it no key is asked for: the address itself lets in."""
 DASHBOARD = "/dashboard/"
 """The program of the page that asks for the key."""
+SAFE = [
+    (b"x-content-type-options", b"nosniff"), (b"x-frame-options", b"DENY"), (b"referrer-policy", b"no-referrer"),
+    (b"cross-origin-opener-policy", b"same-origin"), (b"cross-origin-resource-policy", b"same-origin"),
+    (b"permissions-policy", b"camera=(), geolocation=(), microphone=()"),
+]
+"""What every answer tells a browser."""
+NOTHING = (b"content-security-policy", b"default-src 'none'; frame-ancestors 'none'")
+"""What an answer that is no page may load or do, should a browser show it."""
 log = logging.getLogger(__name__)
 
 
@@ -45,6 +53,7 @@ class Gate:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
+        send = _safely(send)
         try:
             grant = self._let_in(scope, Headers(scope=scope))
         except Problem as problem:
@@ -101,6 +110,19 @@ def _telling(send: Send, grant: Grant) -> Send:
     async def tell(message: Message) -> None:
         if message["type"] == "http.response.start":
             MutableHeaders(scope=message).update(_limits(grant))
+        await send(message)
+
+    return tell
+
+
+def _safely(send: Send) -> Send:
+    """Send with the headers that keep browsers from doing more with an answer than they should."""
+
+    async def tell(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = message.setdefault("headers", [])
+            told = {name for name, _ in headers}
+            headers += [one for one in (*SAFE, NOTHING) if one[0] not in told]
         await send(message)
 
     return tell

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+import pytest
+
 from service.cases import parse_case, shipped_cases
 
 
@@ -48,3 +50,18 @@ def test_the_interface_describes_itself(client):
             assert operation["summary"] and operation["description"] and operation["tags"], (method, path)
             for parameter in operation.get("parameters", []):
                 assert parameter["description"], (method, path, parameter["name"])
+
+
+@pytest.mark.parametrize(("path", "headers", "status"), [
+    ("/", {}, 200), ("/dashboard/main.js", {}, 200), ("/livez", {}, 200), ("/v1/jobs", {}, 200), ("/metrics", {}, 200),
+    ("/v1/jobs/nobody", {}, 404), ("/v1/jobs", {"Host": "evil.example"}, 421), ("/nowhere", {}, 404),
+])  # fmt: skip
+def test_every_answer_tells_browsers_to_do_no_more_with_it_than_they_should(client, path, headers, status):
+    answer = client.get(path, headers=headers)
+    told = answer.headers
+    assert answer.status_code == status
+    assert "frame-ancestors 'none'" in told["content-security-policy"]
+    assert told["x-content-type-options"] == "nosniff" and told["x-frame-options"] == "DENY"
+    assert told["referrer-policy"] == "no-referrer"
+    assert told["cross-origin-resource-policy"] == told["cross-origin-opener-policy"] == "same-origin"
+    assert len(told.get_list("content-security-policy")) == 1

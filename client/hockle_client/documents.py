@@ -34,6 +34,15 @@ class Limits(Document):
     disk: int
 
 
+class WebhookInfo(Document):
+    """Whom the end of a job is told: how often that was tried, what came of the last try, and when the next one is."""
+
+    url: str
+    deliveries: int
+    last: str
+    next_attempt: datetime | None
+
+
 class JobState(Document):
     """A job. `phase` is what its run is doing, `progress` goes from 0 to 1, `remaining` is the seconds that are left,
     `t` is simulated seconds; `message` says what to do next, `attributes` what the run as a whole says of its errors.
@@ -61,6 +70,7 @@ class JobState(Document):
     attributes: dict[str, float | int | str] = {}
     limits: Limits
     dataset: DatasetInfo | None
+    webhook: WebhookInfo | None = None
     links: dict[str, str]
 
     @property

@@ -30,6 +30,15 @@ class LimitsDocument(BaseModel):
     disk: int
 
 
+class WebhookDocument(BaseModel):
+    """Whom the end of a job is told: how often that was tried, what came of the last try, and when the next one is."""
+
+    url: str
+    deliveries: int
+    last: str
+    next_attempt: datetime | None
+
+
 class JobDocument(BaseModel):
     """A job. `progress` goes from 0 to 1, `t` is simulated seconds, `remaining` the seconds that are left if it goes on
     as so far; `message` says what to do next, `attributes` what the run as a whole says, as its dataset does: its
@@ -57,6 +66,7 @@ class JobDocument(BaseModel):
     attributes: dict[str, float | int | str]
     limits: LimitsDocument
     dataset: DatasetDocument | None
+    webhook: WebhookDocument | None
     links: dict[str, str]
 
 
@@ -82,8 +92,18 @@ def document(job: Job) -> JobDocument:
         message=job.message, cancel_requested=job.cancel_requested, pinned=job.pinned, attempts=job.attempts,
         created=_instant(job.created), started=job.started and _instant(job.started),
         finished=job.finished and _instant(job.finished), case_sha256=job.case_sha256,
-        attributes=job.attributes, limits=LimitsDocument(**vars(job.limits)), dataset=dataset, links=links,
+        attributes=job.attributes, limits=LimitsDocument(**vars(job.limits)), dataset=dataset,
+        webhook=_webhook(job), links=links,
     )
+
+
+def _webhook(job: Job) -> WebhookDocument | None:
+    hook = job.webhook
+    if hook is None:
+        return None
+    due = hook.due if hook.due is None or job.finished is None else max(hook.due, job.finished)
+    upcoming = _instant(due) if due is not None and job.status in ENDED else None
+    return WebhookDocument(url=hook.url, deliveries=hook.tries, last=hook.answer, next_attempt=upcoming)
 
 
 def answer(job: Job, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:

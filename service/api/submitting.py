@@ -17,9 +17,10 @@ from service.api.parts import InParts, Parts, Submitter
 from service.api.preferences import wait_preferred
 from service.api.problems import Problem
 from service.api.requests import wanted
-from service.cases import check_cost
+from service.cases import CaseError, FieldError, check_cost
 from service.jobs import ENDED, Job, NewJob
 from service.jobs.submission import Submission
+from service.webhooks import fault_of
 
 router = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
@@ -63,6 +64,8 @@ def requested(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> S
     check_cost(spec, parts.settings.longest_run)
     if request.webhook is not None and not caller.key:
         raise Problem(422, "webhook_needs_key", "a webhook is signed with the API key that asks for it: send one")
+    if request.webhook is not None and (rule := fault_of(request.webhook)):
+        raise CaseError([FieldError("/webhook", request.webhook, rule)])
     limits = request.limits.within(parts.settings.limits)
     new = NewJob(spec.document(), spec.title or spec.name, caller.owner, request.label, request.priority, limits)
     digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest() if key else ""

@@ -45,6 +45,17 @@ class Drift:
     energy: float | None = None
 
 
+@dataclass(frozen=True)
+class Webhook:
+    """Whom to tell of a job's end: how often that was tried, what the last try was answered, and when the next one is
+    (Unix seconds; None: never)."""
+
+    url: str
+    tries: int = 0
+    answer: str = ""
+    due: float | None = 0.0
+
+
 LEAST_PROGRESS = 0.01
 """The part of a run that must be done before its remaining time is told."""
 LEAST_MEMORY = 64_000_000
@@ -140,6 +151,7 @@ class Job:
     deleted_by: str
     dataset: Dataset | None
     attributes: dict[str, float | int | str]
+    webhook: Webhook | None = None
 
     @property
     def progress(self) -> float:

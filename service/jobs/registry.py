@@ -17,9 +17,9 @@ from service.jobs.database import Database, Transaction
 from service.jobs.deletion import delete_jobs
 from service.jobs.job import Job, NewJob
 from service.jobs.lifecycle import ENDED, Status
-from service.jobs.tables import FRESH, JOB_COLUMNS, events, job_of, jobs, owners
+from service.jobs.tables import FRESH, JOBS, events, job_of, jobs, owners
 
-ONE_JOB = select(*JOB_COLUMNS).where(jobs.c.id == bindparam("job_id"))
+ONE_JOB = JOBS.where(jobs.c.id == bindparam("job_id"))
 """The read that is made most: put together once."""
 
 
@@ -109,7 +109,7 @@ class Registry:
     def page(self, limit: int, selection: Selection = Selection()) -> Page:
         """At most `limit` jobs of a selection, newest first."""
         kept = (self._seen, jobs.c.deleted.is_(None))
-        query = select(*JOB_COLUMNS).where(*kept).order_by(jobs.c.id.desc()).limit(limit + 1)
+        query = JOBS.where(*kept).order_by(jobs.c.id.desc()).limit(limit + 1)
         wanted = {jobs.c.status: selection.status, jobs.c.label: selection.label, jobs.c.owner: selection.owner}
         query = query.where(*(column == value for column, value in wanted.items() if value is not None))
         if selection.after is not None:

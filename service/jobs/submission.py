@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sqlalchemy import bindparam, delete, func, insert, select, tuple_
 
 from service.jobs.audit import Actor, note
 from service.jobs.database import Transaction
-from service.jobs.job import Job, NewJob
+from service.jobs.job import Job, NewJob, Webhook
 from service.jobs.lifecycle import Status
 from service.jobs.registry import DeletedJob, insert_jobs
-from service.jobs.tables import JOB_COLUMNS, idempotency_keys, job_of, jobs, owners, webhooks
+from service.jobs.tables import JOBS, idempotency_keys, job_of, jobs, owners, webhooks
 
 REMEMBERED = 3 * 86400.0
 """How long (s) an idempotency key is remembered: a day, which is promised, between clocks that are a day wrong."""
@@ -79,7 +79,7 @@ def submit_all(transaction: Transaction, submissions: Sequence[Submission], term
     verdicts = [desk.judge(submission) for submission in submissions]
     now = {job.id: job for job in desk.write()}
     if older := {verdict for verdict in verdicts if isinstance(verdict, str)} - now.keys():
-        rows = transaction.connection.execute(select(*JOB_COLUMNS).where(jobs.c.id.in_(older))).mappings()
+        rows = transaction.connection.execute(JOBS.where(jobs.c.id.in_(older))).mappings()
         now |= {row["id"]: job_of(row) for row in rows}
     return [_unless_deleted(now[verdict]) if isinstance(verdict, str) else verdict for verdict in verdicts]
 
@@ -145,7 +145,8 @@ class _Desk:
                  for one in self._made if one.webhook]  # fmt: skip
         if hooks:
             connection.execute(insert(webhooks), hooks)
-        return made
+        told = {one.new.id: Webhook(one.webhook) for one in self._made if one.webhook}
+        return [replace(job, webhook=told.get(job.id)) for job in made] if told else made
 
 
 def _known(transaction: Transaction, marks: Collection[tuple[str, str]]) -> dict[tuple[str, str], tuple[str, str]]:

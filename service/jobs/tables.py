@@ -20,9 +20,10 @@ from sqlalchemy import (
     String,
     Table,
     Text,
+    select,
 )
 
-from service.jobs.job import Dataset, Job, Limits, Reached
+from service.jobs.job import Dataset, Job, Limits, Reached, Webhook
 from service.jobs.lifecycle import Status
 
 metadata = MetaData()
@@ -190,12 +191,20 @@ FRESH = {column.name: column.default.arg if isinstance(column.default, ColumnDef
 """What a job's row holds where nothing was written."""
 
 
+WEBHOOK = tuple(field.name for field in dataclasses.fields(Webhook))
+JOBS = select(*JOB_COLUMNS, *(webhooks.c[name].label(f"webhook_{name}") for name in WEBHOOK)).outerjoin_from(
+    jobs, webhooks)
+"""Reads jobs with what became of their webhooks."""
+
+
 def job_of(row: Mapping[Any, Any]) -> Job:
-    """The job that a row of JOB_COLUMNS tells of."""
+    """The job that a row of JOBS tells of, or of JOB_COLUMNS alone."""
     fields = dict(row)
     reached = Reached(*(fields.pop(name) for name in REACHED))
     limits = Limits(*(fields.pop(f"limit_{name}") for name in ("wall", "memory", "disk")))
     told = [fields.pop(f"dataset_{name}") for name in DATASET]
     dataset = Dataset(*told) if told[0] is not None else None
+    hook = [fields.pop(f"webhook_{name}", None) for name in WEBHOOK]
+    webhook = Webhook(*hook) if hook[0] is not None else None
     return Job(**fields | {"status": Status(fields["status"]), "reached": reached, "limits": limits,
-                           "dataset": dataset, "attributes": json.loads(fields["attributes"])})
+                           "dataset": dataset, "webhook": webhook, "attributes": json.loads(fields["attributes"])})

@@ -51,6 +51,7 @@ def settle(database: Database, delivery: Delivery, answer: str, again: bool) -> 
     """Write what came of a try: `again` if it failed and may be repeated."""
     wait = WAITS[delivery.tries] if again and delivery.tries < len(WAITS) else None
     with database.writing() as transaction:
+        transaction.change(jobs.c.id == delivery.job_id)  # what its readers see is another from now on
         transaction.connection.execute(
             update(webhooks).where(webhooks.c.job_id == delivery.job_id)
             .values(tries=delivery.tries + 1, answer=answer, due=None if wait is None else transaction.now + wait)

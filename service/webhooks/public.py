@@ -5,13 +5,19 @@ from __future__ import annotations
 import ipaddress
 import socket
 from collections.abc import Iterable
+from contextlib import suppress
 from typing import Any
+from urllib.parse import urlsplit
 
 import httpcore
 
-COMPATIBLE = ipaddress.ip_network("::/96")
-"""IPv4 in IPv6 as it was once written, ::192.0.2.1; :: and ::1 lie there too."""
-NAT64 = ipaddress.ip_network("64:ff9b::/32")
+GLOBAL_UNICAST = ipaddress.ip_network("2000::/3")
+"""All that is given out of IPv6. What wraps an IPv4 address lies beside it (::192.0.2.1, ::ffff:0:192.0.2.1, NAT64),
+but for what `_wraps` tells."""
+DOCUMENTATION = ipaddress.ip_network("3fff::/20")
+ISATAP = 0x5EFE
+"""The third 16 bits from the right, of an address whose last 32 are an IPv4 address of some site."""
+PRIVATE_NAMES = ("localhost", "local", "internal", "localdomain", "lan", "home.arpa", "onion")
 
 
 class NotPublic(Exception):
@@ -22,11 +28,39 @@ def is_public(address: str) -> bool:
     """Whether an address is of the public internet, and so is what it wraps (IPv4 in IPv6)."""
     ip = ipaddress.ip_address(address.partition("%")[0])
     if isinstance(ip, ipaddress.IPv6Address):
-        if ip in COMPATIBLE or ip in NAT64 or ip.sixtofour is not None or ip.teredo is not None or ip.is_site_local:
-            return False
         if ip.ipv4_mapped is not None:
             ip = ip.ipv4_mapped
+        elif ip not in GLOBAL_UNICAST or ip in DOCUMENTATION or _wraps(ip):
+            return False
     return ip.is_global and not ip.is_multicast
+
+
+def _wraps(ip: ipaddress.IPv6Address) -> bool:
+    """Whether it leads to an IPv4 address through a tunnel."""
+    return ip.sixtofour is not None or ip.teredo is not None or int(ip) >> 32 & 0xFFFF == ISATAP
+
+
+def fault_of(url: str) -> str:
+    """The rule that an address breaks to which nothing is sent, as far as it can be told without asking for its name;
+    else nothing."""
+    try:
+        parts = urlsplit(url)
+        host, _ = (parts.hostname or "").rstrip("."), parts.port
+    except ValueError as error:
+        return f"must be an address: {error}"
+    if not host or parts.username is not None:
+        return "must name a host, and no user"
+    if _is_private(host):
+        return "must lead to the public internet"
+    return ""
+
+
+def _is_private(host: str) -> bool:
+    with suppress(ValueError):
+        return not is_public(host)
+    with suppress(OSError):
+        return not is_public(socket.inet_ntoa(socket.inet_aton(host)))  # 0x7f.1 and the like
+    return "." not in host or f".{host}".endswith(tuple(f".{name}" for name in PRIVATE_NAMES))
 
 
 class PublicOnly(httpcore.NetworkBackend):

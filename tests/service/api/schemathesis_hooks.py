@@ -15,7 +15,7 @@ import schemathesis
 
 ENDED = ("successful", "failed", "dismissed")
 KEYS = json.loads(os.environ.get("FUZZ_KEYS", "[]"))  # one of them is sent with each request; null is none
-NOWHERE = "http://127.0.0.1:9/"  # not a public address: the service sends nothing there
+NOWHERE = "http://hooks.example/"  # a name that nobody can have: nothing is sent there
 draws = random.Random(1)
 statuses = Path("statuses").open("w", buffering=1)  # noqa: SIM115 (as long as the process)
 followed = Path("followed").open("w", buffering=1)  # noqa: SIM115

@@ -208,3 +208,26 @@ def test_the_description_asks_for_a_key_where_one_is_required_and_tells_of_the_h
         limited = {status for status, answer in answers.items() if "RateLimit" in answer.get("headers", {})}
         assert limited == set(answers) - {"401", "403", "421"}
         assert all(header["required"] is (not optional) for header in told["components"]["headers"].values())
+
+
+def test_a_webhook_that_leads_inside_is_refused_where_it_is_handed_in(keyed, key, case):
+    alice = key("alice")
+    for path, body, pointer in (
+        ("/v1/jobs", {"case": case, "webhook": "http://169.254.169.254/latest"}, "/webhook"),
+        ("/ogc/processes/simulate/execution",
+         {"inputs": {"case": {"case": case, "webhook": "http://localhost:1/"}}}, "/inputs/case/webhook"),
+    ):  # fmt: skip
+        answer = keyed.post(path, json=body, headers=alice)
+        assert answer.status_code == 422
+        [error] = answer.json()["errors"]
+        assert (error["pointer"], error["rule"]) == (pointer, "must lead to the public internet")
+
+
+def test_a_webhook_stands_in_the_job_from_its_submission_on(keyed, key, case):
+    alice = key("alice")
+    body = {"case": case, "webhook": "https://lab.example/done", "reuse": False}
+    told = keyed.post("/v1/jobs", json=body, headers=alice).json()
+    expected = {"url": "https://lab.example/done", "deliveries": 0, "last": "", "next_attempt": None}
+    assert told["webhook"] == expected
+    assert keyed.get(f"/v1/jobs/{told['id']}", headers=alice).json()["webhook"] == expected
+    assert keyed.post("/v1/jobs", json=case, headers=alice).json()["webhook"] is None

@@ -14,11 +14,12 @@ import httpcore
 import pytest
 
 from service.access import KeyStore, Scope
-from service.jobs import Database, NewJob, Reached, Status
+from service.jobs import Database, NewJob, Reached, Registry, Status
 from service.jobs.audit import Actor
 from service.jobs.held import claim
+from service.jobs.job import Webhook
 from service.jobs.submission import Submission, Terms, submit_all
-from service.webhooks import Notifier
+from service.webhooks import Notifier, fault_of
 from service.webhooks.deliveries import HELD, WAITS, Delivery, settle, take_due
 from service.webhooks.public import NotPublic, PublicOnly, is_public
 from service.webhooks.sender import send
@@ -133,6 +134,34 @@ def test_a_try_that_failed_is_repeated_later_and_later_and_then_given_up(databas
     assert take_due(database, 9) == []
 
 
+def test_what_became_of_it_stands_in_the_job(database, ended, clock):
+    job_id = ended("http://x.example/")
+    registry = Registry(database)
+    before = registry.get(job_id)
+    assert before.webhook == Webhook("http://x.example/", 0, "", 0.0)
+    [delivery] = take_due(database, 9)
+    settle(database, delivery, "answered 500", again=True)
+    after = registry.get(job_id)
+    assert after.webhook == Webhook("http://x.example/", 1, "answered 500", clock.now + WAITS[0])
+    assert after.version > before.version
+    assert registry.page(1).jobs == [after]
+
+
+@pytest.mark.parametrize("url", [
+    "http://localhost/", "http://LOCALHOST./", "http://a.localhost/", "http://127.0.0.1/", "http://0x7f.1/",
+    "http://2130706433/", "http://[::1]/", "http://[::ffff:0:127.0.0.1]/", "http://[fe80::1%25eth0]/", "http://10.1/",
+    "http://printer/", "http://nas.local/", "http://vault.internal:8200/", "http:///", "http://me:secret@x.example/",
+    "http://x.example:99999/", "http://[x/",
+])  # fmt: skip
+def test_an_address_to_which_nothing_is_sent_is_known_beforehand(url):
+    assert fault_of(url)
+
+
+@pytest.mark.parametrize("url", ["https://lab.example/done", "http://8.8.8.8:8080/", "https://[2606:2800:21f::1]/x"])
+def test_an_address_of_the_public_internet_is_taken(url):
+    assert fault_of(url) == ""
+
+
 def test_what_was_taken_is_not_sent_again(database, ended, clock):
     ended("http://x.example/")
     [delivery] = take_due(database, 9)
@@ -160,6 +189,8 @@ def test_the_notifier_refuses_a_private_address_for_good_and_never_connects(data
     "127.0.0.1", "10.0.0.1", "172.16.0.1", "192.168.1.1", "169.254.169.254", "100.64.0.1", "0.0.0.0", "224.0.0.1",
     "255.255.255.255", "::1", "::", "fe80::1", "fe80::1%eth0", "fd00::1", "::ffff:127.0.0.1", "::ffff:10.0.0.1",
     "fec0::2", "::127.0.0.1",
+    "::ffff:0:127.0.0.1", "::ffff:0:8.8.8.8", "::8.8.8.8", "64:ff9b:1::7f00:1", "64:ff9b::808:808", "5f00::1",
+    "2a00:1450::5efe:a00:1", "2a00:1450::200:5efe:7f00:1", "198.18.0.1", "3fff::1",
     "::10.0.0.1", "64:ff9b::7f00:1", "2002:7f00:1::", "2001:0:4136:e378:8000:63bf:3fff:fdd2", "ff02::1", "192.0.2.1",
 ])  # fmt: skip
 def test_an_address_that_is_not_public_is_told(address):

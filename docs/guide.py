@@ -97,6 +97,9 @@ TABLES: dict[str, Callable[[], str]] = {
     "outcomes": outcomes,
     "calls": calls,
     "request": lambda: fields_table(_interface()["components"]["schemas"]["JobRequest"]),
+    "ensemble": lambda: fields_table(_interface()["components"]["schemas"]["EnsembleRequest"]),
+    "parameter": lambda: fields_table(_interface()["components"]["schemas"]["ParameterRequest"]),
+    "sample": lambda: fields_table(_interface()["components"]["schemas"]["SampleRequest"]),
     "costs": costs,
     "settings": settings,
 }

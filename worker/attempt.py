@@ -18,6 +18,7 @@ from service.jobs import Dataset, Drift, Reached, Status
 from service.jobs.held import HeldJob
 from service.results import Datasets, DatasetWriter, StoreUnreachable
 from service.results.durable import size_of
+from service.results.scalars import SCALARS, Value, last_values
 from service.settings import Settings
 from solver import Frame, Run, RunFailed, code_digest, simulate
 from worker import stopping
@@ -85,7 +86,7 @@ class Attempt:
             message = " ".join([message, *simulation.notes()]).strip()
             published = self._with_room(lambda: writer.publish(outcome.value, message, simulation))
         dataset = Dataset(self._path.name, published.sha256, published.bytes, self._datasets.stamp(self._path.name))
-        return Ending(status, outcome, message, dataset, self._drift(spec), simulation.attributes())
+        return Ending(status, outcome, message, dataset, self._drift(spec), simulation.attributes(), self._scalars())
 
     def publish(self) -> None:
         """Have the dataset lie where all can read it. Raises whatever ends a run."""
@@ -181,6 +182,14 @@ class Attempt:
         except (OSError, MemoryError):
             log.exception("job %s: its drift cannot be read from its dataset", self._held.job.id)
             return None
+
+    def _scalars(self) -> dict[str, Value]:
+        """The last values of what is published; where they cannot be read now, who asks for them reads the dataset."""
+        try:
+            return last_values(self._path, SCALARS)
+        except (OSError, MemoryError):
+            log.exception("job %s: its last values cannot be read from its dataset", self._held.job.id)
+            return {}
 
     def _tell_lost(self, found: Checkpoint | None) -> None:
         """Tell of the steps that were taken already, but after the checkpoint: they are lost with their worker."""

@@ -13,6 +13,7 @@ from service.cases import CaseError
 from service.jobs import Dataset, Drift, Job, Status
 from service.jobs.held import CANCELLED
 from service.results import StoreUnreachable
+from service.results.scalars import Value
 from worker.lease import Cancelled, OutOfTime
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
@@ -26,8 +27,8 @@ class OutOfDisk(Exception):
 
 @dataclass(frozen=True)
 class Ending:
-    """The status, the outcome, a sentence for the owner, and the dataset if there is one, with its drift and with what
-    it says of the run as a whole."""
+    """The status, the outcome, a sentence for the owner, and the dataset if there is one, with its drift, with what
+    it says of the run as a whole, and with the last values of its numbers."""
 
     status: Status
     outcome: Outcome
@@ -35,6 +36,7 @@ class Ending:
     dataset: Dataset | None = None
     drift: Drift | None = None
     attributes: dict[str, float | int | str] = field(default_factory=dict)
+    scalars: dict[str, Value] = field(default_factory=dict)
 
 
 DISMISSED = Ending(Status.DISMISSED, Outcome.CANCELLED, CANCELLED)

@@ -74,7 +74,7 @@ def _finish(held: HeldJob, ending: Ending, lease: Lease) -> Ending | None:
     while True:
         try:
             status = held.finish(ending.status, ending.outcome.value, ending.message, ending.dataset, lease.reached,
-                                 ending.drift, ending.attributes)
+                                 ending.drift, ending.attributes, ending.scalars)
         except DBAPIError as error:
             log.warning("job %s: its end could not be written, trying again: %s", held.job.id, error)
             time.sleep(TRY_AGAIN)

@@ -15,6 +15,9 @@ from service.api import (
     cases,
     data,
     datasets,
+    ensemble_data,
+    ensemble_events,
+    ensembles,
     events,
     film,
     front,
@@ -44,11 +47,12 @@ from service.webhooks import Notifier
 
 TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "results", "description": "Datasets, whole or in part."},
+        {"name": "ensembles", "description": "Many jobs at once, of cases that differ in some values."},
         {"name": "cases", "description": "What can be simulated, and what it would cost."},
         {"name": "OGC API Processes", "description": "The same jobs as one process of OGC API Processes, Part 1."},
         {"name": "service", "description": "Whether it lives, and how it does."}]
-ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, film, links, scalars, cases, processes,
-                                    watching, front)]
+ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, film, links, scalars, ensembles,
+                                    ensemble_events, ensemble_data, cases, processes, watching, front)]
 BURST = 10.0  # s of an owner's rate that may be spent at once
 
 

@@ -10,6 +10,7 @@ from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.json_schema import models_json_schema
 
+from service.api.designs import EnsembleRequest
 from service.api.requests import JobRequest
 from service.cases import CaseSpec
 
@@ -22,6 +23,7 @@ NOT_OURS = ("HTTPValidationError", "ValidationError")
 
 PARAMETERS = {
     "job_id": "The id that the submission was answered with",
+    "ensemble_id": "The id that the submission of the ensemble was answered with",
     "process_id": "`simulate`: there is no other",
     "name": "A shipped case",
     "link_id": "A link, as the list of them names it",
@@ -87,6 +89,10 @@ class ProblemDocument(BaseModel):
     errors: list[Fault] | None = None
 
 
+MODELS = (CaseSpec, JobRequest, EnsembleRequest, ProblemDocument)
+"""What FastAPI does not find by itself."""
+
+
 def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
     """The answers by which an operation refuses, for its `responses`."""
     return {status: {"description": HTTPStatus(status).phrase, "content": PROBLEM, **_headers(status)}
@@ -99,8 +105,7 @@ def describe(app: FastAPI, keyed: bool) -> dict[str, Any]:
         told = get_openapi(title=app.title, version=app.version, description=SUMMARY, routes=app.routes,
                            tags=app.openapi_tags)
         schemas = told.setdefault("components", {}).setdefault("schemas", {})
-        _, ours = models_json_schema([(model, "validation") for model in (CaseSpec, JobRequest, ProblemDocument)],
-                                     ref_template=REF)
+        _, ours = models_json_schema([(model, "validation") for model in MODELS], ref_template=REF)
         schemas |= ours["$defs"]
         schemas["Problem"] = schemas.pop("ProblemDocument")
         for name in NOT_OURS:

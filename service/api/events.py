@@ -46,17 +46,18 @@ async def events(job_id: str, parts: InParts, jobs: Jobs,
 async def _stream(jobs: Registry, feed: Feed, job_id: str, seen: int) -> AsyncIterator[str]:
     while True:
         job = jobs.get(job_id)
-        for event in jobs.events(job_id, seen):
-            seen = event.seq
-            yield _event(seen, event.kind, {"time": datetime.fromtimestamp(event.time, UTC).isoformat(), **event.data})
+        for one in jobs.events(job_id, seen):
+            seen = one.seq
+            yield event(seen, one.kind, {"time": datetime.fromtimestamp(one.time, UTC).isoformat(), **one.data})
         if job.status in ENDED:
             return
         if job.version > seen:
             seen = job.version
-            yield _event(seen, "progress", document(job).model_dump(mode="json"))
+            yield event(seen, "progress", document(job).model_dump(mode="json"))
         if not await feed.changed(job, STILL_HERE):
             yield ": still here\n\n"
 
 
-def _event(number: int, kind: str, data: dict[str, Any]) -> str:
+def event(number: int, kind: str, data: dict[str, Any]) -> str:
+    """An event as it is sent."""
     return f"id: {number}\nevent: {kind}\ndata: {json.dumps(data)}\n\n"

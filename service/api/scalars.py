@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Annotated
 
 import numpy as np
@@ -14,7 +14,7 @@ from service.api.description import problems
 from service.api.formats import CONTENT, Accept, Variables, format_of, given, readable
 from service.api.parts import InParts, Jobs, Parts
 from service.api.problems import Problem
-from service.jobs import Job, Status
+from service.jobs import Job, Registry, Status
 from service.results.part import Column, Part
 from service.results.scalars import Value, last_values, scalar_columns, scalar_variables
 
@@ -55,7 +55,7 @@ def scalars(chosen: Annotated[Chosen, Query()], parts: InParts, jobs: Jobs, acce
     with readable():
         names = scalar_variables(chosen.names)
     found = [jobs.get(job_id) for job_id in ids]
-    values = [values_of(job, names, parts) for job in found]
+    values = values_of(found, names, jobs, parts)
     name, form = format_of(chosen.format, accept)
     if name != "json":
         return given(Part(job_columns(found), scalar_columns(names, values)), form)
@@ -64,10 +64,17 @@ def scalars(chosen: Annotated[Chosen, Query()], parts: InParts, jobs: Jobs, acce
     return Response(ScalarsDocument(jobs=documents).model_dump_json(), media_type=form.media_type)
 
 
-def values_of(job: Job, names: Sequence[str], parts: Parts) -> dict[str, Value]:
-    """The last values of a job. Raises Problem 404 or 503 where its dataset is not there."""
+def values_of(found: Sequence[Job], names: Sequence[str], jobs: Registry, parts: Parts) -> list[dict[str, Value]]:
+    """The last values of jobs. Raises Problem 404 or 503 where only a dataset tells them, and that is not there."""
+    told = jobs.scalars({job.id for job in found if job.dataset is not None})
+    return [_of(job, names, told.get(job.id), parts) for job in found]
+
+
+def _of(job: Job, names: Sequence[str], told: Mapping[str, Value] | None, parts: Parts) -> dict[str, Value]:
     if job.dataset is None:
         return dict.fromkeys(names)
+    if told is not None:
+        return {name: told.get(name) for name in names}
     published = dataset_of(job, parts)
     with there(job, parts):
         path = parts.datasets.file(published.file, published.bytes, published.sha256)

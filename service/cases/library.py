@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from copy import deepcopy
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -45,12 +44,15 @@ def load_case(name_or_path: str | Path) -> dict[str, Any]:
 
 
 def apply_settings(raw: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
-    """A copy of the raw case with some values set by dotted keys: `numerics.intervals`, `loads.point.0.s`.
+    """The raw case with some values set by dotted keys: `numerics.intervals`, `loads.point.0.s`.
 
-    A tolerance that is set takes the place of the case's own resolution, and a resolution that of its tolerance.
-    Raises CaseError where a key leads into something that has no such place.
+    `raw` stays as it is, and shares with the result what is not set. A tolerance that is set takes the place of the
+    case's own resolution, and a resolution that of its tolerance. Raises CaseError where a key leads into something
+    that has no such place.
     """
-    changed = deepcopy(dict(raw))
+    changed = dict(raw)
+    if isinstance(changed.get("numerics"), dict):
+        changed["numerics"] = dict(changed["numerics"])
     _displace(changed.get("numerics"), settings)
     for key, value in settings.items():
         path = key.split(".")
@@ -120,10 +122,16 @@ def _set(node: Any, path: list[str], value: Any) -> None:
             raise _no_place(path[:depth], f"is {node!r} and has no field {part!r} to set")
         if depth == len(path) - 1:
             node[place] = value
-        elif isinstance(node, dict):
-            node = node.setdefault(place, {})
         else:
-            node = node[place]
+            node = _own(node, place)
+
+
+def _own(node: Any, place: Any) -> Any:
+    """What lies at a place of a dict or list, copied there first: the rest of a case is shared, not copied."""
+    below = node.get(place, {}) if isinstance(node, dict) else node[place]
+    if isinstance(below, (dict, list)):
+        below = node[place] = below.copy()
+    return below
 
 
 def _no_place(path: list[str], rule: str) -> CaseError:

@@ -13,7 +13,8 @@ from service.jobs.lifecycle import ENDED
 from service.jobs.tables import events, jobs, links, owners, removals, webhooks
 
 BLANK = {"title": "", "label": "", "message": "", "case_json": "", "case_sha256": "", "attributes": "{}",
-         "dataset_file": None, "dataset_sha256": None, "dataset_bytes": None, "dataset_stamp": "", "dataset_fault": ""}
+         "dataset_file": None, "dataset_sha256": None, "dataset_bytes": None, "dataset_stamp": "", "dataset_fault": "",
+         "scalars": None}
 
 
 def delete_jobs(transaction: Transaction, actor: Actor, job_ids: Collection[str]) -> list[str]:

@@ -92,7 +92,8 @@ class HeldJob:
             ))  # fmt: skip
 
     def finish(self, status: Status, outcome: str, message: str, dataset: Dataset | None, reached: Reached,
-               drift: Drift | None = None, attributes: Mapping[str, float | int | str] | None = None) -> Status | None:
+               drift: Drift | None = None, attributes: Mapping[str, float | int | str] | None = None,
+               scalars: Mapping[str, Any] | None = None) -> Status | None:
         """Write how the job ended: as told, or dismissed and without a dataset if its owner has cancelled it meanwhile.
 
         Returns with which status it has ended; None if it is another's now, and nothing was written. It may be tried
@@ -100,7 +101,7 @@ class HeldJob:
         """
         columns = {f"dataset_{name}": value for name, value in asdict(dataset).items()} if dataset else {}
         columns |= {f"drift_{name}": value for name, value in asdict(drift).items()} if drift else {}
-        columns["attributes"] = json.dumps(attributes or {})
+        columns |= {"attributes": json.dumps(attributes or {}), "scalars": json.dumps(scalars) if scalars else None}
         with self.database.writing() as transaction:
             (
                 transaction.change(*self._mine, ~jobs.c.cancel_requested, event="ended", status=status,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +19,7 @@ from service.jobs.job import Job, NewJob
 from service.jobs.lifecycle import ENDED, Status
 from service.jobs.tables import FRESH, JOBS, events, job_of, jobs, owners
 
+AT_ONCE = 1000
 ONE_JOB = JOBS.where(jobs.c.id == bindparam("job_id"))
 """The read that is made most: put together once."""
 
@@ -105,6 +106,15 @@ class Registry:
             text = connection.scalar(select(jobs.c.case_json).where(jobs.c.id == job_id))
         case: dict[str, Any] = json.loads(text or "{}")
         return case
+
+    def scalars(self, job_ids: Collection[str]) -> dict[str, dict[str, Any]]:
+        """The last values of some jobs, by id; those of which only a dataset tells are left out."""
+        found: dict[str, dict[str, Any]] = {}
+        with self.database.reading() as connection:
+            for some in _batches(list(job_ids)):
+                query = select(jobs.c.id, jobs.c.scalars).where(jobs.c.id.in_(some), self._seen)
+                found |= {row.id: json.loads(row.scalars) for row in connection.execute(query) if row.scalars}
+        return found
 
     def page(self, limit: int, selection: Selection = Selection()) -> Page:
         """At most `limit` jobs of a selection, newest first."""
@@ -203,6 +213,12 @@ def insert_jobs(transaction: Transaction, new: Sequence[NewJob]) -> list[Job]:
     connection.execute(insert(events), [{"job_id": job.id, "seq": 1, "time": transaction.now, "kind": "accepted",
                                          "data": first} for job in new])  # fmt: skip
     return [job_of({name: row.get(name, unwritten) for name, unwritten in FRESH.items()}) for row in rows]
+
+
+def _batches(ids: Sequence[str]) -> Iterator[Sequence[str]]:
+    """As many as a query may name."""
+    for start in range(0, len(ids), AT_ONCE):
+        yield ids[start : start + AT_ONCE]
 
 
 def _check(job_id: str) -> None:

@@ -32,7 +32,7 @@ class Submissions:
     """
 
     def __init__(self, database: Database, terms: Terms, committed: Callable[[], object]) -> None:
-        self._database, self._terms, self._committed = database, terms, committed
+        self._database, self.terms, self._committed = database, terms, committed
         self._waiting: queue.SimpleQueue[Waiting | None] = queue.SimpleQueue()
         self._in_flight: set[tuple[str, str]] = set()
         self._lock = threading.Lock()
@@ -76,6 +76,10 @@ class Submissions:
             with self._lock:
                 self._in_flight.discard(submission.mark)
 
+    def announce(self) -> None:
+        """Tell of a commit that was made elsewhere."""
+        self._news.put(True)
+
     def _commit(self) -> None:
         while (first := self._waiting.get()) is not None:
             if first[1].set_running_or_notify_cancel():
@@ -107,7 +111,7 @@ class Submissions:
             with self._database.writing() as transaction:
                 if again:
                     batch += self._more()
-                results = submit_all(transaction, [submission for submission, _ in batch], self._terms)
+                results = submit_all(transaction, [submission for submission, _ in batch], self.terms)
         except Exception as error:
             for one in batch:
                 if again:

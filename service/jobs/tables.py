@@ -65,6 +65,7 @@ jobs = Table(
     Column("dataset_sha256", String(64)),
     Column("dataset_bytes", BigInteger),
     Column("attributes", Text, nullable=False, default="{}"),
+    Column("scalars", Text),  # last values as JSON; none where only the dataset tells them
     Column("drift_method", String(16)),
     Column("drift_topology", Double),
     Column("drift_energy", Double),
@@ -129,6 +130,30 @@ api_keys = Table(
     Column("revoked", Double),
 )
 
+ensembles = Table(
+    "ensembles",  # jobs that were handed in together; `design` says of which values, as JSON
+    metadata,
+    Column("id", String(26), primary_key=True),
+    Column("owner", String(64), nullable=False),
+    Column("title", Text, nullable=False),
+    Column("label", Text, nullable=False),
+    Column("design", Text, nullable=False),
+    Column("created", Double, nullable=False),
+    Column("key", String(255)),
+    Column("body_sha256", String(64), nullable=False),
+    Index("ensembles_by_owner", "owner", "id"),
+    Index("ensembles_by_key", "owner", "key", unique=True),
+)
+
+members = Table(
+    "members",  # `values`, as JSON, are in the order of the design's parameters; equal members have one job
+    metadata,
+    Column("ensemble_id", String(26), ForeignKey("ensembles.id", ondelete="CASCADE"), primary_key=True),
+    Column("number", Integer, primary_key=True),
+    Column("job_id", String(26), ForeignKey("jobs.id"), nullable=False, index=True),
+    Column("values", Text, nullable=False),
+)
+
 links = Table(
     "links",  # by which a dataset is read without a key; of a secret only its hash is kept
     metadata,
@@ -184,7 +209,7 @@ processes = Table(
 
 DATASET = tuple(field.name for field in dataclasses.fields(Dataset))
 REACHED = tuple(field.name for field in dataclasses.fields(Reached))
-NOT_OF_THE_JOB = ("case_json", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
+NOT_OF_THE_JOB = ("case_json", "scalars", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
 JOB_COLUMNS = [column for column in jobs.columns if column.name not in NOT_OF_THE_JOB]
 FRESH = {column.name: column.default.arg if isinstance(column.default, ColumnDefault) else None
          for column in JOB_COLUMNS}  # fmt: skip

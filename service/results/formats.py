@@ -67,8 +67,13 @@ def as_netcdf(part: Part) -> bytes:
     with ONE_AT_A_TIME:
         file = netCDF4.Dataset("part.nc", "w", format="NETCDF4", memory=1)
         file.setncatts({"Conventions": "CF-1.11", **part.attributes})
+        auxiliary = [one for one in part.coordinates if one.dimensions != (one.name,)]
         for column in (*part.coordinates, *part.variables):
             _write(file, column)
+        for column in part.variables:
+            names = [one.name for one in auxiliary if set(one.dimensions) <= set(column.dimensions)]
+            if names:
+                file[column.name].setncattr("coordinates", " ".join(names))
         return bytes(file.close())
 
 

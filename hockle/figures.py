@@ -11,10 +11,14 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
-from hockle.tube import Tube, draw_tubes
+from hockle.stage import Stage
+from hockle.tube import Tube
+from hockle.view import View
 
 PAPERS_TIMES = (20.0, 25.0, 29.0, 32.0)
+SNAPSHOTS, MOST_FRAMES, MOST_NODES = 4, 400, 60
 STYLE: dict[Any, Any] = {
     "font.size": 10,
     "axes.spines.top": False,
@@ -32,65 +36,99 @@ ENERGIES = (
     ("energy_bending", "bending", BENDING),
     ("energy_kinetic", "kinetic", KINETIC),
     ("energy_contact", "contact", OTHER[0]),
-    ("energy_potential", "potential", OTHER[1]),
+    ("energy_potential", "potential, from its start", OTHER[1]),
 )
-PREFIXES = ((1.0, "J"), (1e-3, "mJ"), (1e-6, "µJ"), (1e-9, "nJ"))
+NOISE = 1e-4
+"""An energy that is never this part of the largest is left out."""
+
+LEAST_TURNS = 1e-3
+"""Twist, writhe and link below are noise of the computation, or nothing to be seen."""
+
+PREFIXES = ((1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def snapshots(dataset: xr.Dataset) -> Figure:
     """The rod at four times (figure 6): thickened tubes with a stripe along a1 that shows the twist."""
-    times = snapshot_times(dataset)
-    frames = [dataset.sel(time=t, method="nearest") for t in times]
-    tubes = [Tube.of(frame.r.values, frame.orientation.values) for frame in frames]
-    weighs = any(json.loads(dataset.attrs["case"]).get("loads", {}).get("gravity", (0, 0, 0)))
+    view = View.of(json.loads(dataset.attrs["case"]), dataset.r.values)
+    frames = [dataset.sel(time=t, method="nearest") for t in snapshot_times(dataset)]
+    tubes = [Tube.of(frame.r.values, frame.orientation.values).turned(view.axes) for frame in frames]
+    start = dataset.r.values[0] @ view.axes.T
     with mpl.rc_context(STYLE):
-        figure = draw_tubes(tubes, [f"t = {float(frame.time):g} s" for frame in frames], upright=weighs)
-        figure.suptitle(dataset.attrs["title"], fontsize=12)
-    return figure
+        stage = Stage(len(tubes), np.vstack([*(tube.r for tube in tubes), start]), view.told + ", dashed: at first")
+        for i, (tube, frame) in enumerate(zip(tubes, frames, strict=True)):
+            stage.draw(i, tube, f"t = {float(frame.time):g} s", start)
+        stage.title(dataset.attrs["title"])
+    return stage.figure
 
 
 def energies(dataset: xr.Dataset) -> Figure:
     """Strain energies and kinetic energy in time (figure 7), and what else there is of energy."""
-    t = dataset.time.values
-    shown = [(dataset[name].values, label, colour) for name, label, colour in ENERGIES]
-    largest = max(float(np.abs(values).max()) for values, _, _ in shown)
-    scale, unit = next((one for one in PREFIXES if largest >= one[0]), PREFIXES[-1])
+    changes = [(dataset[name].values - _level(name, dataset), label, colour) for name, label, colour in ENERGIES]
+    largest = max(float(np.abs(values).max()) for values, _, _ in changes)
+    scale, prefix = prefixed(largest)
     with mpl.rc_context(STYLE):
-        figure, axes = _axes("time (s)", f"energy ({unit})")
-        for values, label, colour in shown:
-            if np.abs(values).max() > 1e-4 * largest:
-                axes.plot(t, values / scale, color=colour, label=label)
-        _finish(axes, dataset)
+        figure, axes = panel("time (s)", f"energy ({prefix}J)")
+        for values, label, colour in changes:
+            if np.abs(values).max() > NOISE * largest:
+                axes.plot(dataset.time, values / scale, color=colour, label=label)
+        finish(axes, dataset)
     return figure
 
 
 def topology(dataset: xr.Dataset) -> Figure:
     """Twist, writhe and linking number in time (figure 8)."""
-    t = dataset.time.values
     with mpl.rc_context(STYLE):
-        figure, axes = _axes("time (s)", "turns")
-        axes.plot(t, dataset.Lk, color="#374151", label="Lk = Tw + Wr")
-        axes.plot(t, dataset.Tw, color=TORSION, label="Tw")
-        axes.plot(t, dataset.Wr, color=BENDING, label="Wr")
-        _finish(axes, dataset)
+        figure, axes = panel("time (s)", "turns")
+        axes.plot(dataset.time, dataset.Lk, color="#374151", label="Lk = Tw + Wr")
+        axes.plot(dataset.time, dataset.Tw, color=TORSION, label="Tw")
+        axes.plot(dataset.time, dataset.Wr, color=BENDING, label="Wr")
+        finish(axes, dataset)
     return figure
 
 
+def is_twisted(dataset: xr.Dataset) -> bool:
+    """Whether there is any twist, writhe or link to be seen."""
+    return any(float(np.abs(dataset[name]).max()) > LEAST_TURNS for name in ("Tw", "Wr", "Lk"))
+
+
 def snapshot_times(dataset: xr.Dataset) -> Sequence[float]:
-    """The paper's times for the paper's cable, otherwise four that divide the run evenly."""
-    end = float(dataset.time[-1])
-    if dataset.attrs["case_name"] == "goyal-2003" and end >= PAPERS_TIMES[-1]:
+    """The paper's times for the paper's cable, otherwise those at which the shapes differ most from each other."""
+    times = dataset.time.values
+    if dataset.attrs["case_name"] == "goyal-2003" and times[-1] >= PAPERS_TIMES[-1]:
         return PAPERS_TIMES
-    return [float(t) for t in np.linspace(0.0, end, 4)]
+    frames = np.unique(np.linspace(0, len(times) - 1, MOST_FRAMES).astype(int))
+    nodes = np.unique(np.linspace(0, dataset.sizes["s"] - 1, MOST_NODES).astype(int))
+    return [float(times[frames[i]]) for i in _most_different(dataset.r.values[frames][:, nodes])]
 
 
-def _axes(x: str, y: str) -> tuple[Figure, Axes]:
+def _most_different(r: NDArray[np.float64]) -> list[int]:
+    """The first frame, and then again and again the one that is farthest from all those chosen; in order of time."""
+    chosen = [0]
+    distance = np.full(len(r), np.inf)
+    while len(chosen) < min(SNAPSHOTS, len(r)):
+        distance = np.minimum(distance, np.abs(r - r[chosen[-1]]).max(axis=(1, 2)))
+        chosen.append(int(distance.argmax()))
+    return sorted(set(chosen))
+
+
+def _level(name: str, dataset: xr.Dataset) -> float:
+    """What an energy counts from: that of the first frame for a potential, whose zero is where the lab's is."""
+    return float(dataset[name][0]) if name == "energy_potential" else 0.0
+
+
+def prefixed(largest: float) -> tuple[float, str]:
+    """The factor and the name of the SI prefix with which numbers up to `largest` are short."""
+    return next((one for one in PREFIXES if largest >= one[0]), PREFIXES[-1])
+
+
+def panel(x: str, y: str) -> tuple[Figure, Axes]:
+    """A figure with one pair of axes."""
     figure = Figure(figsize=(7.0, 4.2), layout="constrained", facecolor="white")
-    axes = figure.add_subplot(xlabel=x, ylabel=y)
-    return figure, axes
+    return figure, figure.add_subplot(xlabel=x, ylabel=y)
 
 
-def _finish(axes: Axes, dataset: xr.Dataset) -> None:
+def finish(axes: Axes, dataset: xr.Dataset) -> None:
+    """Name the axes' curves and the run."""
     axes.set_xlim(0.0, float(dataset.time[-1]))
     axes.set_title(dataset.attrs["title"], fontsize=10)
     axes.legend()

@@ -1,4 +1,4 @@
-"""hockle plot: the figures of any dataset."""
+"""hockle plot: the figures of any dataset, and of several beside each other."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hockle import figures
 from hockle.cli import main
 from hockle.tube import Tube
+from hockle.view import View
+from service.results import open_dataset
 
 QUICK = ["--set", "t_end=0.5", "--set", "numerics.intervals=20", "--set", "output.interval=0.1"]
 PNG = b"\x89PNG\r\n"
@@ -37,6 +40,62 @@ def test_what_was_not_stored_is_not_drawn(tmp_path: Path):
     path = dataset(tmp_path, 'output.fields=["r"]', "output.topology=false")
     assert main(["plot", str(path)]) == 0
     assert sorted(file.name for file in tmp_path.iterdir()) == ["out-energies.png", "out.nc"]
+
+
+def test_what_is_not_twisted_has_no_figure_of_its_twist(tmp_path: Path):
+    path = tmp_path / "out.nc"
+    assert main(["run", "cantilever-vibration", "-o", str(path), *QUICK]) == 0
+    assert main(["plot", str(path)]) == 0
+    assert not (tmp_path / "out-topology.png").exists()
+    assert (tmp_path / "out-snapshots.png").exists()
+
+
+def test_several_datasets_are_drawn_beside_each_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    first = dataset(tmp_path).rename(tmp_path / "first.nc")
+    second = dataset(tmp_path, "t_end=0.3").rename(tmp_path / "second.nc")
+    capsys.readouterr()
+    assert main(["plot", str(first), str(second), "-o", str(tmp_path / "figures")]) == 0
+    told = capsys.readouterr().out
+    for name in ("curves", "shapes"):
+        figure = tmp_path / "figures" / f"comparison-{name}.png"
+        assert figure.read_bytes().startswith(PNG)
+        assert str(figure) in told
+    assert main(["plot", *[str(first)] * 7]) == 1
+    assert "at most 6 datasets" in capsys.readouterr().err
+
+
+HANGING = np.array([[[0.0, 0, 0], [0, 0, 1]], [[0, 0, 0], [-0.3, 0, 0.9]]])
+
+
+def test_gravity_is_down_and_a_horizontal_rod_lies():
+    view = View.of({"loads": {"gravity": [-9.81, 0, 0]}}, HANGING)
+    assert view.axes == pytest.approx(np.array([[0, 0, 1], [0, -1, 0], [1, 0, 0]]))
+    assert view.told == "e3 to the right, gravity -e1 down"
+    start, end = HANGING[1] @ view.axes.T
+    assert end[0] - start[0] == pytest.approx(0.9) and end[2] - start[2] == pytest.approx(-0.3)
+
+
+def test_without_gravity_a_rod_along_e3_lies_as_in_the_paper_and_another_has_e3_up():
+    assert View.of({}, HANGING).told == "e3 to the right, e1 down"
+    assert View.of({}, HANGING[..., ::-1]).told == "e1 to the right, -e3 down"
+
+
+@pytest.mark.parametrize("gravity", [(0, 0, -9.81), (1.0, 2.0, 3.0), (0, 9.81, 0)])
+def test_a_view_is_a_rotation_with_gravity_along_its_last_axis(gravity: tuple[float, ...]):
+    axes = View.of({"loads": {"gravity": gravity}}, HANGING).axes
+    assert axes @ axes.T == pytest.approx(np.eye(3)) and np.linalg.det(axes) == pytest.approx(1.0)
+    assert axes @ np.array(gravity) == pytest.approx([0, 0, -np.linalg.norm(gravity)])
+
+
+def test_snapshots_are_taken_where_the_shapes_differ(tmp_path: Path):
+    path = tmp_path / "out.nc"
+    assert main(["run", "elastica", "-o", str(path), "--set", "numerics.intervals=20"]) == 0
+    with open_dataset(path) as ds:
+        times = figures.snapshot_times(ds)
+        tips = ds.r.isel(s=-1).sel(time=times).values
+    gaps = np.linalg.norm(np.diff(tips, axis=0), axis=1)
+    assert len(times) == 4 and times[0] == 0.0
+    assert gaps.min() > 0.1  # m; three of four even times show it at rest already
 
 
 @pytest.mark.parametrize("content", [None, b"no dataset at all"])

@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: client demo test serve lint bench bench-work-precision bench-skipping load chaos soak fuzz stress plausible validate docs lock clean
+.PHONY: client demo test serve lint bench bench-work-precision bench-skipping load chaos soak rehearse fuzz stress plausible validate docs lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -35,6 +35,9 @@ chaos: .venv/.dev  ## faults on purpose, on SQLite and PostgreSQL: what became o
 
 soak: .venv/.dev  ## an hour of mixed load with faults on one service: does anything grow, leak or get stuck
 	$(BIN)/python -m chaos.soak
+
+rehearse: .venv/.dev  ## the image built, and docker-compose.yml with two worker hosts, without an engine (root; an hour)
+	$(BIN)/python -m deploy.rehearse
 
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
 	FUZZ=long $(BIN)/python -m pytest -s tests/service/api/test_fuzz.py

@@ -1,0 +1,1 @@
+"""What runs hockle elsewhere, and a rehearsal of it."""

@@ -1,4 +1,4 @@
-"""What the repository promises beside its code: locks, containers, make targets."""
+"""What the repository promises beside its code: locks, make targets, packages."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import tomllib
 from pathlib import Path
 
 import pytest
-import yaml
 
 ROOT = Path(__file__).parent.parent
 
@@ -32,23 +31,6 @@ def test_the_locks_agree(other):
 
     runtime, beside = versions("requirements.txt"), versions(other)
     assert [name for name in runtime if name in beside and beside[name] != runtime[name]] == []
-
-
-def test_no_container_is_reached_from_the_network():
-    services = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"]
-    assert set(services) == {"api", "worker", "redis"}
-    assert not any("ports" in service for service in services.values())
-    assert services["worker"]["network_mode"] == services["redis"]["network_mode"] == "none"
-    for part in ("api", "worker"):
-        assert services[part]["volumes"] == ["data:/data", "broker:/broker"]
-        assert services[part]["depends_on"]["redis"]["condition"] == "service_healthy"
-
-
-def test_containers_are_told_only_settings_that_exist():
-    from service.settings import Settings
-
-    services = yaml.safe_load((ROOT / "docker-compose.yml").read_text())["services"]
-    assert set(services["api"]["environment"]) <= set(Settings().environment())
 
 
 @pytest.mark.parametrize("target", ["demo", "test", "serve", "lint", "bench", "validate"])

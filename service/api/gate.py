@@ -16,7 +16,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.access import Caller, Refused, authenticate
 from service.access.limits import Grant
 from service.api.listening import is_loopback
-from service.api.problems import Problem
+from service.api.problems import Problem, unreachable
 
 if TYPE_CHECKING:
     from service.api.parts import Parts
@@ -56,7 +56,10 @@ class Gate:
         send = _safely(send)
         try:
             grant = self._let_in(scope, Headers(scope=scope))
-        except Problem as problem:
+        except Exception as error:
+            problem = error if isinstance(error, Problem) else unreachable(error)
+            if problem is None:
+                raise
             log.info("refused", extra={"problem": problem.name, "method": scope["method"], "path": scope["path"]})
             await problem.response()(scope, receive, send)
         else:

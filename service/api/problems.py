@@ -24,8 +24,8 @@ from service.jobs.submission import KeyReused, QuotaReached
 from service.jobs.submissions import InFlight
 
 LONGEST_VALUE = 200
-AWAY = (OperationalError, InterfaceError)
-"""What a database says that is away, locked, full or read-only."""
+AWAY = (OperationalError, InterfaceError, PoolTimeout)
+"""What a database says that is away, locked or full."""
 SOON = "10"  # s: when a job will end is not known
 METHODS = ("DELETE", "GET", "HEAD", "PATCH", "POST", "PUT")
 log = logging.getLogger(__name__)
@@ -137,13 +137,21 @@ async def _quota(_: Request, error: Exception) -> JSONResponse:
 
 
 async def _database(request: Request, error: Exception) -> JSONResponse:
-    if isinstance(error, DBAPIError) and not isinstance(error, AWAY):
+    problem = unreachable(error)
+    if problem is None:
         return await _bug(request, error)
     log.error("%s %s: the database does not answer: %s", request.method, request.url.path, error)
+    return problem.response()
+
+
+def unreachable(error: Exception) -> Problem | None:
+    """What to say where the database is away, locked or full; None where it is something else."""
+    if not isinstance(error, AWAY):
+        return None
     detail = "the database does not answer, or has no room: nothing was changed; try again later"
     if isinstance(error, FilesReplaced):
         detail = "the registry's files were removed or replaced under the running service: an operator must look at it"
-    return Problem(503, "database_unreachable", detail, {"Retry-After": SOON}).response()
+    return Problem(503, "database_unreachable", detail, {"Retry-After": SOON})
 
 
 async def _bug(request: Request, error: Exception) -> JSONResponse:

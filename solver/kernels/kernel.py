@@ -15,9 +15,12 @@ in each process. (Numba's index of a kernel names their modules: no process with
 from __future__ import annotations
 
 import hashlib
+import logging
 import os
+import stat
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -25,8 +28,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
-from numba.core.caching import FunctionCache
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.registry import cpu_target
+
+log = logging.getLogger(__name__)
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -48,14 +53,58 @@ def code_digest() -> str:
     return digest.hexdigest()[:16]
 
 
-def cache_folder() -> Path:
-    """The folder of this version's compiled kernels, below the user's cache."""
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+def cache_folder() -> Path | None:
+    """The folder of this version's compiled kernels: the one that NUMBA_CACHE_DIR names, or below the user's cache.
+
+    Where nobody can write there, nor has anybody compiled them there, one of this user alone among the temporary files;
+    None where there is no such place either. Then each process compiles for itself.
+    """
+    wanted = _wanted_folder()
+    if wanted and (_is_writable(wanted) or any(wanted.glob("*.compiled"))):
+        return wanted
+    found = _temporary_folder()
+    log.warning("the compiled solver cannot be kept in %s, it is kept in %s (NUMBA_CACHE_DIR names another folder)",
+                wanted or "a home directory", found or "no file")
+    if found:
+        os.environ["NUMBA_CACHE_DIR"] = str(found)  # of the processes that this one starts too
+    return found
+
+
+def _wanted_folder() -> Path | None:
+    if told := os.environ.get("NUMBA_CACHE_DIR"):
+        return Path(told)
+    try:
+        home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    except RuntimeError:  # this user has no home
+        return None
     return home / "hockle" / f"kernels-{code_digest()}"
 
 
-if "NUMBA_CACHE_DIR" not in os.environ:
-    numba.config.CACHE_DIR = str(cache_folder())  # type: ignore[attr-defined]
+def _is_writable(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK | os.X_OK)
+
+
+def _temporary_folder() -> Path | None:
+    """A folder that no other user can write to, since what lies in it is executed: the same one for each process,
+    unless somebody else has taken its name."""
+    try:
+        own = Path(tempfile.gettempdir()) / f"hockle-{getattr(os, 'geteuid', int)()}"
+        with suppress(FileExistsError):
+            own.mkdir(mode=0o700)
+        told = own.lstat()
+        if not (stat.S_ISDIR(told.st_mode) and told.st_uid == os.geteuid() and not told.st_mode & 0o077):
+            own = Path(tempfile.mkdtemp(prefix="hockle-"))
+        folder = own / f"kernels-{code_digest()}"
+        return folder if _is_writable(folder) else None
+    except OSError:
+        return None
+
+
+numba.config.CACHE_DIR = str(cache_folder() or "")  # type: ignore[attr-defined]
 
 
 def compile_apart(name: str, statement: str) -> None:
@@ -63,6 +112,8 @@ def compile_apart(name: str, statement: str) -> None:
 
     LLVM takes hundreds of MB, which are not a job's. Where it cannot be done, kernels are compiled as they are called.
     """
+    if not numba.config.CACHE_DIR:  # type: ignore[attr-defined]
+        return  # nothing would come of it
     done = Path(numba.config.CACHE_DIR) / f"{name}-{_good_for()}.compiled"  # type: ignore[attr-defined]
     if done.exists() or os.environ.get(APART):
         return
@@ -88,12 +139,29 @@ def _good_for() -> str:
     return hashlib.sha256(repr(told).encode()).hexdigest()[:16]
 
 
+class _Folder(UserProvidedCacheLocator):
+    """The cache's folder, which may be one that can only be read."""
+
+    def ensure_cache_path(self) -> None:
+        with suppress(OSError):
+            super().ensure_cache_path()  # type: ignore[no-untyped-call]
+
+
+class _Results(CompileResultCacheImpl):
+    def __init__(self, function: Any) -> None:
+        self._locator_classes = [_Folder]
+        super().__init__(function)  # type: ignore[no-untyped-call]
+
+
 class _Cache(FunctionCache):
     """A kernel's compiled variants on disk, without those for records of others."""
 
+    _impl_class = _Results
+
     def save_overload(self, sig: Any, data: Any) -> None:
         if self._py_func.__module__.split(".")[0] != OWN or all(map(_is_own, data.signature.args)):
-            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+            with suppress(OSError):  # read-only, or full: another process compiles it once more
+                super().save_overload(sig, data)  # type: ignore[no-untyped-call]
 
 
 def _is_own(kind: Any) -> bool:
@@ -107,7 +175,8 @@ def _is_own(kind: Any) -> bool:
 
 def _compiled(function: Function, **options: Any) -> Function:
     dispatcher = numba.njit(**OPTIONS, **options)(function)
-    dispatcher._cache = _Cache(function)  # type: ignore[no-untyped-call]
+    if numba.config.CACHE_DIR:  # type: ignore[attr-defined]
+        dispatcher._cache = _Cache(function)  # type: ignore[no-untyped-call]
     return dispatcher  # type: ignore[no-any-return]
 
 

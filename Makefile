@@ -36,7 +36,8 @@ chaos: .venv/.dev  ## faults on purpose, on SQLite and PostgreSQL: what became o
 soak: .venv/.dev  ## an hour of mixed load with faults on one service: does anything grow, leak or get stuck
 	$(BIN)/python -m chaos.soak
 
-rehearse: .venv/.dev  ## the image built, and docker-compose.yml with two worker hosts, without an engine (root; an hour)
+rehearse: .venv/.deploy  ## the image built, docker-compose.yml with two workers without an engine, the chart (root; an hour)
+	$(BIN)/python -m pytest tests/deploy
 	$(BIN)/python -m deploy.rehearse
 
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
@@ -69,6 +70,7 @@ lock:  ## after a change of a requirements*.in (needs uv)
 	$(LOCK) --constraint requirements.txt requirements-s3.in -o requirements-s3.txt
 	$(LOCK) requirements-dev.in -o requirements-dev.txt
 	$(LOCK) --constraint requirements.txt requirements-bench.in -o requirements-bench.txt
+	$(LOCK) --constraint requirements.txt --constraint requirements-dev.txt requirements-deploy.in -o requirements-deploy.txt
 
 clean:  ## the environment and all that was made
 	rm -rf .venv var demo build *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
@@ -92,4 +94,9 @@ clean:  ## the environment and all that was made
 .venv/.bench: requirements-bench.txt .venv/.runtime
 	@echo "installing the peers of the benchmark"
 	$(PIP) --require-hashes -r requirements-bench.txt
+	@touch $@
+
+.venv/.deploy: requirements-deploy.txt .venv/.dev
+	@echo "installing what checks the chart"
+	$(PIP) --require-hashes -r requirements-deploy.txt
 	@touch $@

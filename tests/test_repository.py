@@ -10,9 +10,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
+BESIDE = ("requirements-dev.txt", "requirements-s3.txt", "requirements-deploy.txt")
 
 
-@pytest.mark.parametrize("name", ["requirements.txt", "requirements-dev.txt", "requirements-s3.txt"])
+@pytest.mark.parametrize("name", ["requirements.txt", *BESIDE])
 def test_a_lock_has_versions_and_hashes_and_no_place(name):
     lines = (ROOT / name).read_text().splitlines()
     pinned = [line for line in lines if line and not line.startswith(" ")]
@@ -21,7 +22,7 @@ def test_a_lock_has_versions_and_hashes_and_no_place(name):
     assert not re.search(r"https?://|file:|--(extra-)?index|--find-links|(^|\s)/", "\n".join(lines))
 
 
-@pytest.mark.parametrize("other", ["requirements-dev.txt", "requirements-s3.txt"])
+@pytest.mark.parametrize("other", BESIDE)
 def test_the_locks_agree(other):
     def versions(name: str) -> dict[str, set[str]]:
         found: dict[str, set[str]] = {}

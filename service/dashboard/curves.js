@@ -26,6 +26,12 @@ export const FIGURES = [
   ["Newton iterations of the step", "1", { iterations: "newton_iterations" }, true],
 ];
 
+/** Figures of several runs: title, unit, and the curve of each run.
+ * @type {[string, string, string][]} */
+const COMPARED = [["Twist", "turns", "Tw"], ["Writhe", "turns", "Wr"], ["Bending energy", "J", "energy_bending"],
+  ["Torsional energy", "J", "energy_torsion"], ["Kinetic energy", "J", "energy_kinetic"],
+  ["Tension at s = 0", "N", TENSIONS[0]], ["Largest curvature", "rad/m", "max_curvature"], ["Step dt", "s", "dt"]];
+
 /** What a job has so far; null where it has no frames yet, or the service gives none of a running job.
  * @param {string} job its address @param {any} shape its case @returns {Promise<Series | null>} */
 export async function series(job, shape) {
@@ -59,6 +65,26 @@ export class Curves {
     this.place.className = "charts";
   }
 
+  /** Draw figures that have a curve for each of several runs, by their names. @param {Record<string, Series>} runs */
+  compare(runs) {
+    for (const [title, unit, name] of COMPARED) {
+      const told = Object.entries(runs).filter(([, run]) => run.curves[name]?.some((value) => value));
+      if (!told.length) continue;
+      this.chart(title, unit, false).draw(Object.fromEntries(
+        Object.entries(runs).map(([label, run]) => [label, [run.time, run.curves[name] ?? []]])));
+    }
+  }
+
+  /** The figure of this title. @param {string} title @param {string} unit @param {boolean} steps */
+  chart(title, unit, steps) {
+    const known = this.charts.get(title);
+    if (known) return known;
+    const made = new Chart(title, unit, { steps });
+    this.charts.set(title, made);
+    this.place.append(made.figure);
+    return made;
+  }
+
   /** Draw the figures that say something of this run. @param {Series} run */
   draw(run) {
     for (const [title, unit, chosen, steps] of FIGURES) {
@@ -67,12 +93,7 @@ export class Curves {
       const largest = Math.max(...sizes);
       const shown = curves.filter((_, k) => curves.length === 1 || sizes[k] > NOISE * largest || unit === "turns");
       if (!shown.length) continue;
-      let chart = this.charts.get(title);
-      if (!chart) {
-        this.charts.set(title, chart = new Chart(title, unit, { steps }));
-        this.place.append(chart.figure);
-      }
-      chart.draw(Object.fromEntries(shown.map(([name, from]) => [name, [run.time, run.curves[from]]])));
+      this.chart(title, unit, steps).draw(Object.fromEntries(shown.map(([name, from]) => [name, [run.time, run.curves[from]]])));
     }
   }
 

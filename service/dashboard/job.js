@@ -5,6 +5,7 @@ import { Player } from "./cable/player.js";
 import { Curves, series } from "./curves.js";
 import { brief, differences, written } from "./difference.js";
 import { actions, bar, button, byId, element, isOpen, notice, standing } from "./page.js";
+import { table } from "./table.js";
 
 /** @typedef {import("./api.js").Job} Job */
 
@@ -19,7 +20,7 @@ export class JobPage {
     this.rest = element("div", "");
     /** @type {Job | null} */
     this.job = null;
-    byId("job").replaceChildren(this.head, this.film, this.curves.place, this.rest);
+    byId("page").replaceChildren(this.head, this.film, this.curves.place, this.rest);
   }
 
   /** Show the job, its run and its case. */
@@ -35,7 +36,7 @@ export class JobPage {
 
   openFilm() {
     try {
-      this.player = new Player(this.address, this.shape, (t) => this.curves.mark(t));
+      this.player = new Player([{ job: this.address, shape: this.shape }], (t) => this.curves.mark(t));
       this.film.append(this.player.place);
     } catch (error) {
       this.film.append(element("p", "faint", /** @type {Error} */ (error).message));
@@ -73,11 +74,7 @@ export class JobPage {
   changes(name, shipped) {
     const found = differences(this.shape, shipped).filter(([key]) => key !== "schema_version");
     if (!found.length) return [element("p", "", `This is the shipped case ${name}.`)];
-    const rows = found.map(([key, here, there]) => element("tr", "", element("td", "", key),
-      element("td", "", brief(here)), element("td", "", brief(there))));
-    const heads = ["Field", "Here", `In ${name}`].map((text) => element("th", "", text));
-    return [element("div", "wide", element("table", "changes", element("thead", "", element("tr", "", ...heads)),
-      element("tbody", "", ...rows)))];
+    return [table(["Field", "Here", `In ${name}`], found.map(([key, here, there]) => [key, brief(here), brief(there)]))];
   }
 
   /** @param {Job} job */

@@ -1,6 +1,7 @@
 // @ts-check
 /** The table of jobs: filters, search, pages by cursor, live. */
 import { call, follow, read } from "./api.js";
+import { MOST } from "./compare.js";
 import { actions, bar, byId, element, isOpen, standing } from "./page.js";
 
 /** @typedef {import("./api.js").Job} Job */
@@ -18,6 +19,9 @@ export class JobsTable {
     /** @type {string | null} where the next page lies */
     this.next = this.address(PAGE);
     this.closing = new AbortController();
+    /** @type {Set<string>} ids that are to be compared */
+    this.compared = new Set();
+    byId("compare").hidden = true;
     /** @type {Set<string>} ids that are followed by events */
     this.followed = new Set();
     this.body = /** @type {HTMLElement} */ (document.querySelector("#jobs tbody"));
@@ -117,18 +121,34 @@ export class JobsTable {
     const link = /** @type {HTMLAnchorElement} */ (element("a", "", job.title || job.id));
     link.href = `#/jobs/${job.id}`;
     const what = element("td", "", link, element("small", "", [job.label, job.id].filter(Boolean).join(", ")));
+    const chosen = /** @type {HTMLInputElement} */ (document.createElement("input"));
+    chosen.type = "checkbox";
+    chosen.checked = this.compared.has(job.id);
+    chosen.setAttribute("aria-label", `compare ${job.title}, ${job.id}`);
+    chosen.onchange = () => this.choose(job.id, chosen.checked);
     const state = element("td", "", element("span", `status ${job.status}`, job.status));
     const ended = job.outcome || job.message;
     const progress = element("td", "", ...(job.status === "running" ? [bar(job)] : []), element("small", "", standing(job)));
     if (ended && !isOpen(job)) progress.append(element("small", "", job.message || job.outcome));
-    const row = element("tr", "", what, state, progress, element("td", "", new Date(job.created).toLocaleString()),
+    const row = element("tr", "", element("td", "choose", chosen), what, state, progress, element("td", "", new Date(job.created).toLocaleString()),
       element("td", "", job.owner), element("td", "row", ...actions(job, (deleted) => deleted ? this.remove(job.id) : this.refresh())));
     row.id = job.id;
     return row;
   }
 
+  /** Compare a job, or no more. @param {string} id @param {boolean} wanted */
+  choose(id, wanted) {
+    if (wanted) this.compared.add(id); else this.compared.delete(id);
+    const many = this.compared.size, button = byId("compare");
+    button.hidden = many < 2;
+    button.disabled = many > MOST;
+    button.textContent = many > MOST ? `At most ${MOST} runs can be compared` : `Compare ${many} runs`;
+    button.onclick = () => location.assign(`#/compare?jobs=${[...this.compared].sort()}`);
+  }
+
   /** @param {string} id */
   remove(id) {
+    this.choose(id, false);
     this.known.get(id)?.row.remove();
     this.known.delete(id);
     this.tell();

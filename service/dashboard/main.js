@@ -1,12 +1,21 @@
 // @ts-check
-/** Which page is shown, as its address says: #/?status=running is the table, #/jobs/ID one job. */
+/** Which page is shown, as its address says: #/?status=running is the table, #/jobs/ID one job, and so on. */
 import { Refusal, setKey } from "./api.js";
+import { ComparePage } from "./compare.js";
 import { JobPage } from "./job.js";
 import { JobsTable } from "./jobs.js";
 import { byId, notice } from "./page.js";
 
 const EVERY = 2500; // ms
-/** @type {JobsTable | JobPage | null} */
+/** A page: filled once, looked at again every now and then, and left.
+ * @typedef {{fill: () => Promise<void>, refresh: () => Promise<void>, close: () => void}} View */
+/** The pages but for the table of jobs, by the beginning of their addresses.
+ * @type {[RegExp, (id: string, chosen: URLSearchParams) => View][]} */
+const PAGES = [
+  [/^\/jobs\/([0-9a-z]+)$/, (id) => new JobPage(id)],
+  [/^\/compare$/, (_, chosen) => new ComparePage(chosen)],
+];
+/** @type {View | null} */
 let view = null;
 let timer = 0;
 
@@ -15,13 +24,14 @@ function open() {
   view?.close();
   notice("");
   const [path, query] = location.hash.replace(/^#/, "").split("?");
-  const id = /^\/jobs\/([0-9a-z]+)$/.exec(path)?.[1];
-  byId("jobs").hidden = Boolean(id);
-  byId("job").hidden = !id;
+  const [where, page] = PAGES.find(([one]) => one.test(path)) ?? [];
+  byId("jobs").hidden = Boolean(page);
+  byId("page").hidden = !page;
+  byId("page").replaceChildren();
   document.title = "hockle: jobs";
   const chosen = new URLSearchParams(query ?? "");
   for (const field of byId("filters").elements) field.value = chosen.get(field.name) ?? "";
-  view = id ? new JobPage(id) : new JobsTable(chosen);
+  view = where && page ? page(where.exec(path)?.[1] ?? "", chosen) : new JobsTable(chosen);
   const shown = view;
   guarded(() => shown.fill());
 }
@@ -48,7 +58,7 @@ async function guarded(work) {
 /** @param {string} told */
 function askForKey(told) {
   view?.close();
-  byId("jobs").hidden = byId("job").hidden = true;
+  byId("jobs").hidden = byId("page").hidden = true;
   byId("login").hidden = false;
   byId("login").elements.key.focus();
   notice(told);

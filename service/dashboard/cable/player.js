@@ -9,21 +9,22 @@ import { picture, video } from "./record.js";
 import { Stage, VIEWS } from "./stage.js";
 import { diameter, touching } from "./surroundings.js";
 
+/** A run: the address of its job, and its case. @typedef {{job: string, shape: any}} Run */
 const BODY = [0.93, 0.62, 0.2], SEEN = 0.005;
 
 export class Player {
-  /** @param {string} job its address @param {any} shape its case @param {(t: number) => void} tell of the time shown */
-  constructor(job, shape, tell) {
-    this.job = job;
-    this.shape = shape;
-    this.film = new Film();
-    this.stage = new Stage(`the cable of ${shape.title || shape.name} in three dimensions`);
+  /** @param {Run[]} runs on one clock @param {(t: number) => void} tell of the time shown
+   * @param {(place: number) => number[]} [body] the colour of each run's cable */
+  constructor(runs, tell, body = () => BODY) {
+    this.runs = runs.map((run) => ({ ...run, film: new Film(), nodes: new Float32Array(0) }));
+    this.shape = runs[0].shape;
+    this.body = body;
+    this.stage = new Stage(`cable in three dimensions: ${runs.map(({ shape }) => shape.title || shape.name).join("; ")}`);
     this.stage.content = () => this.content();
     this.clock = new Clock((t) => {
       this.stage.redraw();
       tell(t);
     });
-    this.nodes = new Float32Array(0);
     this.legend = element("span", "scale");
     this.place = element("section", "player", this.stage.canvas, this.clock.place, this.controls());
     this.place.hidden = true;
@@ -40,7 +41,8 @@ export class Player {
     const still = button("PNG", () => picture(this.stage, this.name("png")));
     const moving = button("Video", () => video(this.stage, this.clock, (kind) => this.name(kind)));
     moving.id = "video";
-    return element("div", "controls", labelled("Colour", this.colour), this.legend, labelled("View", this.view),
+    const colours = this.runs.length === 1 ? [labelled("Colour", this.colour), this.legend] : [];
+    return element("div", "controls", ...colours, labelled("View", this.view),
       labelled("True thickness", this.thick), still, moving);
   }
 
@@ -49,30 +51,41 @@ export class Player {
     return `${this.shape.name || "cable"}-${told(this.clock.t)}s.${kind}`;
   }
 
-  /** Read the film from its beginning again: the run has ended, and may have been refined. */
+  /** The film whose colours are offered. */
+  get film() {
+    return this.runs[0].film;
+  }
+
+  /** Read the films from their beginning again: a run has ended, and may have been refined. */
   again() {
-    this.film.clear();
+    for (const run of this.runs) run.film.clear();
     return this.more();
   }
 
-  /** Read what is new of the run; says whether there is a film by now. */
+  /** Read what is new of the runs; says whether there is a film by now. */
   async more() {
-    const first = !this.film.time.length;
-    if (await this.film.more(this.job)) {
-      if (first) this.open();
-      this.clock.set(this.film.time);
+    const first = this.place.hidden;
+    const news = await Promise.all(this.runs.map(({ film, job }) => film.more(job)));
+    const shown = this.runs.filter(({ film }) => film.time.length);
+    if (news.some(Boolean)) {
+      for (const run of shown) run.nodes = new Float32Array(NODE * run.film.nodes);
+      if (first) this.open(shown);
+      const longest = shown.reduce((best, run) => end(run) > end(best) ? run : best);
+      this.clock.set(longest.film.time);
       this.paint();
     }
-    return this.film.time.length > 0;
+    return shown.length > 0;
   }
 
-  open() {
+  /** @param {{film: Film}[]} shown */
+  open(shown) {
     this.place.hidden = false;
-    this.nodes = new Float32Array(NODE * this.film.nodes);
-    const shown = [...(this.colour?.options ?? [])].map((one) => one.value);
-    this.colour?.append(...this.film.colours.filter((name) => !shown.includes(name)).map((name) => new Option(name)));
-    const r = this.film.values("r"), last = 3 * (this.film.nodes - 1);
-    this.stage.set(this.shape, this.film.box, [0, 1, 2].map((i) => r[last + i] - r[i]));
+    const names = [...(this.colour?.options ?? [])].map((one) => one.value);
+    this.colour?.append(...this.film.colours.filter((name) => !names.includes(name)).map((name) => new Option(name)));
+    /** @param {number} side @param {(...values: number[]) => number} most */
+    const corner = (side, most) => [0, 1, 2].map((i) => most(...shown.map((run) => run.film.box[side][i])));
+    const { film } = shown[0], r = film.values("r"), last = 3 * (film.nodes - 1);
+    this.stage.set(this.shape, [corner(0, Math.min), corner(1, Math.max)], [0, 1, 2].map((i) => r[last + i] - r[i]));
   }
 
   /** Show the chosen colour and its scale. */
@@ -86,19 +99,23 @@ export class Player {
   }
 
   content() {
-    const { film, stage, shape } = this, { t } = this.clock;
-    if (!film.time.length) return { rods: [], lines: [], points: [] };
-    film.at(t, this.colour?.value ?? "none", this.nodes);
-    /** @type {number[]} */
-    const lines = [];
-    stage.surroundings?.shadow(this.nodes, lines);
-    const points = film.contacts[film.frame(t)] > 0 ? touching(this.nodes, film.s, shape) : [];
-    this.place.dataset.contacts = String(points.length / 7);
-    return { rods: [{ nodes: this.nodes, radius: this.radius(), body: BODY, range: this.range ?? null }], lines, points };
+    const { t } = this.clock, colour = this.colour?.value ?? "none";
+    /** @type {{rods: import("./picture.js").Rod[], lines: number[], points: number[]}} */
+    const seen = { rods: [], lines: [], points: [] };
+    this.runs.forEach(({ film, nodes, shape }, place) => {
+      if (!film.time.length) return;
+      film.at(t, colour, nodes);
+      this.stage.surroundings?.shadow(nodes, seen.lines);
+      if (film.contacts[film.frame(t)] > 0) seen.points.push(...touching(nodes, film.s, shape));
+      seen.rods.push({ nodes, radius: this.radius(shape), body: this.body(place), range: this.range ?? null });
+    });
+    this.place.dataset.contacts = String(seen.points.length / 7);
+    return seen;
   }
 
-  radius() {
-    const real = diameter(this.shape) / 2;
+  /** @param {any} shape */
+  radius(shape) {
+    const real = diameter(shape) / 2;
     return this.thick?.checked ? real : Math.max(real, SEEN * (this.stage.surroundings?.extent ?? 1));
   }
 
@@ -107,6 +124,9 @@ export class Player {
     this.stage.close();
   }
 }
+
+/** @param {{film: Film}} run */
+const end = ({ film }) => film.time[film.time.length - 1];
 
 /** @param {string} name @param {string[]} options @param {() => void} act */
 export function choice(name, options, act) {

@@ -80,15 +80,15 @@ def test_views_differ_and_the_pointer_turns_the_cable(film):
 
 def test_it_plays_to_its_end_and_marks_its_time_in_the_curves(film):
     scrub(film, 0.0)
-    film.wait_for_selector("#job .chart")
+    film.wait_for_selector("#page .chart")
     film.locator(".stage").press(".")
     film.wait_for_function("() => document.querySelector('.clock output').innerText === 't = 0.5 s'")
-    before = film.locator("#job .legend").all_inner_texts()
+    before = film.locator("#page .legend").all_inner_texts()
     film.select_option(".clock select", "5 s")
     film.click(".clock button")
     film.wait_for_function("() => document.querySelector('.clock output').innerText === 't = 6 s'")
     film.wait_for_function("() => document.querySelector('.clock button').innerText === 'Play'")
-    assert film.locator("#job .legend").all_inner_texts() != before
+    assert film.locator("#page .legend").all_inner_texts() != before
 
 
 def test_a_picture_is_saved_as_it_is_seen(film, tmp_path: Path):
@@ -120,5 +120,5 @@ def test_contacts_are_marked_where_strands_touch(server, run, page):
 def test_without_webgl_the_page_says_so_and_shows_the_curves(server, run, page):
     page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
     page.goto(f"{server.address}/#/jobs/{run('elastica', **BENT)}")
-    page.wait_for_selector("#job .chart")
-    assert "this browser has no WebGL 2" in page.inner_text("#job")
+    page.wait_for_selector("#page .chart")
+    assert "this browser has no WebGL 2" in page.inner_text("#page")

@@ -9,17 +9,17 @@ QUICK = {"t_end": 1.0, "output__interval": 0.1, "numerics__intervals": 20}
 
 def shown(page, server, job_id):
     page.goto(f"{server.address}/#/jobs/{job_id}")
-    page.wait_for_selector("#job h2")
+    page.wait_for_selector("#page h2")
 
 
 def legend(page, title):
-    return page.locator("#job figure", has_text=title).locator(".legend").inner_text()
+    return page.locator("#page figure", has_text=title).locator(".legend").inner_text()
 
 
 def test_the_curves_of_a_run_are_drawn_with_their_last_values(server, run, page):
     shown(page, server, run("cantilever-vibration", **QUICK))
-    page.wait_for_selector("#job .chart")
-    titles = page.locator("#job figcaption").all_inner_texts()
+    page.wait_for_selector("#page .chart")
+    titles = page.locator("#page figcaption").all_inner_texts()
     for title in ("Twist, writhe, link", "Defect Tw + Wr - Lk", "Energies", "Energy balance", "Tension at the ends",
                   "Step dt", "Newton iterations"):
         assert any(one.startswith(title) for one in titles), title
@@ -45,10 +45,10 @@ def test_a_running_job_is_drawn_as_its_frames_come(server, add, page):
     page.route(here, running)
     page.route(f"{here}/data?*", data)
     shown(page, server, job_id)
-    page.wait_for_function("() => document.querySelector('#job .legend')?.innerText.includes('Tw 0.25')")
-    assert "running, t = 0.00 s, 1 min 30 s left" in page.inner_text("#job")
+    page.wait_for_function("() => document.querySelector('#page .legend')?.innerText.includes('Tw 0.25')")
+    assert "running, t = 0.00 s, 1 min 30 s left" in page.inner_text("#page")
     frames[0] = 5
-    page.wait_for_function("() => document.querySelector('#job .legend').innerText.includes('Tw 1')")
+    page.wait_for_function("() => document.querySelector('#page .legend').innerText.includes('Tw 1')")
 
 
 def test_the_outcome_comes_with_its_remedy(server, add, page):
@@ -56,26 +56,26 @@ def test_the_outcome_comes_with_its_remedy(server, add, page):
     page.route(f"{server.address}/v1/jobs/{job_id}", lambda route: route.fulfill(json=route.fetch().json() | {
         "status": "failed", "outcome": "newton_stalled", "message": "use shorter steps"}))
     shown(page, server, job_id)
-    assert page.inner_text("#job .outcome") == "newton_stalled: use shorter steps"
+    assert page.inner_text("#page .outcome") == "newton_stalled: use shorter steps"
 
 
 def test_what_differs_from_the_shipped_case_is_listed(server, run, page):
     shown(page, server, run("cantilever-vibration", **QUICK))
-    page.wait_for_selector("#job .changes")
-    rows = [row.split("\t") for row in page.locator("#job .changes tbody tr").all_inner_texts()]
+    page.wait_for_selector("#page table")
+    rows = [row.split("\t") for row in page.locator("#page table tbody tr").all_inner_texts()]
     assert ["numerics.intervals", "20", "60"] in rows
     assert sorted(row[0] for row in rows) == ["numerics.intervals", "t_end"]
 
 
 def test_a_waiting_job_tells_how_many_go_first(server, add, page):
     shown(page, server, max(add(3)))
-    assert page.inner_text("#job .status") == "accepted: 2 jobs of local go first"
+    assert page.inner_text("#page .status") == "accepted: 2 jobs of local go first"
 
 
 def test_a_share_link_opens_the_dataset(server, run, page):
     shown(page, server, run("cantilever-vibration", **QUICK))
     page.click("text=Share link")
-    address = page.get_attribute("#job .shared a", "href")
+    address = page.get_attribute("#page .shared a", "href")
     with urlopen(address) as answer:
         assert answer.read(4) == b"\x89HDF"
 
@@ -85,5 +85,5 @@ def test_dataset_and_case_are_saved(server, run, page):
     shown(page, server, job_id)
     for label, name in (("Dataset", f"{job_id}.nc"), ("Case file", f"{job_id}.json")):
         with page.expect_download() as saved:
-            page.click(f"#job button:has-text('{label}')")
+            page.click(f"#page button:has-text('{label}')")
         assert saved.value.suggested_filename == name

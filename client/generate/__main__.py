@@ -10,9 +10,16 @@ from generate.sync import without_await
 from service.cases import case_schema
 
 HERE = Path(__file__).parent.parent / "hockle_client"
+
+
+def _synchronous(source: str) -> str:
+    return without_await(source, (HERE / source).read_text(encoding="utf-8"))
+
+
 WRITTEN: dict[str, Callable[[], str]] = {
     "schema.py": lambda: types_of(case_schema()),
-    "synchronous.py": lambda: without_await((HERE / "asynchronous.py").read_text(encoding="utf-8")),
+    "synchronous.py": lambda: _synchronous("asynchronous.py"),
+    "ensembles.py": lambda: _synchronous("async_ensembles.py"),
 }
 
 if __name__ == "__main__":

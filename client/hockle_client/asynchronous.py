@@ -10,7 +10,7 @@ import io
 import os
 import time
 import uuid
-from collections.abc import AsyncIterator, Iterable, Mapping
+from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -18,11 +18,13 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import httpx
 from typing_extensions import Self
 
+from hockle_client.async_ensembles import AsyncEnsemble
 from hockle_client.case import CaseLike, request_of
-from hockle_client.documents import Cost, Event, JobState, Link, Status, Verdict
+from hockle_client.design import Method, Parameters, sweep_request
+from hockle_client.documents import Cost, EnsembleState, Event, JobState, Link, Status, Verdict
 from hockle_client.handle import JobFacts
 from hockle_client.problems import HockleError, Unreachable, problem_of
-from hockle_client.reading import assembled, opened
+from hockle_client.reading import opened, part_query
 from hockle_client.retrying import Retries
 from hockle_client.schema import Setting
 from hockle_client.showing import Line, show_many
@@ -114,6 +116,39 @@ class AsyncClient:
                 return
             page = (await self._ask("GET", page["next"])).json()
 
+    async def sweep(self, case: CaseLike, parameters: Parameters | None = None, *,
+                    members: Sequence[Mapping[str, Any]] = (), sample: Method | None = None,
+                    size: int | None = None, seed: int = 0,
+                    set: Mapping[Setting, Any] | Mapping[str, Any] = {}, title: str = "", label: str = "",
+                    priority: int = 0, limits: Mapping[str, float] = {}, again: bool = False,
+                    idempotency_key: str | None = None) -> AsyncEnsemble:
+        """Hand in a case many times, with other values of some `parameters`, which are dotted keys.
+
+        Lists of values make a grid; `Range`s are filled by a `sample` of a `size`; `members` have their values one by
+        one. A parameter may have a name of its own: {"damping": {"path": "loads.damping", "values": [0, 1]}}.
+        `again`: run also the cases that have run before. Raises Problem.
+        """
+        body = sweep_request(case, set, parameters or {}, members, sample=sample, size=size, seed=seed, title=title,
+                             label=label, priority=priority, limits=dict(limits), reuse=not again)
+        headers = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
+        response = await self._ask("POST", "/v1/ensembles", body=body, headers=headers)
+        return AsyncEnsemble(self, EnsembleState.model_validate_json(response.content))
+
+    async def ensemble(self, ensemble_id: str) -> AsyncEnsemble:
+        """One ensemble. Raises Problem."""
+        response = await self._ask("GET", f"/v1/ensembles/{_safe(ensemble_id)}")
+        return AsyncEnsemble(self, EnsembleState.model_validate_json(response.content))
+
+    async def ensembles(self) -> AsyncIterator[AsyncEnsemble]:
+        """All ensembles, newest first. Raises Problem."""
+        page = (await self._ask("GET", "/v1/ensembles")).json()
+        while True:
+            for state in page["ensembles"]:
+                yield AsyncEnsemble(self, EnsembleState.model_validate(state))
+            if page["next"] is None:
+                return
+            page = (await self._ask("GET", page["next"])).json()
+
     async def wait(self, jobs: Iterable[AsyncJob], timeout: float | None = None,
                    progress: bool = False) -> list[AsyncJob]:
         """The jobs when all have ended, however. Raises TimeoutError after so many seconds."""
@@ -161,8 +196,8 @@ class AsyncClient:
                 refused = problem_of(response)
             await asyncio.sleep(retries.after(refused))
 
-    async def _events(self, job_id: str, seen: int) -> AsyncIterator[Event]:
-        path, retries = f"/v1/jobs/{_safe(job_id)}/events", Retries(self.patience)
+    async def _events(self, path: str, seen: int) -> AsyncIterator[Event]:
+        retries = Retries(self.patience)
         while True:
             try:
                 async with self._http.stream("GET", path, headers={"Last-Event-ID": str(seen)}) as response:
@@ -221,7 +256,7 @@ class AsyncJob(JobFacts):
 
         `after`: only what came after the event with this id.
         """
-        return self._client._events(self.id, after)
+        return self._client._events(f"/v1/jobs/{self.id}/events", after)
 
     async def watch(self) -> AsyncIterator[Self]:
         """The job now, and each time that it has changed, until it has ended. Raises Problem."""
@@ -301,15 +336,15 @@ class AsyncJob(JobFacts):
                      s_min: float | None = None, s_max: float | None = None, time_stride: int = 1,
                      s_stride: int = 1) -> dict[str, Any]:
         """Some variables in ranges of time (s) and arclength (m), every stride-th, as plain data. Raises Problem."""
-        told = {"t_min": t_min, "t_max": t_max, "s_min": s_min, "s_max": s_max}
-        query: dict[str, Any] = {"variables": ",".join(variables), "time_stride": time_stride, "s_stride": s_stride}
-        query.update({name: value for name, value in told.items() if value is not None})
+        query = part_query(variables, t_min, t_max, s_min, s_max, time_stride, s_stride)
         part: dict[str, Any] = (await self._client._ask("GET", f"/v1/jobs/{self.id}/data", params=query)).json()
         return part
 
     async def data(self, *variables: str, **part: Any) -> xr.Dataset:
         """The same in xarray: only this is transferred. `part` as `values` takes it. Raises Problem."""
-        return assembled(await self.values(*variables, **part))
+        query = {**part_query(variables, **part), "format": "netcdf"}
+        content = (await self._client._ask("GET", f"/v1/jobs/{self.id}/data", params=query)).content
+        return opened(content, f"{self.id}.nc")[list(dict.fromkeys(variables))]
 
     async def table(self, *variables: str, **part: Any) -> pd.DataFrame:
         """The same in pandas, a row for each time (and node, and component). Raises Problem."""
@@ -339,5 +374,5 @@ class AsyncJob(JobFacts):
 def _safe(name: str) -> str:
     """A name as a part of an address. Raises HockleError for what is none."""
     if not name.replace("-", "").replace("_", "").isalnum():
-        raise HockleError(f"a job id has letters and digits only, got {name!r}")
+        raise HockleError(f"an id has letters and digits only, got {name!r}")
     return name

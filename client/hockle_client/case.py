@@ -53,13 +53,18 @@ CaseLike = Case | CaseSpec | Mapping[str, Any] | str
 
 def request_of(case: CaseLike, settings: Mapping[Any, Any], **more: Any) -> bytes:
     """The body that asks for a case to be run or looked at. Raises ValueError for what is no finite JSON."""
-    whole = case if isinstance(case, Case) else Case(case if isinstance(case, str) else {**case})
-    whole = whole.with_settings(settings)
-    body = {"case": whole.base, "set": dict(whole.settings), **more}
-    return json.dumps(body, default=_plain, allow_nan=False).encode()
+    asked = whole(case, settings)
+    body = {"case": asked.base, "set": dict(asked.settings), **more}
+    return json.dumps(body, default=plain, allow_nan=False).encode()
 
 
-def _plain(value: Any) -> Any:
+def whole(case: CaseLike, settings: Mapping[Any, Any]) -> Case:
+    """A case with some values changed, however it was given."""
+    made = case if isinstance(case, Case) else Case(case if isinstance(case, str) else {**case})
+    return made.with_settings(settings)
+
+
+def plain(value: Any) -> Any:
     """Numbers and arrays of numpy as JSON can write them."""
     if hasattr(value, "tolist"):
         return value.tolist()

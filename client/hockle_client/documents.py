@@ -105,6 +105,61 @@ class Verdict(Document):
     warnings: list[CaseWarning]
 
 
+class EnsembleState(Document):
+    """An ensemble. `counts` says how many members have each status, `outcomes` how they ended; equal members are one
+    of its `jobs`; `progress` goes from 0 to 1; `design` says how the values were chosen."""
+
+    id: str
+    owner: str
+    status: Status
+    title: str
+    label: str
+    members: int
+    jobs: int
+    counts: dict[Status, int]
+    outcomes: dict[str, int]
+    progress: float
+    design: dict[str, Any]
+    created: datetime
+    finished: datetime | None
+    links: dict[str, str]
+
+    @property
+    def ended_members(self) -> int:
+        """How many members have ended."""
+        return sum(many for status, many in self.counts.items() if status in ENDED)
+
+    @property
+    def ended(self) -> bool:
+        """Whether all have."""
+        return self.ended_members == self.members
+
+
+class MemberState(Document):
+    """A member of an ensemble: its values by parameter, and how its job is doing."""
+
+    number: int
+    values: dict[str, Any]
+    job: str
+    status: Status
+    phase: str
+    progress: float
+    t: float
+    outcome: str
+    message: str
+    links: dict[str, str]
+
+
+class SobolIndex(Document):
+    """A parameter's part of the variance of a variable: `first` by itself, `total` with all that it does together with
+    others; each with the half width of its 95 % confidence interval."""
+
+    first: float
+    first_confidence: float
+    total: float
+    total_confidence: float
+
+
 class Event(Document):
     """What happened to a job: `kind` as the server names it, `data` by kind."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -23,20 +23,13 @@ def opened(content: bytes, name: str) -> xr.Dataset:
     return xr.open_dataset(store, decode_times=False)
 
 
-def assembled(part: Mapping[str, Any]) -> xr.Dataset:
-    """The dataset that a part of one tells as JSON."""
-    import numpy as np
-    import xarray as xr
-
-    def array(told: Mapping[str, Any], dimensions: list[str]) -> tuple[list[str], Any, dict[str, str]]:
-        values = np.array(told["values"])
-        if values.dtype == object:  # null stands where there is no number
-            values = values.astype(float)
-        return dimensions, values, {name: told[name] for name in ("units", "long_name") if name in told}
-
-    coordinates = {name: array(told, [name]) for name, told in part["coordinates"].items()}
-    variables = {name: array(told, told["dimensions"]) for name, told in part["variables"].items()}
-    return xr.Dataset(variables, coordinates)
+def part_query(variables: Sequence[str], t_min: float | None = None, t_max: float | None = None,
+               s_min: float | None = None, s_max: float | None = None, time_stride: int = 1,
+               s_stride: int = 1) -> dict[str, Any]:
+    """The query that asks for a part of a dataset."""
+    told = {"variables": ",".join(variables), "t_min": t_min, "t_max": t_max, "s_min": s_min, "s_max": s_max,
+            "time_stride": time_stride, "s_stride": s_stride}
+    return {name: value for name, value in told.items() if value is not None}
 
 
 def case_of(dataset: xr.Dataset | str | Path) -> CaseSpec:

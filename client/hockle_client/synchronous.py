@@ -1,4 +1,4 @@
-"""The service as a Python program sees it.
+"""The service as a Python program sees it without await.
 
 Written by `make client` from asynchronous.py: change that one.
 """
@@ -9,7 +9,7 @@ import io
 import os
 import time
 import uuid
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -18,10 +18,12 @@ import httpx
 from typing_extensions import Self
 
 from hockle_client.case import CaseLike, request_of
-from hockle_client.documents import Cost, Event, JobState, Link, Status, Verdict
+from hockle_client.design import Method, Parameters, sweep_request
+from hockle_client.documents import Cost, EnsembleState, Event, JobState, Link, Status, Verdict
+from hockle_client.ensembles import Ensemble
 from hockle_client.handle import JobFacts
 from hockle_client.problems import HockleError, Unreachable, problem_of
-from hockle_client.reading import assembled, opened
+from hockle_client.reading import opened, part_query
 from hockle_client.retrying import Retries
 from hockle_client.schema import Setting
 from hockle_client.showing import Line, show_many
@@ -113,6 +115,39 @@ class Client:
                 return
             page = (self._ask("GET", page["next"])).json()
 
+    def sweep(self, case: CaseLike, parameters: Parameters | None = None, *,
+              members: Sequence[Mapping[str, Any]] = (), sample: Method | None = None,
+              size: int | None = None, seed: int = 0,
+              set: Mapping[Setting, Any] | Mapping[str, Any] = {}, title: str = "", label: str = "",
+              priority: int = 0, limits: Mapping[str, float] = {}, again: bool = False,
+              idempotency_key: str | None = None) -> Ensemble:
+        """Hand in a case many times, with other values of some `parameters`, which are dotted keys.
+
+        Lists of values make a grid; `Range`s are filled by a `sample` of a `size`; `members` have their values one by
+        one. A parameter may have a name of its own: {"damping": {"path": "loads.damping", "values": [0, 1]}}.
+        `again`: run also the cases that have run before. Raises Problem.
+        """
+        body = sweep_request(case, set, parameters or {}, members, sample=sample, size=size, seed=seed, title=title,
+                             label=label, priority=priority, limits=dict(limits), reuse=not again)
+        headers = {"Idempotency-Key": idempotency_key or str(uuid.uuid4())}
+        response = self._ask("POST", "/v1/ensembles", body=body, headers=headers)
+        return Ensemble(self, EnsembleState.model_validate_json(response.content))
+
+    def ensemble(self, ensemble_id: str) -> Ensemble:
+        """One ensemble. Raises Problem."""
+        response = self._ask("GET", f"/v1/ensembles/{_safe(ensemble_id)}")
+        return Ensemble(self, EnsembleState.model_validate_json(response.content))
+
+    def ensembles(self) -> Iterator[Ensemble]:
+        """All ensembles, newest first. Raises Problem."""
+        page = (self._ask("GET", "/v1/ensembles")).json()
+        while True:
+            for state in page["ensembles"]:
+                yield Ensemble(self, EnsembleState.model_validate(state))
+            if page["next"] is None:
+                return
+            page = (self._ask("GET", page["next"])).json()
+
     def wait(self, jobs: Iterable[Job], timeout: float | None = None,
              progress: bool = False) -> list[Job]:
         """The jobs when all have ended, however. Raises TimeoutError after so many seconds."""
@@ -160,8 +195,8 @@ class Client:
                 refused = problem_of(response)
             time.sleep(retries.after(refused))
 
-    def _events(self, job_id: str, seen: int) -> Iterator[Event]:
-        path, retries = f"/v1/jobs/{_safe(job_id)}/events", Retries(self.patience)
+    def _events(self, path: str, seen: int) -> Iterator[Event]:
+        retries = Retries(self.patience)
         while True:
             try:
                 with self._http.stream("GET", path, headers={"Last-Event-ID": str(seen)}) as response:
@@ -220,7 +255,7 @@ class Job(JobFacts):
 
         `after`: only what came after the event with this id.
         """
-        return self._client._events(self.id, after)
+        return self._client._events(f"/v1/jobs/{self.id}/events", after)
 
     def watch(self) -> Iterator[Self]:
         """The job now, and each time that it has changed, until it has ended. Raises Problem."""
@@ -300,15 +335,15 @@ class Job(JobFacts):
                s_min: float | None = None, s_max: float | None = None, time_stride: int = 1,
                s_stride: int = 1) -> dict[str, Any]:
         """Some variables in ranges of time (s) and arclength (m), every stride-th, as plain data. Raises Problem."""
-        told = {"t_min": t_min, "t_max": t_max, "s_min": s_min, "s_max": s_max}
-        query: dict[str, Any] = {"variables": ",".join(variables), "time_stride": time_stride, "s_stride": s_stride}
-        query.update({name: value for name, value in told.items() if value is not None})
+        query = part_query(variables, t_min, t_max, s_min, s_max, time_stride, s_stride)
         part: dict[str, Any] = (self._client._ask("GET", f"/v1/jobs/{self.id}/data", params=query)).json()
         return part
 
     def data(self, *variables: str, **part: Any) -> xr.Dataset:
         """The same in xarray: only this is transferred. `part` as `values` takes it. Raises Problem."""
-        return assembled(self.values(*variables, **part))
+        query = {**part_query(variables, **part), "format": "netcdf"}
+        content = (self._client._ask("GET", f"/v1/jobs/{self.id}/data", params=query)).content
+        return opened(content, f"{self.id}.nc")[list(dict.fromkeys(variables))]
 
     def table(self, *variables: str, **part: Any) -> pd.DataFrame:
         """The same in pandas, a row for each time (and node, and component). Raises Problem."""
@@ -338,5 +373,5 @@ class Job(JobFacts):
 def _safe(name: str) -> str:
     """A name as a part of an address. Raises HockleError for what is none."""
     if not name.replace("-", "").replace("_", "").isalnum():
-        raise HockleError(f"a job id has letters and digits only, got {name!r}")
+        raise HockleError(f"an id has letters and digits only, got {name!r}")
     return name

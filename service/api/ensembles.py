@@ -164,7 +164,7 @@ def ensemble_status(ensemble_id: str, ensembles: Seen) -> Response:
     return answer(ensemble, ensembles.standing(ensemble.id))
 
 
-@router.delete("/{ensemble_id}", responses=problems(404))
+@router.post("/{ensemble_id}/cancel", responses=problems(404))
 def cancel_ensemble(ensemble_id: str, parts: InParts, caller: Submitter) -> EnsembleDocument:
     """Cancel all members that have not ended."""
     ensembles = Ensembles(parts.registry.database, caller.sees)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -28,6 +29,8 @@ _RULES = {
     "tuple_type": "must be a list",
     "model_type": "must be an object",
 }
+TAG = re.compile("<[a-z]+>")
+"""What tells the kinds of a value apart; it is no field."""
 MOST_TOLD = 100
 """Faults of a case that are told one by one."""
 LONGEST_POINTER = 300
@@ -76,7 +79,7 @@ def refusal(at: str, value: object, rule: str) -> PydanticCustomError:
 
 def _field_error(detail: ErrorDetails) -> FieldError:
     context = detail.get("ctx", {})
-    parts = [str(part) for part in detail["loc"] if not str(part).startswith("<")]
+    parts = [str(part) for part in detail["loc"] if not TAG.fullmatch(str(part))]
     pointer = "".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts)
     if len(pointer) > LONGEST_POINTER:
         pointer = pointer[:LONGEST_POINTER] + "..."

@@ -17,7 +17,7 @@ def suggested(error: CaseError, whole: type[BaseModel]) -> CaseError:
 
 
 def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
-    if not fault.unknown:
+    if not fault.unknown or not fault.pointer:  # a field that is named as what tells kinds apart has no pointer
         return fault
     *path, name = (part.replace("~1", "/").replace("~0", "~") for part in fault.pointer.split("/")[1:])
     near = get_close_matches(name[:80].lower(), fields_at(whole, path), n=1)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from hockle_client import AsyncClient, AsyncJob, Case, Client
+from hockle_client import AsyncClient, AsyncEnsemble, AsyncJob, Case, Client
 from tests.hockle.conftest import Server, serving
 
 QUICK = {"t_end": 0.3, "output.interval": 0.1, "numerics.intervals": 20}
@@ -43,7 +43,7 @@ class Blocking:
                 return
 
     def _wrapped(self, told: Any) -> Any:
-        if isinstance(told, AsyncJob):
+        if isinstance(told, (AsyncJob, AsyncEnsemble)):
             return Blocking(told, self.run)
         return [self._wrapped(one) for one in told] if isinstance(told, list) else told
 

@@ -14,7 +14,7 @@ from mypy import api
 
 from generate.__main__ import HERE, WRITTEN
 from hockle_client import documents
-from service.api import cases, links
+from service.api import cases, ensemble_data, ensembles, links
 from service.api import documents as services
 from service.cases import case_schema
 
@@ -32,7 +32,8 @@ def test_what_a_command_writes_is_up_to_date(name):
     (documents.JobState, services.JobDocument), (documents.DatasetInfo, services.DatasetDocument),
     (documents.Limits, services.LimitsDocument), (documents.Cost, cases.CostDocument),
     (documents.CaseWarning, cases.WarningDocument), (documents.Verdict, cases.Verdict),
-    (documents.Link, links.LinkDocument),
+    (documents.Link, links.LinkDocument), (documents.EnsembleState, ensembles.EnsembleDocument),
+    (documents.MemberState, ensembles.MemberDocument), (documents.SobolIndex, ensemble_data.SobolIndex),
 ])  # fmt: skip
 def test_what_the_service_says_is_what_the_client_reads(ours, theirs):
     assert {"href" if name == "url" else name for name in ours.model_fields} == set(theirs.model_fields)

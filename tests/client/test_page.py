@@ -27,9 +27,11 @@ def test_every_block_runs_in_its_order(server, tmp_path, monkeypatch, capsys):
     assert "422 invalid_case" in printed and "'/set/rod.length'" not in printed
     assert (tmp_path / "run.nc").read_bytes()[:4] == b"\x89HDF"
     assert sorted(names["part"].data_vars) == ["Wr", "r"] and list(names["table"]) == ["Tw", "Wr", "Lk"]
+    assert names["whole"].sizes["member"] == 4 and "loads.damping" in names["whole"].coords
 
 
 def test_a_sweep_of_200_takes_at_most_eight_lines():
     [sweep] = [block for block in BLOCKS if "linspace" in block]
+    assert "sweep.dataset(" in sweep and "sweep.table(" in sweep
     assert len([line for line in sweep.splitlines() if line.strip()]) <= 8
     assert SHORTER["200)"] == "4)"

@@ -1,4 +1,4 @@
-"""submit, status, fetch, jobs, cancel, watch: what they print, and what they say when they cannot."""
+"""submit, status, fetch, jobs, cancel, watch, sweep: what they print, and what they say when they cannot."""
 
 from __future__ import annotations
 
@@ -126,3 +126,20 @@ def test_a_job_is_pinned_unpinned_and_deleted(quick, tmp_path, capsys):
 @pytest.mark.parametrize("command", [["cancel", "nobody"], ["watch", "nobody"]])
 def test_what_is_not_there_is_neither_cancelled_nor_watched(capsys, command):
     assert "there is no job 'nobody'" in refusal(capsys, *command)
+
+
+def test_a_sweep_is_handed_in_and_its_numbers_come_as_csv(case_file, tmp_path, capsys):
+    table = tmp_path / "table.csv"
+    assert main(["sweep", case_file, "loads.damping=0,0.5", "t_end=0.1,0.2", "--scalars", "Tw", "-o", str(table)]) == 0
+    head, *rows = table.read_text().splitlines()
+    assert head == "member,loads.damping,t_end,id,label,status,outcome,t,Tw" and len(rows) == 4
+    assert rows[3].startswith("3,0.5,0.2,") and ",successful,completed,0.2," in rows[3]
+    sample = ["--sample", "sobol", "--size", "2", "--set", "t_end=0.1"]
+    assert main(["sweep", case_file, "loads.damping=0:1", *sample]) == 0
+    assert len(capsys.readouterr().out.strip()) == 26
+
+
+@pytest.mark.parametrize(("varied", "told"), [("loads.damping", "must have both"), ("loads.damping=a,b", "numbers"),
+                                              ("loads.damping=0:x", "LOW:HIGH"), ("loads.damping=-1", "member 0")])
+def test_a_sweep_that_cannot_be_run_is_told_so(case_file, capsys, varied, told):
+    assert told in refusal(capsys, "sweep", case_file, varied)

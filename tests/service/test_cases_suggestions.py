@@ -36,3 +36,10 @@ def test_a_number_of_hundreds_of_digits_is_told_by_its_size(value: int, told: st
     message = str(refusal("rod.density" if value > 10**308 else "numerics.intervals", value))
     assert told in message
     assert "0" * 20 not in message
+
+
+@pytest.mark.parametrize(("name", "pointer"), [("<table>", ""), ("<b", "/<b")])
+def test_an_unknown_field_in_angle_brackets_is_told_too(name: str, pointer: str):
+    with pytest.raises(CaseError) as refused:
+        parse_case({**load_case("elastica"), name: 1})
+    assert [fault.pointer for fault in refused.value.errors] == [pointer]

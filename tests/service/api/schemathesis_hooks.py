@@ -27,7 +27,7 @@ dismissed: set[str] = set()
 def a_job_ends_once(ctx: Any, response: Any, case: Any) -> None:
     """In place of use_after_free: what is dismissed waits no more, and stays as it ended, until it is deleted."""
     told = list(_jobs(response))
-    if case.method == "DELETE" and told:
+    if case.method == "DELETE" and case.path.endswith("/jobs/{job_id}") and told:
         [(job, _)] = told
         dismissed.add(job)
         told += [one for path in ("/v1/jobs/", "/ogc/jobs/") for one in _asked(path + job, response.request)]
@@ -58,7 +58,8 @@ def _jobs(response: Any) -> Iterator[tuple[str, str]]:
     if "application/json" not in response.headers.get("content-type", ""):
         return
     told = response.json()
-    for one in told.get("jobs", [told]) if isinstance(told, dict) else []:
+    listed = told.get("jobs") if isinstance(told, dict) else []
+    for one in listed if isinstance(listed, list) else [told]:  # of an ensemble it is their number
         if "status" in one and (job := one.get("id") or one.get("jobID")):
             yield job, one["status"]
 

@@ -161,7 +161,7 @@ def test_what_cannot_be_run_is_refused_where_it_stands(client, grid, change, poi
 def test_cancelling_ends_all_that_have_not_ended(client, grid, registry, settings):
     address = client.post("/v1/ensembles", json=grid).headers["location"]
     run_next(registry.database, settings)
-    told = client.delete(address).json()
+    told = client.post(f"{address}/cancel").json()
     assert (told["counts"]["successful"], told["counts"]["dismissed"], told["status"]) == (1, 5, "dismissed")
     assert told["finished"] and told["progress"] == 1.0 and told["outcomes"] == {"completed": 1, "cancelled": 5}
     assert "retry-after" not in client.get(address).headers

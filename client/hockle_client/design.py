@@ -1,0 +1,40 @@
+"""What differs between the members of an ensemble."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+from hockle_client.case import CaseLike, plain, whole
+
+Method = Literal["latin_hypercube", "sobol", "saltelli"]
+Scale = Literal["linear", "log"]
+
+
+@dataclass(frozen=True)
+class Range:
+    """A range that a sample fills, evenly or evenly in the logarithm."""
+
+    low: float
+    high: float
+    scale: Scale = "linear"
+
+
+Parameters = Mapping[str, Sequence[Any] | Range | Mapping[str, Any]]
+"""By dotted key: values, a range, or what the service takes for one."""
+
+
+def sweep_request(case: CaseLike, settings: Mapping[Any, Any], parameters: Parameters,
+                  members: Sequence[Mapping[str, Any]], *, sample: Method | None, size: int | None, seed: int,
+                  **more: Any) -> bytes:
+    """The body that asks for an ensemble. Raises ValueError for what is no finite JSON."""
+    asked = whole(case, settings)
+    body: dict[str, Any] = {"case": asked.base, "set": dict(asked.settings), **more}
+    body["parameters"] = {name: asdict(one) if isinstance(one, Range) else one for name, one in parameters.items()}
+    if members:
+        body["members"] = [dict(member) for member in members]
+    if sample is not None:
+        body["sample"] = {"method": sample, "size": size, "seed": seed}
+    return json.dumps(body, default=plain, allow_nan=False).encode()

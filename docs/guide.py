@@ -58,10 +58,12 @@ def costs() -> str:
     rows = [
         ("a step", f"{micro(cost.STEP)} + {micro(cost.STEP_NODE)} nodes"),
         ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes"),
+        ("a step with contact, besides", f"{micro(cost.POINT)} points + {micro(cost.PAIR)} pairs within the cutoff"),
         ("a frame", f"{micro(cost.FRAME)} + {micro(cost.FRAME_NODE)} nodes"),
         ("a frame with `output.topology`, besides", f"{micro(cost.WRITHE)} nodes²"),
-        ("all of it with a `tolerance`", f"{cost.PILOTS} times"),
-        ("all of it with `verify`", f"{cost.VERIFIED} times"),
+        ("steps with an `increment_tolerance` below the usual one", "(usual / given)^(1/2) times, `staggered` ^(1/4)"),
+        ("all of it with a `tolerance`", f"{cost.PILOTS} times; below 1e-3 times (1e-3 / given)^(1/2), up to 10 s"),
+        ("all of it with `verify` and no tolerance", f"{cost.VERIFIED} times"),
     ]
     return markdown(("what", "CPU time, µs"), rows)
 

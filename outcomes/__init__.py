@@ -140,6 +140,14 @@ class Outcome(StrEnum):
         "give it more, or fewer intervals or a larger dt_max, with a tolerance a larger one",
         "worker",
     )
+    ESTIMATE_EXCEEDED = (
+        "estimate_exceeded",
+        "the run took many times the computing that was estimated for it (HOCKLE_OVERRUN says how many); the dataset "
+        "has the frames that it reached",
+        "give a dt_max and intervals that the motion needs, so that the estimate knows, or a tolerance; soften what "
+        "makes steps short, as a small increment_tolerance or a stiff contact law; or end earlier",
+        "worker",
+    )
     OUT_OF_MEMORY = (
         "out_of_memory",
         "the job took more memory than it may, or than there is",

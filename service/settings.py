@@ -95,6 +95,10 @@ class Settings:
     longest_run: Annotated[
         float, Positive, means("the most computing that a case may ask for, by its estimate", "s")
     ] = 86400.0
+    overrun: Annotated[
+        float, Positive,
+        means("how many times its estimate a run may compute, and at least a minute, before it is ended by name"),
+    ] = 20.0  # fmt: skip
     quota: Annotated[int, Positive, means("the most unfinished jobs of one owner")] = 10_000
     quota_bytes: Annotated[
         Annotated[int, Positive] | None,

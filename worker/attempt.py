@@ -13,7 +13,7 @@ from typing import TypeVar
 from sqlalchemy.exc import DBAPIError
 
 from outcomes import Outcome
-from service.cases import CaseSpec, build_scene, parse_case
+from service.cases import CaseSpec, build_scene, estimate, parse_case
 from service.jobs import Dataset, Drift, Reached, Status
 from service.jobs.held import HeldJob
 from service.results import Datasets, DatasetWriter, StoreUnreachable
@@ -34,6 +34,8 @@ Made = TypeVar("Made")
 
 SHARE = 0.05
 """The part of the running time that checkpoints may take."""
+LEAST_BUDGET = 60.0
+"""Seconds of computing that every run may take, however little was estimated."""
 ROOM_WITHIN, LOOK_AGAIN = 600.0, 1.0
 """Seconds for which a run waits on a full disk before it is given up, and between two looks at it."""
 
@@ -48,12 +50,19 @@ def work_directory(settings: Settings, job_id: str) -> Path:
     return settings.work / job_id
 
 
+def _check_budget(run: Run, budget: float) -> None:
+    spent = run.statistics.cpu_time
+    if spent > budget:
+        told = f"{spent:.0f} s of computing, {run.progress:.0%} done"
+        raise RunFailed(Outcome.ESTIMATE_EXCEEDED, run.t, run.statistics.steps, told)
+
+
 class Attempt:
     """Runs a held job. The lease is told of every step, the lock's next holder too, should this one die."""
 
     def __init__(self, held: HeldJob, lease: Lease, lock: JobLock, settings: Settings) -> None:
         self._held, self._lease, self._lock = held, lease, lock
-        self._interval = settings.checkpoint
+        self._interval, self._overrun = settings.checkpoint, settings.overrun
         self._directory = work_directory(settings, held.job.id)
         self._datasets = Datasets(settings.datasets, settings.copies, settings.objects)
         self._path = self._datasets.place(dataset_file(held.job.id, held.job.epoch), self._directory)
@@ -78,7 +87,7 @@ class Attempt:
         with DatasetWriter(self._path, spec, self._directory, segments) as writer:
             status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED, ""
             try:
-                self._compute(simulation, writer)
+                self._compute(simulation, writer, max(self._overrun * estimate(spec).seconds, LEAST_BUDGET))
             except RunFailed as failure:
                 status, outcome, message = Status.FAILED, failure.outcome, str(failure)
             self._with_room(writer.flush)
@@ -92,7 +101,8 @@ class Attempt:
         """Have the dataset lie where all can read it. Raises whatever ends a run."""
         self._with_room(lambda: self._datasets.publish(self._path))
 
-    def _compute(self, simulation: Run, writer: DatasetWriter) -> None:
+    def _compute(self, simulation: Run, writer: DatasetWriter, budget: float) -> None:
+        """Raises RunFailed also where it takes more than `budget` (s of computing, with what attempts before took)."""
         self._due = time.monotonic() + self._interval
         self._tell(simulation)
         under_way = False
@@ -106,6 +116,8 @@ class Attempt:
             steps = simulation.statistics.steps
             self._lock.mark(steps)
             self._tell(simulation)
+            if not simulation.finished:
+                _check_budget(simulation, budget)
             try:
                 stopping.check()
             except stopping.Stopping:

@@ -12,24 +12,18 @@ from service.cases.errors import refusal
 from service.cases.initial import InitialSpec
 from service.cases.quantities import Positive, Spec
 from service.cases.rod import RodSpec
+from service.cases.size import MOST_NODE_FRAMES, refuse_large
 from service.cases.surroundings import ContactSpec, FluidSpec, LoadsSpec
 from service.meaning import NO_CONTROL, means
 from solver import Numerics
 from solver.measures.frame import OUTPUTS
 from solver.methods.linear.registry import LINEAR_SOLVERS
-from solver.run.plan import FIRST_INTERVALS
 
 ALL_FIELDS = tuple(output.name for output in OUTPUTS if output.along_rod)
 if TYPE_CHECKING:
     FieldName = str
 else:
     FieldName = Literal[ALL_FIELDS]
-
-MOST_NODE_FRAMES = 10_000_000
-"""Nodes times stored frames: about 1.8 GB before compression."""
-
-MOST_STEPS = 10_000_000
-"""Steps at dt_max; the run may need more, where it has to refine."""
 
 TOLERANCE, INTERVALS, DT_MAX = 1e-3, 200, 0.05
 """Where nothing is said about the resolution, the first; where something is, the others."""
@@ -212,14 +206,5 @@ class CaseSpec(Spec):
 
     @model_validator(mode="after")
     def _check_size(self) -> Self:
-        if self.output.interval > self.t_end:
-            raise refusal("output/interval", self.output.interval, f"must be <= t_end ({self.t_end} s)")
-        stored = self.frames * ((self.numerics.intervals or FIRST_INTERVALS) + 1)
-        if stored > MOST_NODE_FRAMES:
-            rule = f"must leave at most {MOST_NODE_FRAMES:,} nodes times frames, not {stored:,}"
-            raise refusal("output/interval", self.output.interval, rule)
-        steps = self.t_end / (self.numerics.dt_max or self.output.interval)
-        if self.analysis == "dynamic" and steps > MOST_STEPS:
-            rule = f"must leave at most {MOST_STEPS:,} steps, not {steps:,.0f}"
-            raise refusal("numerics/dt_max", self.numerics.dt_max, rule)
+        refuse_large(self)
         return self

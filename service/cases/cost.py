@@ -1,12 +1,15 @@
 """What a case would cost, estimated before it runs.
 
-    steps   = t_end / dt_max, and no fewer than frames
-    seconds = steps (STEP + STEP_NODE n) + frames (FRAME + FRAME_NODE n + WRITHE n^2)        n nodes
+    steps   = t_end / dt_max, and no fewer than frames and the points of schedules; times
+              (usual increment_tolerance / increment_tolerance)^(1/order of the error of a step), where that is smaller
+    seconds = steps (STEP + STEP_NODE n + POINT p + PAIR q) + frames (FRAME + FRAME_NODE n + WRITHE n^2)
+              n nodes, p contact points, q pairs of these that may feel each other
     of statics: steps = 2 frames + 10, seconds = steps STATIC_NODE n + ...
     bytes   = 8 frames n (components of the stored fields), before compression
 
 With `verify` five times the seconds (the second run has twice the intervals and steps) and twice the bytes. With a
-`tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the seconds and the bytes.
+`tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the seconds and the bytes; a
+tolerance below the usual one makes it (usual/tolerance)^(1/2) times as much, up to the WORK after which it ends.
 
 The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
 a step from goyal-2003 to 32 s (about two Newton iterations a step, contact included), WRITHE of a rod whose strands lie
@@ -19,15 +22,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import ceil
 
-from service.cases.case import CaseSpec
+from service.cases.case import TOLERANCE, CaseSpec
 from service.cases.errors import CaseError, FieldError
+from service.cases.quantities import ScheduleTable
+from service.cases.size import contact_points, tables_in
 from solver.measures.frame import OUTPUTS
+from solver.methods.registry import METHODS
 
 STEP, STEP_NODE = 330e-6, 2.9e-6
 STATIC_NODE = 26e-6  # four linearisations
 FRAME, FRAME_NODE = 100e-6, 4e-6
 WRITHE = 1.5e-9
+POINT, PAIR = 1e-7, 5e-9
 PILOTS, VERIFIED = 2, 5
+WORK = 10.0
+"""Seconds that solver.run.plan spends on a tolerance (MOST_WORK)."""
+MOST_HALVED = 2.0**22
+"""How often steps may be halved."""
 COMPONENTS = {output.name: output.components for output in OUTPUTS}
 
 
@@ -46,15 +57,33 @@ def estimate(spec: CaseSpec) -> Cost:
     """The cost of a case, by the model above."""
     numerics = spec.numerics
     nodes, frames = numerics.expected_intervals + 1, spec.frames
-    steps = max(ceil(spec.t_end / (numerics.dt_max or spec.output.interval)), frames - 1)
-    step = STEP + STEP_NODE * nodes
+    points, pairs = contact_points(spec)
+    steps = _steps(spec)
+    step = STEP + STEP_NODE * nodes + POINT * points + PAIR * pairs
     if spec.analysis == "static":
         steps, step = 2 * frames + 10, STATIC_NODE * nodes
     frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
     seconds = steps * step + frames * frame
-    seconds *= (PILOTS if numerics.tolerance else 1) * (VERIFIED if numerics.verify else 1)
+    if numerics.tolerance:
+        seconds *= PILOTS
+        seconds = max(seconds, min(seconds * max(TOLERANCE / numerics.tolerance, 1.0) ** 0.5, WORK + frames * frame))
+    elif numerics.verify:
+        seconds *= VERIFIED
     components = sum(COMPONENTS[name] for name in spec.output.fields) * (2 if numerics.has_errors else 1)
     return Cost(nodes, frames, steps, seconds, 8 * frames * nodes * components)
+
+
+def _steps(spec: CaseSpec) -> int:
+    """The steps of a dynamic analysis."""
+    numerics = spec.numerics
+    corners = {t for _, table in tables_in(spec) if isinstance(table, ScheduleTable) for t in table.t}
+    least = max(spec.frames - 1, sum(0.0 < t < spec.t_end for t in corners))
+    steps = max(spec.t_end / (numerics.dt_max or spec.output.interval), least)
+    if numerics.increment_tolerance:
+        method = METHODS[numerics.method][-1]
+        finer = method.increment_tolerance / numerics.increment_tolerance
+        steps *= min(max(finer, 1.0) ** (1.0 / method.increment_order), MOST_HALVED)
+    return ceil(steps)
 
 
 def check_cost(spec: CaseSpec, most: float) -> Cost:

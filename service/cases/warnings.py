@@ -8,12 +8,12 @@ from math import hypot, pi
 from typing import Any
 
 import numpy as np
-from pydantic import BaseModel
 
 from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
 from service.cases.initial import Straight
 from service.cases.quantities import ScheduleTable
+from service.cases.size import tables_in
 from solver import End, Scene
 
 WIDEST, THICKEST = 3.0, 0.2
@@ -115,14 +115,9 @@ def _frames(spec: CaseSpec) -> Iterator[FieldError]:
 
 def _periods(part: Any, pointer: str) -> Iterator[tuple[float, str]]:
     """The shortest time between two maxima, or two minima, of each schedule below a part; and where it is."""
-    if isinstance(part, ScheduleTable):
-        steps = np.diff(part.value)
-        changing = np.flatnonzero(steps)
-        turns = [part.t[j] for i, j in pairwise(changing) if steps[i] * steps[j] < 0.0]
-        yield from ((late - early, pointer) for early, late in zip(turns, turns[2:], strict=False))
-    elif isinstance(part, BaseModel):
-        for name, inner in part:
-            yield from _periods(inner, f"{pointer}/{name}")
-    elif isinstance(part, tuple):
-        for i, inner in enumerate(part):
-            yield from _periods(inner, f"{pointer}/{i}")
+    for where, table in tables_in(part, pointer):
+        if isinstance(table, ScheduleTable):
+            steps = np.diff(table.value)
+            changing = np.flatnonzero(steps)
+            turns = [table.t[j] for i, j in pairwise(changing) if steps[i] * steps[j] < 0.0]
+            yield from ((late - early, where) for early, late in zip(turns, turns[2:], strict=False))

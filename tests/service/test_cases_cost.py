@@ -60,3 +60,63 @@ def test_a_static_analysis_costs_by_its_frames():
     told = parse_case(apply_settings(load_case("static-elastica"), {"numerics.dt_max": 1e-3}))
     assert estimate(told).steps == 2 * 11 + 10
     assert estimate(told).seconds < 1.0
+
+
+def told_of(case, **settings):
+    return estimate(parse_case(apply_settings(load_case(case), {k.replace("__", "."): v for k, v in settings.items()})))
+
+
+@pytest.mark.parametrize(("method", "usual", "given", "times"), [
+    ("box", 0.1, 1e-5, 100.0), ("box", 0.1, 1.0, 1.0), ("staggered", 0.01, 1e-6, 10.0), ("box", 0.1, 1e-30, 2.0**22),
+])  # fmt: skip
+def test_a_smaller_increment_tolerance_makes_more_steps(method, usual, given, times):
+    at = {"numerics__method": method, "t_end": 1.0, "output__interval": 0.1}
+    before = cost(**at, numerics__increment_tolerance=usual).steps
+    assert cost(**at, numerics__increment_tolerance=given).steps == pytest.approx(times * before, rel=1e-6)
+
+
+def test_a_smaller_tolerance_costs_more_up_to_what_is_spent_on_one():
+    at = [told_of("cantilever-vibration", numerics__tolerance=one).seconds for one in (1e-2, 1e-3, 1e-4, 1e-6)]
+    assert at[0] == at[1] < at[2] < at[3] < 15.0
+    verified = told_of("cantilever-vibration", numerics__tolerance=1e-6, numerics__verify=True)
+    assert verified.seconds == at[3]  # a tolerance has its errors already
+
+
+def test_a_schedule_with_many_points_makes_as_many_steps():
+    times = [i * 1e-3 for i in range(9000)]
+    load = {"s": 0.5, "force": [{"t": times, "value": [0.0] * 9000, "interpolation": "linear"}, 0, 0]}
+    assert cost(t_end=8.0, output__interval=1.0, loads__point=[load]).steps == 7999
+
+
+def test_contact_points_and_pairs_cost():
+    at = [told_of("goyal-2003", contact__spacing=spacing).seconds for spacing in (1e-3, 1e-4, 5e-5)]
+    assert at[0] < at[1] < at[2]
+
+
+@pytest.mark.parametrize(("spacing", "what"), [(1e-7, "contact points"), (1e-5, "pairs of contact points")])
+def test_contact_that_would_not_fit_into_memory_is_refused_by_its_field(spacing, what):
+    with pytest.raises(CaseError) as refused:
+        told_of("goyal-2003", contact__spacing=spacing)
+    [fault] = refused.value.errors
+    assert (fault.pointer, fault.value) == ("/contact/spacing", spacing)
+    assert what in fault.rule and "must leave at most" in fault.rule
+
+
+def test_contact_whose_spacing_follows_from_a_thin_rod_is_bounded_too():
+    case = load_case("goyal-2003") | {"contact": {}}
+    case["rod"] = case["rod"] | {"diameter": 1e-6}
+    with pytest.raises(CaseError, match=r"0\.4 diameters"):
+        parse_case(case)
+
+
+def test_tables_that_would_not_fit_into_memory_are_refused_by_the_longest():
+    many = 10_000
+    table = {"s": [i / many for i in range(many)], "value": [0.0] * many, "interpolation": "linear"}
+    loads = [{"force": [table] * 3} for _ in range(7)]
+    case = load_case("cantilever-vibration")
+    parse_case(apply_settings(case, {"loads.distributed": loads[:6]}))
+    with pytest.raises(CaseError) as refused:
+        parse_case(apply_settings(case, {"loads.distributed": loads}))
+    [fault] = refused.value.errors
+    assert fault.pointer == "/loads/distributed/0/force/0"
+    assert "200,000 points" in fault.rule and "210," in fault.rule

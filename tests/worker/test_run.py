@@ -94,6 +94,41 @@ def test_the_registry_learns_how_far_a_run_has_drifted(registry, settings, case)
     assert 0.0 < energy.total < 1.0  # of a coarse mesh, but no more than there is
 
 
+def test_a_run_that_takes_many_times_its_estimate_ends_by_name_and_keeps_its_frames(
+    job, registry, settings, monkeypatch
+):
+    monkeypatch.setattr(attempt, "LEAST_BUDGET", 0.0)
+    real = simulate
+
+    def begin(scene):
+        simulation = real(scene)
+        advance = simulation.advance
+
+        def slow():
+            frame = advance()
+            if frame is not None and frame.t > 0.025:
+                simulation.statistics.cpu_time += 1000.0
+            return frame
+
+        simulation.advance = slow
+        return simulation
+
+    monkeypatch.setattr(attempt, "simulate", begin)
+    done = ended(job, registry, settings)
+    assert (done.status, done.outcome) == (Status.FAILED, "estimate_exceeded")
+    assert "of computing" in done.message and "dt_max" in done.message
+    with open_dataset(settings.datasets / done.dataset.file) as dataset:
+        assert float(dataset.time[-1]) == pytest.approx(0.03)
+
+
+@pytest.mark.parametrize(("overrun", "outcome"), [(20.0, "completed"), (1e-9, "estimate_exceeded")])
+def test_how_many_times_is_the_operators_to_say(job, registry, settings, monkeypatch, overrun, outcome):
+    assert ended(job, registry, replace(settings, overrun=overrun)).outcome == "completed"  # less than a minute
+    monkeypatch.setattr(attempt, "LEAST_BUDGET", 0.0)
+    again = registry.submit(NewJob(registry.case(job.id)))
+    assert ended(again, registry, replace(settings, overrun=overrun)).outcome == outcome
+
+
 def test_a_message_that_comes_twice_does_nothing(job, registry, settings):
     assert ended(job, registry, settings) == ended(job, registry, settings)
 

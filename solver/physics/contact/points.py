@@ -8,6 +8,7 @@ force on it acts on these nodes with the same weights, whatever the method.
 
 from __future__ import annotations
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +27,8 @@ class Points(NamedTuple):
 
     Fixed: `first` (M,), the first of the four nodes a point hangs on; `weights`, `slopes` (M, 4), their shares in its
     position and in its tangent; `mass` (M,), rho_c A in kg/m, or P in N/m^2 where the law is automatic;
-    `diameter` (M,); `spacing` (m). At the current iterate, lab: `p` position, `t` tangent, `w` velocity, each (M, 3).
+    `diameter` (M,); `spacing` (m); `closing` (m), the way from the last point on to the first, infinite but for a
+    ring. At the current iterate, lab: `p` position, `t` tangent, `w` velocity, each (M, 3).
     `start` and `checked` (M, 3): positions at the start of the step, and at the last search.
     """
 
@@ -41,10 +43,24 @@ class Points(NamedTuple):
     w: Array
     start: Array
     checked: Array
+    closing: float = inf
 
 
-def contact_points(contact: Contact, rod: Rod, s: Array) -> Points:
-    """The points of a rod with evenly spaced nodes `s` (n >= 4,)"""
+@inlined
+def neighbours(points: Points, skip: float) -> int:
+    """How many points on from one the first is that is `skip` (m) of arc away."""
+    return int(np.ceil(skip / points.spacing))
+
+
+@inlined
+def farthest(points: Points, skip: float, a: int) -> int:
+    """The last point that is `skip` (m) of arc away from point a also by the way around a ring."""
+    around = int(np.ceil(max(skip - points.closing, 0.0) / points.spacing))
+    return len(points.p) - 1 - max(around - a, 0)
+
+
+def contact_points(contact: Contact, rod: Rod, s: Array, closing: float = inf) -> Points:
+    """The points of a rod with evenly spaced nodes `s` (n >= 4,); `closing`: see `Points`."""
     count = max(2, round(float(s[-1]) / (contact.spacing or float(s[-1]))) + 1)
     at = np.linspace(0.0, float(s[-1]), count)
     h, last = float(s[1] - s[0]), len(s) - 1
@@ -54,9 +70,9 @@ def contact_points(contact: Contact, rod: Rod, s: Array) -> Points:
     place = ((1 + 2 * x) * (1 - x) ** 2, x * (1 - x) ** 2, x**2 * (3 - 2 * x), x**2 * (x - 1))
     along = (6 * x * (x - 1), (1 - x) * (1 - 3 * x), 6 * x * (1 - x), x * (3 * x - 2))
     weights, slopes = (_shares(interval, first, last, *hermite) for hermite in (place, along))
-    vectors = [np.zeros((count, 3)) for _ in range(5)]
+    p, t, w, start, checked = (np.zeros((count, 3)) for _ in range(5))
     return Points(first, weights, slopes / h, np.asarray(rod.mass(at)), np.asarray(rod.diameter(at)), float(at[1]),
-                  *vectors)  # fmt: skip
+                  p, t, w, start, checked, closing)  # fmt: skip
 
 
 def _shares(interval: Array, first: Array, last: int, start: Array, leave: Array, end: Array, arrive: Array) -> Array:

@@ -16,17 +16,19 @@ factor of 3 moves it by 7 % of D.
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import pi
+from math import inf, pi
 from typing import NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.rotation import rotate
 from solver.physics.contact.automatic import POLE, POWER, REACH
 from solver.physics.elasticity import elasticity_of, principal
 from solver.scene.contact import Contact
 from solver.scene.curve import Curve
 from solver.scene.ends import Component, Condition
+from solver.scene.layout import nodes_at_rest
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 
@@ -40,15 +42,18 @@ SLACK = (0.1, 0.8)
 SMALL_PULL = 4.0
 """In pi^2 EJ / L^2: up to there the turns, not the pull, tell how the strands are wound."""
 SAMPLES = 201
+ALIGNED = 0.9
+"""Cosine of the angle at which the two ends of a ring may meet, at the least."""
 
 
 class Foreseen(NamedTuple):
-    """What the ends do to the rod: the most turns they put in, the largest pull (N), and by what part of its
-    length they give way."""
+    """What the ends do to the rod: the most turns they put in, the largest pull (N), by what part of its length they
+    give way; and, of a ring, the way (m) from its end on to its start, infinite for other rods."""
 
     turns: float = 0.0
     pull: float = 0.0
     slack: float = SLACK[1]
+    closing: float = inf
 
 
 NOTHING = Foreseen()
@@ -86,12 +91,25 @@ def held(rod: Rod, foreseen: Foreseen, at: Array) -> Held:
 
 def foreseen(scene: Scene) -> Foreseen:
     """What the ends of a scene will have done by its end, as far as it can be known before."""
-    if scene.contact is None or not scene.contact.automatic:
-        return Foreseen()
+    if scene.contact is None:
+        return NOTHING
+    if not scene.contact.automatic:
+        return Foreseen(closing=_closing(scene))
     t = np.linspace(0.0, scene.t_end, SAMPLES)
     turns = _turns(scene, t)
     most = SAMPLES - 1 - int(np.argmax(turns[::-1]))  # the last time of all, if they stay
-    return Foreseen(float(turns[most]), _largest_pull(scene, t), float(_slack(scene, t)[most]))
+    return Foreseen(float(turns[most]), _largest_pull(scene, t), float(_slack(scene, t)[most]), _closing(scene))
+
+
+def _closing(scene: Scene) -> float:
+    """The way (m) from the end of a ring on to its start; infinite where the rod does not go on there."""
+    r, orientation, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, SAMPLES))
+    tangents = rotate(orientation[[0, -1]], np.tile([0.0, 0.0, 1.0], (2, 1)))
+    way, D = r[0] - r[-1], float(np.asarray(scene.rod.diameter(np.zeros(1)))[0])
+    along = float(way @ tangents[1])
+    across = float(np.linalg.norm(way - along * tangents[1]))
+    goes_on = tangents[0] @ tangents[1] > ALIGNED and across < 0.5 * D and along > -0.5 * D
+    return max(along, 0.0) if goes_on else inf
 
 
 def _pull(x: Array) -> Array:

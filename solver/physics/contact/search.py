@@ -17,7 +17,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.physics.contact.law import Law
 from solver.physics.contact.members import Members, dismiss, take_in
-from solver.physics.contact.points import Points
+from solver.physics.contact.points import Points, farthest, neighbours
 
 
 class Pairs(NamedTuple):
@@ -66,10 +66,10 @@ def _distance(points: Points, a: int, b: int) -> float:
 def smallest_distance(points: Points, skip: float, enough: float) -> float:
     """The smallest distance (m) of two points more than `skip` of arc apart, or `enough` if none are nearer."""
     M, pitch = len(points.p), longest_spacing(points)
-    apart = int(np.ceil(skip / points.spacing))
+    apart = neighbours(points, skip)
     best = enough
     for a in range(M):
-        b = M - 1  # from the far end, so that a rod that is not folded is passed in one leap
+        b = farthest(points, skip, a)  # from the far end, so that a rod that is not folded is passed in one leap
         while b >= a + apart:
             d = _distance(points, a, b)
             if d < best:
@@ -82,10 +82,10 @@ def smallest_distance(points: Points, skip: float, enough: float) -> float:
 def smallest_gap(points: Points, skip: float) -> float:
     """The smallest distance (m) of the surfaces at two points more than `skip` of arc apart; inf if there are none."""
     M, pitch, widest = len(points.p), longest_spacing(points), np.max(points.diameter)
-    apart = int(np.ceil(skip / points.spacing))
+    apart = neighbours(points, skip)
     best = np.inf
     for a in range(M):
-        b = M - 1
+        b = farthest(points, skip, a)
         while b >= a + apart:
             d = _distance(points, a, b)
             best = min(best, d - 0.5 * (points.diameter[a] + points.diameter[b]))
@@ -109,10 +109,10 @@ def largest_displacement(points: Points, since: Array) -> float:
 def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None:
     """List the pairs nearer than `radius`; counts[1] says how many did not fit."""
     M, pitch = len(points.p), longest_spacing(points)
-    apart = int(np.ceil(skip / points.spacing))
+    apart = neighbours(points, skip)
     found = 0
     for a in range(M):
-        b = M - 1
+        b = farthest(points, skip, a)
         while b >= a + apart:
             d = _distance(points, a, b)
             if d < radius:

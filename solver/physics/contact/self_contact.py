@@ -158,10 +158,10 @@ class SelfContact:
 
 def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen) -> tuple[Points, Law]:
     if not contact.automatic:
-        points = contact_points(contact, rod, s)
+        points = contact_points(contact, rod, s, ends.closing)
         return points, Law.of(contact, points.spacing)
     contact = spaced(contact, rod)
-    points = contact_points(contact, rod, s)
+    points = contact_points(contact, rod, s, ends.closing)
     law = held(rod, ends, np.linspace(0.0, float(s[-1]), len(points.p)))
     return points._replace(mass=law.strength), Law.by_itself(contact, points.spacing, law.relaxation)
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
+from math import inf, pi
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solver import Condition, Contact, Curve, End, Rod
+from solver import Condition, Contact, Curve, End, Initial, Rod
 from solver.arrays import Array
 from solver.physics.contact.automatic import POLE, REACH
 from solver.physics.contact.law import Law, pair_force
@@ -76,6 +76,20 @@ def test_the_ends_tell_the_turns_and_the_slack() -> None:
     pulled = replace(end, translation=(there[0], there[1], (Condition("load", Curve.constant(3.0)),)))
     assert foreseen(replace(scene, end=pulled)).pull == pytest.approx(3.0)
     assert foreseen(replace(scene, contact=None)) == Foreseen()
+
+
+def test_a_ring_goes_on_from_its_end_to_its_start() -> None:
+    scene = looped(Contact(), 0.0)
+    L = scene.rod.length
+
+    def closing(turn: float) -> float:
+        angle = np.linspace(0.0, turn, 201)
+        circle = L / turn * np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+        return foreseen(replace(scene, initial=Initial.through(circle, L))).closing
+
+    assert closing(2 * pi - 0.02) == pytest.approx(0.02 * L / (2 * pi), rel=1e-2)
+    assert closing(2 * pi) == pytest.approx(0.0, abs=1e-5 * L)
+    assert closing(1.5 * pi) == inf
 
 
 @pytest.mark.parametrize("name", ["k1", "aperture", "cutoff"])

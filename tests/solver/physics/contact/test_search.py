@@ -232,3 +232,22 @@ def test_the_largest_displacement_is_since_the_last_look(seed: int, amplitude: f
     assert largest_displacement(points, points.checked) == 0.0
     points.checked[7] += [0.3, 0.0, -0.4]
     assert largest_displacement(points, points.checked) == pytest.approx(0.5)
+
+
+def ring(closing: float) -> Points:
+    """Contact points of a rod of one turn that lacks `closing` (m) of a ring."""
+    radius = (LENGTH + closing) / (2 * pi)
+    points = contact_points(CONTACT, ROD, S, closing)
+    circle = radius * np.column_stack([np.cos(S / radius), np.sin(S / radius), 0.0 * S])
+    place_points(points, circle, np.zeros_like(circle))
+    return points
+
+
+@pytest.mark.parametrize("closing", [0.0, 0.3 * SKIP])
+def test_where_a_ring_meets_itself_its_ends_are_neighbours(closing: float) -> None:
+    points = ring(closing)
+    pairs = found_by(points, 1.5 * SKIP)
+    around = LENGTH + closing - (pairs.second - pairs.first)[: pairs.counts[0]] * points.spacing
+    assert pairs.counts[0] > 0
+    assert around.min() >= SKIP * (1.0 - 1e-9)
+    assert smallest_gap(points, SKIP) > 0.9 * SKIP - float(points.diameter.max())

@@ -28,7 +28,8 @@ SMALL_BEND = 1e-4
 class Accuracy:
     """The estimated errors of a run: of each quantity the largest of all frames, and in how many it is beyond.
 
-    `target`: the tolerance; `frames`: how many there are; `errors` and `beyond` by `QUANTITIES`.
+    `target`: the tolerance; `frames`: how many there are; `errors` and `beyond` by `QUANTITIES`. An error that nothing
+    tells is NaN, and beyond.
     """
 
     target: float
@@ -49,6 +50,8 @@ class Accuracy:
 
     def sentence(self) -> str:
         """What a user is to read."""
+        if np.isnan(self.errors["r"]):
+            return "Nothing tells the errors: only one run came that far."
         errors = ", ".join(f"{_words(name)} {error:.1e}" for name, error in self.errors.items())
         if self.met:
             return f"Estimated errors: {errors}; the tolerance of {self.target:g} is kept."
@@ -77,7 +80,7 @@ def sizes(scene: Scene, pieces: Iterable[Columns]) -> Array:
 
 def errors_of(error: Columns, size: Array) -> Array:
     """The errors of `QUANTITIES` (frames, 4), from those of the outputs, relative to `sizes`."""
-    topology = np.nan_to_num(error.numbers[:, 0, [TWIST, WRITHE]])
+    topology = np.nan_to_num(error.numbers[:, 0, [TWIST, WRITHE]])  # NaN where the output has none
     place = np.linalg.norm(error.along[..., R], axis=-1).max(axis=-1)
     kappa, energies = _rms(error.along[..., KAPPA]), _energies(error).max(axis=-1)
     return np.asarray(np.column_stack([place, kappa, energies, topology.max(axis=-1)]) / size)
@@ -87,16 +90,16 @@ def judge(target: float, errors: Array, names: Sequence[str] = QUANTITIES) -> Ac
     """What the errors (frames, 4) of a run say."""
     return Accuracy(
         target, len(errors), dict(zip(names, map(float, errors.max(axis=0)), strict=True)),
-        dict(zip(names, map(int, (errors > target).sum(axis=0)), strict=True)),
+        dict(zip(names, map(int, (~(errors <= target)).sum(axis=0)), strict=True)),
     )  # fmt: skip
 
 
-def excess(target: float, errors: Array) -> float:
-    """The largest error (frames, 4) that counts, over the target."""
+def excess(target: float, errors: Array) -> Array:
+    """The largest error that counts of each quantity (4,), over the target; `errors`: (frames, 4)."""
     counted = errors.max(axis=0)
     most = np.quantile(errors[:, [1, 3]], WHERE_IT_COUNTS, axis=0)
     counted[[1, 3]] = np.where(counted[[1, 3]] > STANDS_OUT * most, most, counted[[1, 3]])
-    return float(counted.max() / target)
+    return np.asarray(counted / target)
 
 
 def _rms(field: Array) -> Array:

@@ -4,7 +4,9 @@ A resolution is a mesh of FIRST_INTERVALS 2^mesh intervals and steps whose error
 FIRST_STEPS tolerance / 4^steps. The coarsest mesh runs with two kinds of steps, which tells for next to nothing what
 shorter steps would change. Then the mesh is made finer, or the steps shorter, or both at once: both errors fall to a
 quarter then, so that one difference tells them together. It ends when their sum is below the tolerance, when the work
-is done that may be, or when it shows that this work cannot bring it there.
+is done that may be, or when it shows that this work cannot bring it there. This is asked of each quantity that the
+tolerance is for: one that cannot be brought there, as the curvature where a moment jumps, does not keep the others from
+it. Of those that can be, the one with the largest error says what is made finer.
 """
 
 from __future__ import annotations
@@ -37,19 +39,23 @@ SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
 BY_STEPS = 1.5
 """How much more work steps of a quarter of the error are expected to be, before it has shown."""
-CHEAP, HOPELESS = 0.1, 4.0
-"""Parts of MOST_WORK: what an attempt may always take, and what all that the tolerance needs may, for it to go on."""
+CHEAP = 0.1
+"""Part of MOST_WORK that an attempt may always take."""
+HOPELESS = {"kappa": 4.0}
+"""How many times MOST_WORK all that a quantity needs may be, as its error last fell, for it to be refined; the others
+are refined as long as their errors fall."""
 LEAST_FALL = 1.3
 """By how much the error must have fallen last time to be thought to fall again."""
 
 
 class Excess(NamedTuple):
-    """The errors of what there is, over the tolerance, infinite where nothing tells them: by the `mesh` and by the
-    `steps`; and their sum `before` the last attempt."""
+    """The errors of a quantity in what there is, over the tolerance, infinite where nothing tells them: by the `mesh`
+    and by the `steps`; their sum `before` the last attempt; and see HOPELESS."""
 
     mesh: float = inf
     steps: float = inf
     before: float = inf
+    hopeless: float = inf
 
     @property
     def total(self) -> float:
@@ -115,18 +121,21 @@ def _growth(complete: Sequence[Attempt], by: Trial) -> float | None:
     return None
 
 
-def following(history: Sequence[Attempt], excess: Excess, first_mesh: int, most_intervals: int) -> Trial | None:
-    """What to try next; None if what there is must be, or is, enough. Nothing is tried twice."""
+def following(history: Sequence[Attempt], errors: Sequence[Excess], first_mesh: int,
+              most_intervals: int) -> Trial | None:  # fmt: skip
+    """What to try next; None if what there is must be, or is, enough. Nothing is tried twice.
+
+    `errors`: of each quantity."""
     if not history:
         return Trial(first_mesh, 0)
     tried = {(attempt.mesh, attempt.steps) for attempt in history}
-    for trial in _wishes(history, excess, most_intervals):
+    for trial in _wishes(history, errors, most_intervals):
         if trial is None or trial not in tried:
             return trial
     return None
 
 
-def _wishes(history: Sequence[Attempt], excess: Excess, most_intervals: int) -> Iterator[Trial | None]:
+def _wishes(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals: int) -> Iterator[Trial | None]:
     """What might come next, what is wanted most first."""
     complete = [attempt for attempt in history if attempt.complete]
     if not complete:
@@ -139,25 +148,28 @@ def _wishes(history: Sequence[Attempt], excess: Excess, most_intervals: int) -> 
             yield Trial(mesh, steps + 1)
         yield Trial(max(mesh - 1, 0), steps - 1)  # if it can, the last one is to tell all
     if len(meshes) == 1:
-        yield from _second_mesh(history, complete, excess, most_intervals)
+        yield from _second_mesh(history, complete, max(excess.steps for excess in errors), most_intervals)
         return
-    if excess.total <= 1.0:
-        return
-    for trial in _finer(_finest(complete), excess, diagonal=is_diagonal(history)):
-        if history[-1].complete and _may_do(history, excess, trial, most_intervals):
-            yield trial
+    for excess in sorted(errors, key=lambda excess: -excess.total):
+        if excess.total <= 1.0 or not history[-1].complete:
+            return
+        for trial in _finer(_finest(complete), excess, diagonal=is_diagonal(history)):
+            if _may_do(history, excess, trial, most_intervals):
+                yield trial
 
 
 def _finest(complete: Sequence[Attempt]) -> Attempt:
     return max(complete, key=lambda attempt: (attempt.mesh, attempt.steps))
 
 
-def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], excess: Excess,
+def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], by_steps: float,
                  most_intervals: int) -> Iterator[Trial | None]:  # fmt: skip
-    """A finer one, with the longer steps of two if their error is small enough; else a coarser one."""
+    """A finer one, with the longer steps of two if their error is small enough; else a coarser one.
+
+    `by_steps`: the largest error by the steps, over the tolerance."""
     mesh, steps = complete[0].mesh, sorted(attempt.steps for attempt in complete)
     # by two kinds of steps the error of the shorter is told as 2 / 3 of their difference, which is that of the longer
-    longer = len(steps) > 1 and 1.5 * excess.steps <= STEP_SHARE
+    longer = len(steps) > 1 and 1.5 * by_steps <= STEP_SHARE
     wanted = steps[-2] if longer else steps[-1]
     finer = Trial(max(attempt.mesh for attempt in history) + 1, wanted)
     if not longer and len(steps) > 1 and not _is_for(history, finer, most_intervals):
@@ -202,7 +214,7 @@ def _may_do(history: Sequence[Attempt], excess: Excess, trial: Trial, most_inter
     if expected(complete, trial) <= CHEAP * MOST_WORK:
         return True
     fall = excess.before / excess.total
-    return fall >= LEAST_FALL and _work(history) + _all_of(complete, excess, trial) <= HOPELESS * MOST_WORK
+    return fall >= LEAST_FALL and _work(history) + _all_of(complete, excess, trial) <= excess.hopeless * MOST_WORK
 
 
 def _all_of(complete: Sequence[Attempt], excess: Excess, trial: Trial) -> float:
@@ -220,13 +232,13 @@ def _work(history: Sequence[Attempt]) -> float:
     return sum(attempt.work for attempt in history)
 
 
-def to_come(history: Sequence[Attempt], excess: Excess, trial: Trial) -> float:
+def to_come(history: Sequence[Attempt], errors: Sequence[Excess], trial: Trial) -> float:
     """The work that is likely to follow an attempt, for the progress."""
     complete = [attempt for attempt in history if attempt.complete]
     left = max(MOST_WORK - _work(history), 0.0)
     if not complete:
         return MOST_WORK * FIRST_PART
     each = expected(complete, trial)
-    if excess.total == inf:
+    if any(excess.total == inf for excess in errors):
         return min(2.0 * each, left)
-    return min(max(_all_of(complete, excess, trial) - each, 0.0), left)
+    return min(max(max(_all_of(complete, excess, trial) for excess in errors) - each, 0.0), left)

@@ -56,7 +56,8 @@ class Refined(Run):
         self._noticed: list[tuple[float, ...]] = []
         """The remarks of each attempt."""
         self._rows: list[Array] = []
-        self._excess: tuple[float, ...] = tuple(Excess())
+        self._excesses: list[tuple[float, ...]] = [tuple(Excess())] * len(QUANTITIES)
+        """Of each quantity what it is beyond the tolerance."""
         self._mesh, self._steps = first_mesh(scene), 0
         self._work, self._progress, self._decided = 0.0, 0.0, False
         self._detail = ""
@@ -129,8 +130,8 @@ class Refined(Run):
         return [Attempt(*row) for row in self._history]  # type: ignore[arg-type]
 
     @property
-    def _errors(self) -> Excess:
-        return Excess(*self._excess)
+    def _errors(self) -> list[Excess]:
+        return [Excess(*row) for row in self._excesses]
 
     @property
     def _most(self) -> int:
@@ -182,7 +183,7 @@ class Refined(Run):
         if complete:
             done = [attempt.complete for attempt in self._attempts]
             self._recorded = [rows if there else () for rows, there in zip(self._recorded, done, strict=True)]
-            self._excess = tuple(self._together.excess(self._errors))
+            self._excesses = [tuple(each) for each in self._together.excesses(self._errors)]
         then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
         if then is None:
             self._decided, self._errors_of_frames = True, self._together.errors()

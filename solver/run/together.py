@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from solver.arrays import Array
-from solver.run.accuracy import errors_of, excess, sizes
-from solver.run.plan import Excess, intervals_of, step_tolerance
+from solver.run.accuracy import QUANTITIES, errors_of, excess, sizes
+from solver.run.plan import HOPELESS, Excess, intervals_of, step_tolerance
 from solver.run.recording import (
     BALANCE,
     CURVATURE,
@@ -113,21 +113,24 @@ class Together:
         size = self._sizes()
         return np.concatenate([errors_of(self._of_frames(here)[1], size) for here in self._pieces()])
 
-    def excess(self, before: Excess) -> Excess:
-        """The errors of the finest mesh and of its steps, over the tolerance; `before`: those before the last
-        attempt."""
+    def excesses(self, before: Sequence[Excess]) -> list[Excess]:
+        """Of each quantity the errors of the finest mesh and of its steps, over the tolerance; `before`: those before
+        the last attempt."""
         if not self.finest.complete:
-            return Excess()
+            return [Excess()] * len(QUANTITIES)
         size, target = self._sizes(), self._scene.numerics.tolerance or 1.0
         mesh, steps = [], []
         for here in self._pieces():
             mesh.append(errors_of(self._of_mesh(here)[1], size))
             steps.append(errors_of(self._of_steps(here), size))
-        of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else np.inf
-        of_steps = excess(target, np.concatenate(steps)) if self._chosen.series else np.inf
+        unknown = np.full(len(QUANTITIES), np.inf)
+        of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else unknown
+        of_steps = excess(target, np.concatenate(steps)) if self._chosen.series else unknown
         if self._diagonal:
             of_mesh = of_steps = 0.5 * of_mesh
-        return Excess(of_mesh, of_steps, before.total)
+        totals = [each.total for each in before]
+        hopeless = [HOPELESS.get(name, np.inf) for name in QUANTITIES]
+        return [Excess(*map(float, each)) for each in zip(of_mesh, of_steps, totals, hopeless, strict=True)]
 
     @property
     def _many(self) -> int:

@@ -132,7 +132,7 @@ def _error(told: Scene, frames: Sequence[Frame], truth: Sequence[Frame]) -> floa
     strides = [each // min(many) for each in many]
     along = mine.along[:, :: strides[0]] - exact.along[:, :: strides[1]]
     apart = Columns(np.abs(along), np.abs(mine.numbers - exact.numbers))
-    return excess(told.numerics.tolerance or 1.0, errors_of(apart, sizes(told, [exact])))
+    return float(excess(told.numerics.tolerance or 1.0, errors_of(apart, sizes(told, [exact]))).max())
 
 
 def main() -> int:

@@ -51,19 +51,20 @@ def slow(mesh: int, steps: int) -> Attempt:
     ],
 )
 def test_what_follows(history: list[Attempt], excess: Excess, then: Trial | None) -> None:
-    assert following(history, excess, 1 if not history else history[0].mesh, 2000) == then
+    assert following(history, [excess], 1 if not history else history[0].mesh, 2000) == then
 
 
 def test_no_mesh_is_finer_than_may_be() -> None:
-    assert following([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(9.0, 0.1, 90.0), 0, 63) is None
+    assert following([ran(0, 0), ran(0, 1), ran(1, 0)], [Excess(9.0, 0.1, 90.0)], 0, 63) is None
 
 
 @pytest.mark.parametrize(
     ("work", "excess", "then"),
     [
-        (0.25, Excess(9.0, 0.1, 36.0), Trial(2, 0)),
+        (0.25, Excess(9.0, 0.1, 36.0, 4.0), Trial(2, 0)),
         (0.25, Excess(90.0, 0.1, 95.0), None),  # it hardly falls
-        (0.25, Excess(9000.0, 0.1, 36000.0), None),  # it falls, but there is a long way to go
+        (0.25, Excess(9000.0, 0.1, 36000.0, 4.0), None),  # it falls, but there is a long way to go
+        (0.25, Excess(9000.0, 0.1, 36000.0), Trial(2, 0)),  # which may be gone for this quantity
         (0.01, Excess(90.0, 0.1, 95.0), Trial(2, 0)),  # but it costs nearly nothing
     ],
 )
@@ -71,7 +72,14 @@ def test_what_cannot_bring_the_tolerance_is_not_tried_unless_it_is_cheap(
     work: float, excess: Excess, then: Trial | None
 ) -> None:
     history = [ran(0, 0, 0.5 * work * MOST_WORK), ran(0, 1), ran(1, 0, work * MOST_WORK)]
-    assert following(history, excess, 0, 2000) == then
+    assert following(history, [excess], 0, 2000) == then
+
+
+def test_a_quantity_beyond_hope_does_not_keep_others_from_being_refined() -> None:
+    history = [ran(0, 0, 0.1 * MOST_WORK), ran(0, 1), ran(1, 0, 0.25 * MOST_WORK)]
+    curvature, place = Excess(900.0, 0.1, 910.0, 4.0), Excess(5.0, 0.1, 20.0)
+    assert following(history, [place, curvature], 0, 2000) == Trial(2, 0)
+    assert following(history, [Excess(0.5, 0.1, 20.0), curvature], 0, 2000) is None
 
 
 def test_the_work_of_an_attempt_is_expected_to_grow_as_it_did() -> None:
@@ -107,7 +115,7 @@ def test_it_comes_to_an_end_and_tries_nothing_twice(seed: int) -> None:
     rng = np.random.default_rng(seed)
     first, history, excess = int(rng.integers(0, 5)), [], Excess()
     chances = rng.dirichlet([3, 1, 1])
-    while (trial := following(history, excess, first, 1024)) is not None:
+    while (trial := following(history, [excess], first, 1024)) is not None:
         kind, work = rng.choice(3, p=chances), float(10 ** rng.uniform(-3, 0.5)) * MOST_WORK
         history.append(Attempt(*trial, work, float(rng.uniform()), complete=kind == 0, slow=kind == 1))
         here = chosen(history)

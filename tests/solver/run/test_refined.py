@@ -11,6 +11,7 @@ import pytest
 from solver import Condition, Curve, End, Initial, Numerics, Outcome, RunFailed, Scene, VerifiedFrame, simulate
 from solver.run import plan
 from solver.run.accuracy import QUANTITIES, errors_of, sizes
+from solver.run.first_mesh import LARGEST_TURN
 from solver.run.plan import FIRST_INTERVALS
 from solver.run.recording import Columns, columns_of, row_of
 from solver.run.refined import Refined
@@ -119,4 +120,4 @@ def test_the_first_mesh_is_fine_enough_for_a_rod_of_many_turns() -> None:
     turn = Condition("position", Curve.table([0.0, 4.0], [0.0, 20.0 * 2.0 * np.pi], "smoothstep"))
     end = End((FREE, FREE, FREE), (FREE, FREE, (turn,)))
     run = Refined(replace(tolerated(1e-2), end=end, points=()))
-    assert len(run.s) - 1 >= 20.0 * 2.0 * np.pi / 0.6
+    assert len(run.s) - 1 >= 20.0 * 2.0 * np.pi / LARGEST_TURN

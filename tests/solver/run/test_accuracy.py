@@ -1,0 +1,20 @@
+"""What the errors of a run say of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.run.accuracy import judge
+
+
+def test_what_is_beyond_the_tolerance_is_counted_by_quantity() -> None:
+    accuracy = judge(1e-3, np.array([[1e-4, 2e-3, 0.0, 0.0], [1e-5, 3e-3, 0.0, 2e-3]]))
+    assert not accuracy.met
+    assert accuracy.beyond == {"r": 0, "kappa": 2, "energies": 0, "Tw_Wr": 1}
+    assert "beyond the tolerance of 0.001 are, of 2 frames kappa in 2, Tw, Wr in 1." in accuracy.sentence()
+
+
+def test_errors_that_nothing_tells_are_not_within_the_tolerance() -> None:
+    accuracy = judge(1e-3, np.full((3, 4), np.nan))
+    assert not accuracy.met
+    assert accuracy.sentence() == "Nothing tells the errors: only one run came that far."

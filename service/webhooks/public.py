@@ -17,6 +17,7 @@ but for what `_wraps` tells."""
 DOCUMENTATION = ipaddress.ip_network("3fff::/20")
 ISATAP = 0x5EFE
 """The third 16 bits from the right, of an address whose last 32 are an IPv4 address of some site."""
+SPACE, DELETE = 0x20, 0x7F
 PRIVATE_NAMES = ("localhost", "local", "internal", "localdomain", "lan", "home.arpa", "onion")
 
 
@@ -43,6 +44,8 @@ def _wraps(ip: ipaddress.IPv6Address) -> bool:
 def fault_of(url: str) -> str:
     """The rule that an address breaks to which nothing is sent, as far as it can be told without asking for its name;
     else nothing."""
+    if any(ord(letter) <= SPACE or ord(letter) == DELETE for letter in url):
+        return "must have no spaces and no control characters"
     try:
         parts = urlsplit(url)
         host, _ = (parts.hostname or "").rstrip("."), parts.port

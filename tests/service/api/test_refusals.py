@@ -244,3 +244,13 @@ def test_a_database_that_is_away_or_full_is_told_with_when_to_come_back(client, 
     answer = client.get("/v1/jobs")
     assert (answer.status_code, answer.headers["Retry-After"]) == (503, "10")
     assert answer.json()["type"] == "urn:hockle:problem:database_unreachable"
+
+
+@pytest.mark.parametrize("name", ["<", "<name>", "", "/", "~", "\u2028", "a" * 5000])
+def test_a_field_of_any_name_is_refused_by_it(client, case, name):
+    """Found by `make attack`: a field called < was a 500."""
+    for body in (case | {name: 1}, {"case": case, name: 1}, {name: 1}):
+        answer = client.post("/v1/jobs", json=body)
+        assert answer.status_code == 422
+        pointer = "/" + name.replace("~", "~0").replace("/", "~1")
+        assert any(pointer.startswith(error["pointer"].removesuffix("...")) for error in answer.json()["errors"])

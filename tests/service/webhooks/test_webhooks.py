@@ -151,7 +151,7 @@ def test_what_became_of_it_stands_in_the_job(database, ended, clock):
     "http://localhost/", "http://LOCALHOST./", "http://a.localhost/", "http://127.0.0.1/", "http://0x7f.1/",
     "http://2130706433/", "http://[::1]/", "http://[::ffff:0:127.0.0.1]/", "http://[fe80::1%25eth0]/", "http://10.1/",
     "http://printer/", "http://nas.local/", "http://vault.internal:8200/", "http:///", "http://me:secret@x.example/",
-    "http://x.example:99999/", "http://[x/",
+    "http://x.example:99999/", "http://[x/", "http://\0/", "http://x.example/\n", "http://x.example/a b",
 ])  # fmt: skip
 def test_an_address_to_which_nothing_is_sent_is_known_beforehand(url):
     assert fault_of(url)

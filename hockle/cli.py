@@ -10,7 +10,7 @@ from importlib.metadata import version
 
 from hockle.failure import Failure
 
-COMMANDS = ("local", "plots", "film", "serving", "parts", "keys", "store", "remote", "jobs", "sweep", "demo")
+COMMANDS = ("local", "plots", "film", "serving", "parts", "keys", "store", "remote", "jobs", "sweep", "again", "demo")
 
 UNIX_ONLY = ("fcntl", "resource")
 """Modules of Python that Windows lacks."""

@@ -19,9 +19,11 @@ from service.jobs.held import HeldJob
 from service.results import Datasets, DatasetWriter, StoreUnreachable
 from service.results.durable import size_of
 from service.results.scalars import SCALARS, Value, last_values
+from service.results.segments import Segment
 from service.settings import Settings
 from solver import Frame, Run, RunFailed, code_digest, simulate
 from worker import stopping
+from worker.beginnings import Beginnings, begun_with
 from worker.checkpoints import Checkpoint, Checkpoints
 from worker.drift import drift_of
 from worker.endings import LEAST_FREE, Ending, OutOfDisk, is_full
@@ -57,6 +59,11 @@ def _check_budget(run: Run, budget: float) -> None:
         raise RunFailed(Outcome.ESTIMATE_EXCEEDED, run.t, run.statistics.steps, told)
 
 
+def _is_shared(spec: CaseSpec) -> bool:
+    """Whether another run may begin with one of this case."""
+    return spec.analysis == "dynamic" and spec.numerics.tolerance is None
+
+
 class Attempt:
     """Runs a held job. The lease is told of every step, the lock's next holder too, should this one die."""
 
@@ -71,18 +78,15 @@ class Attempt:
         self._redone = 0
         self._due = 0.0
         self._shown = Shown(self._directory)
+        self._kept: Beginnings | None = None
 
     def run(self) -> Ending:
         """Compute the frames and put the dataset together. Raises whatever else ends a run."""
         self._with_room(lambda: self._directory.mkdir(mode=0o700, parents=True, exist_ok=True))
         spec = parse_case(self._held.case)
-        scene = build_scene(spec)
-        simulation = simulate(scene)
-        found = self._checkpoints.newest()
-        if found is not None:
-            simulation.restore(found.state)
-        self._tell_lost(found)
-        segments = found.segments if found else ()
+        simulation, segments = self._start(spec)
+        kept = (code_digest(), spec.frames, self._held.followers())
+        self._kept = Beginnings(self._datasets.states(self._held.job.id), *kept) if _is_shared(spec) else None
         self._with_room(lambda: self._shown.begin(segments, simulation))
         with DatasetWriter(self._path, spec, self._directory, segments) as writer:
             status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED, ""
@@ -96,6 +100,18 @@ class Attempt:
             published = self._with_room(lambda: writer.publish(outcome.value, message, simulation))
         dataset = Dataset(self._path.name, published.sha256, published.bytes, self._datasets.stamp(self._path.name))
         return Ending(status, outcome, message, dataset, self._drift(spec), simulation.attributes(), self._scalars())
+
+    def _start(self, spec: CaseSpec) -> tuple[Run, tuple[Segment, ...]]:
+        """The run, where it goes on or begins, and its frames until then."""
+        found = self._checkpoints.newest()
+        begun = None if found else begun_with(self._held, spec, self._datasets, self._directory, self._path.stem)
+        self._tell_lost(found.steps if found else begun.steps if begun else 0)
+        if begun is not None:
+            return begun.run, begun.segments
+        simulation = simulate(build_scene(spec))
+        if found is not None:
+            simulation.restore(found.state)
+        return simulation, found.segments if found else ()
 
     def publish(self) -> None:
         """Have the dataset lie where all can read it. Raises whatever ends a run."""
@@ -113,6 +129,8 @@ class Attempt:
                 log.info("under way", extra={"t": simulation.t, "steps": simulation.statistics.steps})
             if frame is not None:
                 self._keep(simulation, writer, frame)
+                if self._kept is not None:
+                    self._kept.keep(writer.frames - 1, simulation)
             steps = simulation.statistics.steps
             self._lock.mark(steps)
             self._tell(simulation)
@@ -203,11 +221,11 @@ class Attempt:
             log.exception("job %s: its last values cannot be read from its dataset", self._held.job.id)
             return {}
 
-    def _tell_lost(self, found: Checkpoint | None) -> None:
-        """Tell of the steps that were taken already, but after the checkpoint: they are lost with their worker."""
+    def _tell_lost(self, steps: int) -> None:
+        """Tell of the steps that were taken already, but after those that this attempt begins with: they are lost with
+        their worker."""
         before = self._held.job.reached
-        steps = found.steps if found else 0
-        self._redone = before.steps_redone + max(before.steps, self._lock.left) - steps
+        self._redone = before.steps_redone + max(max(before.steps, self._lock.left) - steps, 0)
         if self._held.job.epoch > 1:
             self._lock.mark(steps)
             self._lease.tell(replace(before, steps=steps, steps_redone=self._redone))

@@ -45,7 +45,7 @@ class Checkpoints:
     def save(self, checkpoint: Checkpoint) -> None:
         """Write a checkpoint, to the disk. Raises OSError where that cannot be done."""
         write_whole(self._directory / f"checkpoint-{checkpoint.steps:012d}.{self._epoch}",
-                    _packed(checkpoint, self._key))
+                    packed(checkpoint, self._key))
         for path in self._files()[KEPT:]:
             if int(path.suffix[1:]) <= self._epoch:  # another attempt's files are its own
                 path.unlink(missing_ok=True)
@@ -54,7 +54,7 @@ class Checkpoints:
         """The farthest checkpoint that is whole, with all of its segments; None to begin anew."""
         for path in self._files():
             try:
-                checkpoint = _unpacked(path.read_bytes(), self._key)
+                checkpoint = unpacked(path.read_bytes(), self._key)
             except (OSError, ValueError) as error:
                 log.warning("%s is passed over: %s", path, error)
                 continue
@@ -68,19 +68,22 @@ class Checkpoints:
         return sorted((path for path in found if path.suffix != ".part"), reverse=True)
 
 
-def _packed(checkpoint: Checkpoint, key: str) -> bytes:
+def packed(checkpoint: Checkpoint, key: str, compressed: bool = False) -> bytes:
+    """A checkpoint as a file holds it."""
     arrays = {name: value for name, value in checkpoint.state.items() if isinstance(value, np.ndarray)}
     numbers = {name: value for name, value in checkpoint.state.items() if name not in arrays}
     head = {"key": key, "steps": checkpoint.steps, "numbers": numbers,
             "segments": [asdict(segment) for segment in checkpoint.segments]}
     content = BytesIO()
     arrays[HEAD] = np.frombuffer(json.dumps(head).encode(), np.uint8)
-    np.savez(content, **arrays)  # type: ignore[arg-type]  # nothing is named allow_pickle
+    write = np.savez_compressed if compressed else np.savez
+    write(content, **arrays)  # type: ignore[arg-type]  # nothing is named allow_pickle
     return hashlib.sha256(content.getbuffer()).digest() + content.getvalue()
 
 
-def _unpacked(packed: bytes, key: str) -> Checkpoint:
-    digest, content = packed[:DIGEST], packed[DIGEST:]
+def unpacked(file_content: bytes, key: str) -> Checkpoint:
+    """The checkpoint in a file. Raises ValueError where it is damaged, or has another key."""
+    digest, content = file_content[:DIGEST], file_content[DIGEST:]
     if hashlib.sha256(content).digest() != digest:
         raise ValueError("it is damaged")
     with np.load(BytesIO(content)) as file:

@@ -67,6 +67,7 @@ class JobState(Document):
     started: datetime | None
     finished: datetime | None
     case_sha256: str
+    begins_with: str | None = None
     attributes: dict[str, float | int | str] = {}
     limits: Limits
     dataset: DatasetInfo | None

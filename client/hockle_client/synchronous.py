@@ -6,6 +6,7 @@ Written by `make client` from asynchronous.py: change that one.
 from __future__ import annotations
 
 import io
+import json
 import os
 import time
 import uuid
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 import httpx
 from typing_extensions import Self
 
-from hockle_client.case import CaseLike, request_of
+from hockle_client.case import CaseLike, plain, request_of
 from hockle_client.design import Method, Parameters, sweep_request
 from hockle_client.documents import Cost, EnsembleState, Event, JobState, Link, Status, Verdict
 from hockle_client.ensembles import Ensemble
@@ -307,6 +308,31 @@ class Job(JobFacts):
         response = self._client._ask(method, f"/v1/jobs/{self.id}/{what}")
         self.state = JobState.model_validate_json(response.content)
         return self
+
+    def again(self, *, set: Mapping[Setting, Any] | Mapping[str, Any] = {}, label: str = "", priority: int = 0,
+              limits: Mapping[str, float] = {}) -> Job:
+        """Hand in its case once more with some values changed, as `t_end` to go on beyond its end.
+
+        The new job begins where this one had come when something begins to differ, which gives the same bits. Raises
+        Problem.
+        """
+        return self._again({"set": dict(set)}, label=label, priority=priority, limits=dict(limits))
+
+    def fork(self, at: float, *, start: Mapping[str, Any] = {}, end: Mapping[str, Any] = {},
+             set: Mapping[Setting, Any] | Mapping[str, Any] = {}, label: str = "", priority: int = 0,
+             limits: Mapping[str, float] = {}) -> Job:
+        """The same with its ends moved otherwise from the time `at` (s) on: job.fork(10.0, end={"omega3": 0.0}).
+
+        Raises Problem.
+        """
+        told = {"set": dict(set), "fork": {"at": at, "start": dict(start), "end": dict(end)}}
+        return self._again(told, label=label, priority=priority, limits=dict(limits))
+
+    def _again(self, told: dict[str, Any], **more: Any) -> Job:
+        headers = {"Idempotency-Key": str(uuid.uuid4())}
+        body = json.dumps({"job": self.id, **told, **more}, default=plain, allow_nan=False).encode()
+        response = self._client._ask("POST", "/v1/jobs", body=body, headers=headers)
+        return Job(self._client, JobState.model_validate_json(response.content))
 
     def case(self) -> dict[str, Any]:
         """The case with every default filled in, as it is run. Raises Problem."""

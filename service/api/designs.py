@@ -22,6 +22,8 @@ NAME = r"^[A-Za-z][A-Za-z0-9_.-]{0,99}$"
 TAKEN = frozenset({"member", "time", "s", "id", "job", "label", "status", "outcome", "t", *LABELS,
                    *(variable.name for variable in (*VARIABLES, *ERRORS.values()))})
 """What else stands beside the parameters in a table or a dataset."""
+LATE = ("t_end", "ends", "loads.point", "loads.distributed", "output.fields")
+"""Where a case holds what comes later."""
 Number = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -193,6 +195,11 @@ class EnsembleRequest(BaseModel):
             ranges = [one.range for one in self.parameters.values()]
             return sample(self.sample.method, ranges, self.sample.size, self.sample.seed)
         return grid([one.values or [] for one in self.parameters.values()])
+
+    @property
+    def differs_late(self) -> bool:
+        """Whether some members may begin as others do."""
+        return any(path.startswith(LATE) for path in self.paths)
 
     def specs(self, values: list[Values]) -> Iterator[CaseSpec]:
         """The case of each member. Raises CaseError, which names the first member that cannot be run."""

@@ -63,6 +63,7 @@ class JobDocument(BaseModel):
     started: datetime | None
     finished: datetime | None
     case_sha256: str
+    begins_with: str | None
     attributes: dict[str, float | int | str]
     limits: LimitsDocument
     dataset: DatasetDocument | None
@@ -91,7 +92,7 @@ def document(job: Job) -> JobDocument:
         phase=job.phase, progress=job.progress, remaining=job.remaining, t=job.t, outcome=job.outcome,
         message=job.message, cancel_requested=job.cancel_requested, pinned=job.pinned, attempts=job.attempts,
         created=_instant(job.created), started=job.started and _instant(job.started),
-        finished=job.finished and _instant(job.finished), case_sha256=job.case_sha256,
+        finished=job.finished and _instant(job.finished), case_sha256=job.case_sha256, begins_with=job.begins_with,
         attributes=job.attributes, limits=LimitsDocument(**vars(job.limits)), dataset=dataset,
         webhook=_webhook(job), links=links,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
@@ -20,6 +21,7 @@ from service.api.parts import InParts, Parts, Reader, Submitter
 from service.api.problems import Problem
 from service.api.submitting import IdempotencyKey
 from service.cases import check_cost
+from service.cases.beginning import shared_beginnings
 from service.jobs import Job, NewJob, Status, new_id
 from service.jobs.ensembles import Ensemble, Ensembles, Member, NewEnsemble, Standing, UnknownEnsemble
 
@@ -136,12 +138,16 @@ def submit_ensemble(parts: InParts, caller: Submitter, body: Annotated[dict[str,
 def requested(asked: EnsembleRequest, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> NewEnsemble:
     """What is asked for, understood. Raises CaseError for a member's case or cost, or for the limits."""
     limits, values = asked.limits.within(parts.settings.limits), asked.values()
-    jobs = []
+    jobs, specs = [], list(asked.specs(values))
     ids = sorted(new_id() for _ in values)  # the first member goes first
-    for job_id, spec in zip(ids, asked.specs(values), strict=True):
+    beginnings = shared_beginnings(specs) if asked.differs_late else [None] * len(specs)
+    for job_id, spec, begins in zip(ids, specs, beginnings, strict=True):
         check_cost(spec, parts.settings.longest_run)
         title = spec.title or spec.name
-        jobs.append(NewJob(spec.document(), title, caller.owner, asked.label, asked.priority, limits, job_id))
+        job = NewJob(spec.document(), title, caller.owner, asked.label, asked.priority, limits, job_id)
+        if begins is not None:
+            job = replace(job, begins_with=ids[begins.leader], begins_at=begins.frame, waits=True)
+        jobs.append(job)
     digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest()
     return NewEnsemble(asked.design, values, jobs, caller.actor, asked.title or jobs[0].title, asked.label, key, digest,
                        asked.reuse)  # fmt: skip

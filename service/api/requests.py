@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 from fastapi import Depends
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, ValidationError, WithJsonSchema
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    WithJsonSchema,
+    model_validator,
+)
 
 from service.api.bodies import json_object
 from service.cases import CaseError, CaseSpec, FieldError, apply_settings, load_case, parse_case, shipped_cases
+from service.cases.errors import refusal
 from service.cases.suggestions import suggested
 from service.jobs import Limits
 from service.jobs.job import LEAST_MEMORY
@@ -50,11 +61,47 @@ class LimitsRequest(BaseModel):
         return replace(most, **asked)
 
 
-class JobRequest(BaseModel):
-    """A case with what belongs to its job, not to its physics."""
+class ForkRequest(BaseModel):
+    """Other conditions of a job's ends from a time on: a switch in place of all that would come later."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
-    case: Annotated[CaseOrName, means("a whole case, or the name of a shipped one")]
+    at: Annotated[Annotated[float, Field(gt=0, allow_inf_nan=False)], means("the time", "s")]
+    start: Annotated[dict[str, Any], means("conditions at s = 0, as `omega3`, as a switch has them")] = {}
+    end: Annotated[dict[str, Any], means("conditions at s = L")] = {}
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if not (self.start or self.end):
+            raise refusal("end", None, "is required, or start: what is otherwise from then on")
+        return self
+
+    def applied(self, case: Mapping[str, Any]) -> dict[str, Any]:
+        """A case with these."""
+        ends = {name: _switched(told, self.at, getattr(self, name)) for name, told in case["ends"].items()}
+        return {**case, "ends": ends}
+
+
+def _switched(end: Any, at: float, conditions: Mapping[str, Any]) -> Any:
+    if not conditions:
+        return end
+    before: dict[str, Any] = {"preset": end} if isinstance(end, str) else end
+    kept = [switch for switch in before.get("switches", ()) if switch["at"] < at]
+    return {**before, "switches": [*kept, {"at": at, **conditions}]}
+
+
+class JobRequest(BaseModel):
+    """A case, or another job's case, with what belongs to its job, not to its physics."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+    case: Annotated[CaseOrName | None, means("a whole case, or the name of a shipped one")] = None
+    job: Annotated[
+        Annotated[str, Field(pattern="^[0-9a-z]{26}$")] | None,
+        means("instead of `case`: a job of yours, whose case it is. Until something differs the two are one run, and "
+              "the new one begins where the other had come by then"),
+    ] = None  # fmt: skip
+    fork: Annotated[
+        ForkRequest | None, means("with `job`: a time from which on its ends are moved otherwise")
+    ] = None
     set: Annotated[dict[str, Any], means("values to change in it, by dotted key")] = {}
     label: Annotated[
         str, Field(max_length=100, pattern=NO_CONTROL), means("a word of yours to find the job by")
@@ -94,6 +141,8 @@ def wanted(body: Annotated[dict[str, Any], Depends(json_object)]) -> Wanted:
         request = JobRequest.model_validate(body)
     except ValidationError as error:
         raise suggested(CaseError.of(error), JobRequest) from None
+    if request.case is None or request.job is not None or request.fork is not None:
+        raise CaseError([FieldError("/case", None, "is required, and neither job nor fork beside it")])
     if isinstance(request.case, str):
         if request.case not in SHIPPED:  # a name only: never a path
             raise CaseError([FieldError("/case", request.case, f"must be one of {', '.join(SHIPPED)}")])

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Depends, Header, Request, Response
 
 from service.access import Caller
+from service.api.again import Again
 from service.api.bodies import at_leisure, json_object
 from service.api.description import CASE_BODY, problems
 from service.api.documents import JobDocument, answer
@@ -59,7 +60,8 @@ async def submit(
 def requested(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
     """What the registry is asked for by a body. Raises CaseError for its case, cost or limits, Problem for its
     webhook."""
-    understood = wanted(body)
+    other = Again.of(body, parts.registry.of(caller.sees)) if "job" in body else None
+    understood = wanted(other.body if other else body)
     spec, request = understood.spec, understood.request
     check_cost(spec, parts.settings.longest_run)
     if request.webhook is not None and not caller.key:
@@ -67,7 +69,8 @@ def requested(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> S
     if request.webhook is not None and (rule := fault_of(request.webhook)):
         raise CaseError([FieldError("/webhook", request.webhook, rule)])
     limits = request.limits.within(parts.settings.limits)
-    new = NewJob(spec.document(), spec.title or spec.name, caller.owner, request.label, request.priority, limits)
+    new = NewJob(spec.document(), spec.title or spec.name, caller.owner, request.label, request.priority, limits,
+                 **(other.beginning(spec) if other else {}))
     digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest() if key else ""
     return Submission(new, caller.actor, key, digest, request.reuse, request.webhook or "")
 

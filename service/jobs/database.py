@@ -66,6 +66,8 @@ class Transaction:
         for owner in sorted(many):  # in one order: rows are locked in it
             now = {"unfinished": owners.c.unfinished - many[owner], "bytes": owners.c.bytes + size[owner]}
             self.connection.execute(update(owners).where(owners.c.name == owner).values(**now))
+        followers = jobs.c.begins_with.in_([row.id for row in ended]), jobs.c.waits
+        self.connection.execute(update(jobs).where(*followers).values(waits=False))
 
     def note(self, job_id: str, version: int, kind: str, data: Mapping[str, Any]) -> None:
         """Write an event of a job, told by its version."""

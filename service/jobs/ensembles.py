@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, func, insert, select, true
+from sqlalchemy import ColumnElement, Select, func, insert, select, true, update
 from sqlalchemy.exc import IntegrityError
 
 from outcomes import Outcome
@@ -192,7 +192,9 @@ class Ensembles:
             known = _known(transaction, new)
             if known is not None:
                 return known
-            wanted = {job.case_sha256: Submission(job, new.actor, reuse=new.reuse) for job in new.jobs}
+            wanted: dict[str, Submission] = {}
+            for job in new.jobs:
+                wanted.setdefault(job.case_sha256, Submission(job, new.actor, reuse=new.reuse))
             results = submit_all(transaction, list(wanted.values()), terms)
             ids: dict[str, str] = {}
             for case_sha256, result in zip(wanted, results, strict=True):
@@ -200,6 +202,7 @@ class Ensembles:
                     raise result
                 ids[case_sha256] = result.id
             _write(transaction, new, [ids[job.case_sha256] for job in new.jobs])
+            _follow(transaction, {job.id: ids[job.case_sha256] for job in new.jobs})
         return new.id
 
     @property
@@ -229,6 +232,18 @@ def _write(transaction: Transaction, new: NewEnsemble, job_ids: Sequence[str]) -
         for number, (job_id, values) in enumerate(zip(job_ids, new.values, strict=True))
     ])  # fmt: skip
     note(transaction, new.actor, "ensemble_submitted", new.id)
+
+
+def _follow(transaction: Transaction, accepted: Mapping[str, str]) -> None:
+    """Have those that begin with a job which was not accepted, as another one is as good, begin with that; none waits
+    for what has ended, or for itself."""
+    for asked, given in accepted.items():
+        if asked != given:
+            followers = update(jobs).where(jobs.c.begins_with == asked)
+            ended = select(jobs.c.id).where(jobs.c.id == given, jobs.c.status.in_(ENDED)).exists()
+            transaction.connection.execute(followers.values(begins_with=given, waits=~ended))
+    itself = update(jobs).where(jobs.c.begins_with == jobs.c.id, jobs.c.waits)
+    transaction.connection.execute(itself.values(begins_with=None, waits=False))
 
 
 def _members() -> Any:

@@ -122,11 +122,17 @@ class HeldJob:
                 fruitless=case((jobs.c.fruitless > 0, jobs.c.fruitless - 1), else_=0), worker="",
             )  # fmt: skip
 
+    def followers(self) -> list[int]:
+        """The frames from which other jobs will begin."""
+        query = select(jobs.c.begins_at).distinct().where(jobs.c.begins_with == self.job.id, jobs.c.waits)
+        with self.database.reading() as connection:
+            return list(connection.scalars(query))
+
     @property
     def _mine(self) -> tuple[ColumnElement[bool], ...]:
         return jobs.c.id == self.job.id, jobs.c.epoch == self.job.epoch, jobs.c.status == Status.RUNNING
 
 
 def _waiting(besides: Collection[str] = ()) -> tuple[ColumnElement[bool], ...]:
-    free = (jobs.c.status == Status.ACCEPTED, ~jobs.c.cancel_requested)
+    free = (jobs.c.status == Status.ACCEPTED, ~jobs.c.cancel_requested, ~jobs.c.waits)
     return (*free, jobs.c.id.not_in(besides)) if besides else free

@@ -80,7 +80,8 @@ class Limits:
 class NewJob:
     """A case that somebody wants run. `title` is what lists show, `label` what its owner sorts by.
 
-    Among the jobs of one owner the higher `priority` goes first; it takes nothing from other owners.
+    Among the jobs of one owner the higher `priority` goes first; it takes nothing from other owners. `begins_with`: a
+    job whose run is also that of this one, up to its frame `begins_at`; `waits`: for its end.
     """
 
     case: dict[str, Any]
@@ -90,6 +91,9 @@ class NewJob:
     priority: int = 0
     limits: Limits = Limits()
     id: str = field(default_factory=lambda: new_id())
+    begins_with: str | None = None
+    begins_at: int = 0
+    waits: bool = False
 
     @cached_property
     def case_json(self) -> str:
@@ -123,6 +127,7 @@ class Job:
     lost job is taken back: a writer that holds an older one has lost the job. `attempts` counts the
     claims, but for those handed back; `fruitless` those since the last new checkpoint. `attributes`: what its run
     says of itself as a whole, by the names that its dataset has for it. A `pinned` job is deleted by nobody.
+    `begins_with`: the job whose run is also that of this one, up to its frame `begins_at`.
     """
 
     id: str
@@ -152,6 +157,8 @@ class Job:
     dataset: Dataset | None
     attributes: dict[str, float | int | str]
     webhook: Webhook | None = None
+    begins_with: str | None = None
+    begins_at: int = 0
 
     @property
     def progress(self) -> float:

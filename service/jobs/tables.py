@@ -66,6 +66,9 @@ jobs = Table(
     Column("dataset_bytes", BigInteger),
     Column("attributes", Text, nullable=False, default="{}"),
     Column("scalars", Text),  # last values as JSON; none where only the dataset tells them
+    Column("begins_with", String(26)),  # the job from whose state, at the frame `begins_at`, this one may begin
+    Column("begins_at", Integer, nullable=False, default=0),
+    Column("waits", Boolean, nullable=False, default=False),  # for the end of that job
     Column("drift_method", String(16)),
     Column("drift_topology", Double),
     Column("drift_energy", Double),
@@ -77,6 +80,7 @@ jobs = Table(
     Index("jobs_by_status", "status", "id"),
     Index("jobs_by_owner", "owner", "id"),
     Index("jobs_by_case", "case_sha256", "status"),
+    Index("jobs_by_beginning", "begins_with"),
     Index("jobs_in_turn", "status", "owner", "priority", "id"),
     Index("jobs_by_end", "deleted", "finished"),
     Index("jobs_by_bytes", "owner", "dataset_bytes"),
@@ -209,7 +213,7 @@ processes = Table(
 
 DATASET = tuple(field.name for field in dataclasses.fields(Dataset))
 REACHED = tuple(field.name for field in dataclasses.fields(Reached))
-NOT_OF_THE_JOB = ("case_json", "scalars", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
+NOT_OF_THE_JOB = ("case_json", "scalars", "waits", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
 JOB_COLUMNS = [column for column in jobs.columns if column.name not in NOT_OF_THE_JOB]
 FRESH = {column.name: column.default.arg if isinstance(column.default, ColumnDefault) else None
          for column in JOB_COLUMNS}  # fmt: skip

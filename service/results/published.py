@@ -36,6 +36,10 @@ class Datasets:
         """Where a dataset is put together: where it stays, or in the directory of its job's work."""
         return (self._directory if self._bucket is None else work) / name
 
+    def states(self, name: str) -> Path:
+        """The directory of the states that are kept of the run whose dataset, or job, has this name."""
+        return self._directory.parent / "beginnings" / name.partition(".")[0]
+
     def publish(self, path: Path) -> None:
         """Have what was put together lie where all can read it. Raises StoreUnreachable."""
         if self._bucket is not None:

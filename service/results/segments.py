@@ -37,6 +37,15 @@ class Segment:
         return path.is_file() and sha256_of(path) == self.sha256
 
 
+def write_segment(directory: Path, first: int, tag: str, block: Block) -> Segment:
+    """Write frames, of which the first has that number. Raises OSError."""
+    content = BytesIO()
+    np.savez(content, **block)  # type: ignore[arg-type]  # no variable is named allow_pickle
+    name = f"segment-{first:08d}.{tag}.npz"
+    write_whole(directory / name, content.getbuffer())
+    return Segment(name, len(block["time"]), hashlib.sha256(content.getbuffer()).hexdigest())
+
+
 class Segments:
     """The frames so far, in `directory`. A run that goes on has `written` segments already.
 
@@ -61,11 +70,8 @@ class Segments:
         """Write the waiting frames into a segment of their own."""
         if not self._waiting:
             return
-        content = BytesIO()
-        np.savez(content, **self._block())  # type: ignore[arg-type]  # no variable is named allow_pickle
-        name = f"segment-{self.frames - len(self._waiting):08d}.{self._tag}.npz"
-        write_whole(self._directory / name, content.getbuffer())
-        self.written.append(Segment(name, len(self._waiting), hashlib.sha256(content.getbuffer()).hexdigest()))
+        first = self.frames - len(self._waiting)
+        self.written.append(write_segment(self._directory, first, self._tag, self._block()))
         self._waiting.clear()
 
     def blocks(self) -> Iterator[Block]:

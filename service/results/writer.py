@@ -63,6 +63,11 @@ class DatasetWriter:
         """Take one frame. Raises OSError where those so far cannot be written; `flush` tries that again."""
         self._segments.append(frame)
 
+    @property
+    def frames(self) -> int:
+        """How many it has."""
+        return self._segments.frames
+
     def flush(self) -> list[Segment]:
         """Bring all frames so far to the disk, and tell where they are. Raises OSError."""
         self._segments.flush()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import shutil
 
 from service.jobs import Database
 from service.jobs.deletion import pending_removals, removed
@@ -25,6 +26,7 @@ def remove_files(database: Database, datasets: Datasets) -> None:
 def _remove(datasets: Datasets, file: str) -> bool:
     try:
         datasets.discard(file)
+        shutil.rmtree(datasets.states(file), ignore_errors=True)
     except OSError as error:
         log.warning("%s cannot be removed now: %s", file, error)
         return False

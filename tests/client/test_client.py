@@ -177,3 +177,12 @@ def test_a_link_is_read_by_xarray_where_it_is(client, done):
     assert done.links()[0].revoked is not None
     with pytest.raises(OSError):
         xr.open_dataset(f"{link.url}#mode=bytes")
+
+
+def test_a_job_goes_on_beyond_its_end_and_is_forked(client, quick):
+    job = client.submit(quick.set("numerics.method", "staggered")).wait()
+    longer, fork = job.again(set={"t_end": 0.5}, label="longer"), job.fork(0.25, end={"omega3": 0.0})
+    assert longer.wait().case()["t_end"] == 0.5 and longer.label == "longer"
+    assert fork.wait().case()["ends"]["end"]["switches"][-1] == {"at": 0.25, "omega3": 0.0}
+    assert (longer.status, fork.status) == ("successful", "successful")
+    assert longer.values("Tw")["variables"]["Tw"]["values"][:3] == job.values("Tw")["variables"]["Tw"]["values"][:3]

@@ -143,3 +143,16 @@ def test_a_sweep_is_handed_in_and_its_numbers_come_as_csv(case_file, tmp_path, c
                                               ("loads.damping=0:x", "LOW:HIGH"), ("loads.damping=-1", "member 0")])
 def test_a_sweep_that_cannot_be_run_is_told_so(case_file, capsys, varied, told):
     assert told in refusal(capsys, "sweep", case_file, varied)
+
+
+def test_a_job_is_run_again_with_a_change(case_file, capsys):
+    assert main(["submit", case_file, "--set", "t_end=0.3", "--wait"]) == 0
+    job_id = capsys.readouterr().out.split()[0]
+    assert main(["again", job_id, "--set", "t_end=0.4", "--label", "longer", "--wait"]) == 0
+    other = capsys.readouterr().out.split()[0]
+    assert main(["status", other, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["t"], told["label"]) == (pytest.approx(0.4), "longer")
+    assert main(["again", job_id, "--at", "0.15", "--end", "omega3=0"]) == 0
+    assert capsys.readouterr().out.strip() not in (job_id, other)
+    assert "is required" in refusal(capsys, "again", job_id, "--at", "0.15")

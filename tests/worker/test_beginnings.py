@@ -1,0 +1,154 @@
+"""A job that begins with the run of another one gives what it gives alone, to the bit."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+import pytest
+
+from service.cases import apply_settings, load_case, parse_case
+from service.cases.beginning import common_frame
+from service.jobs import Database, NewJob, Registry, Status
+from service.results.durable import discard
+from service.settings import Settings
+from worker.run import run_next
+
+SHORT = {"t_end": 1.0, "output.interval": 0.1, "numerics.intervals": 12, "numerics.method": "staggered"}
+BOX = {"numerics.method": "box"}
+TABLE = {"t": [0.0, 0.45, 0.6], "value": [0.0, 1.0, 3.0], "interpolation": "linear"}
+OTHER = {"t": [0.0, 0.45, 0.7], "value": [0.0, 1.0, -2.0], "interpolation": "linear"}
+LOAD = {"loads.point": [{"s": 0.5, "force": [TABLE, 0.0, 0.0]}]}
+END = {"preset": "free", "switches": [{"at": 0.55, "omega3": 1.0}]}
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    settings = Settings(data=tmp_path)
+    settings.make_directories()
+    return settings
+
+
+@pytest.fixture
+def database(settings: Settings):
+    database = Database(settings.database_url)
+    yield database
+    database.close()
+
+
+def case(name: str = "cantilever-vibration", **told: Any) -> dict[str, Any]:
+    return parse_case(apply_settings(load_case(name), {**SHORT, **told})).document()
+
+
+def variables(settings: Settings, job) -> dict[str, np.ndarray]:
+    with netCDF4.Dataset(settings.datasets / job.dataset.file) as file:
+        file.set_auto_mask(False)
+        attributes = {name: file.getncattr(name) for name in ("steps", "newton_iterations", "failed_steps", "case")}
+        return {name: file[name][:] for name in file.variables} | attributes
+
+
+@pytest.mark.parametrize(("first", "then", "frame"), [
+    ({}, {"t_end": 1.5}, 9), ({"t_end": 1.5}, {}, 9), ({"t_end": 0.97}, {"t_end": 1.3}, 9),
+    (LOAD, {"loads.point": [{"s": 0.5, "force": [OTHER, 0.0, 0.0]}]}, 4),
+    ({**LOAD, **BOX}, {**BOX, "loads.point": [{"s": 0.5, "force": [OTHER, 0.0, 0.0]}]}, 4),
+    ({"ends.end": END}, {"ends.end": {"preset": "free", "switches": [{"at": 0.55, "omega3": -1.0}]}}, 5),
+    ({"ends.end": END}, {"ends.end": {"preset": "free", "switches": [{"at": 0.8, "omega3": -1.0}]}}, 5),
+    ({"ends.end": END, **BOX}, {"ends.end": {"preset": "free"}, **BOX}, 5),
+    ({"numerics.verify": True}, {"numerics.verify": True, "t_end": 1.4}, 9),
+    ({}, {"output.fields": ["r", "kappa"], "t_end": 1.2}, 9),
+])  # fmt: skip
+def test_it_is_the_same_as_alone(database, settings, first, then, frame):
+    registry = Registry(database)
+    first, then = case(**first), case(**then)
+    assert common_frame(parse_case(first), parse_case(then)) == frame
+    leader = registry.submit(NewJob(first))
+    run_next(database, settings)
+    follower = registry.submit(NewJob(then, begins_with=leader.id, begins_at=frame))
+    alone = registry.submit(NewJob(then))
+    begun = []
+    with pytest.MonkeyPatch.context() as patch:
+        from worker import attempt
+
+        begin = attempt.begun_with
+
+        def watched(*told):
+            begun.append(begin(*told))
+            return begun[-1]
+
+        patch.setattr(attempt, "begun_with", watched)
+        run_next(database, settings)
+        run_next(database, settings)
+    assert begun[0] is not None and begun[0].steps > 0 and begun[1] is None
+    assert sum(segment.frames for segment in begun[0].segments) <= frame + 1
+    shared, own = (variables(settings, registry.get(job.id)) for job in (follower, alone))
+    assert shared.keys() == own.keys() and "Tw" in own
+    for name, values in own.items():
+        same = np.array_equal(shared[name], values, equal_nan=values.dtype.kind == "f") if isinstance(
+            values, np.ndarray) else shared[name] == values  # fmt: skip
+        assert same, name
+
+
+@pytest.mark.parametrize(("first", "then"), [
+    ({}, {"loads.damping": 0.5}), ({}, {"numerics.intervals": 14}), ({}, {"output.interval": 0.2}),
+    ({"output.fields": ["r"]}, {"t_end": 2.0}), ({}, {"output.topology": False}), ({}, {"rod.density": 1400.0}),
+    ({}, {"analysis": "static"}), ({"contact": {}}, {"contact": {}, "t_end": 2.0}), ({}, {"t_end": 0.1}),
+    ({"loads.point": [{"s": 0.5, "force": [{**TABLE, "interpolation": "pchip"}, 0.0, 0.0]}]},
+     {"loads.point": [{"s": 0.5, "force": [{**OTHER, "interpolation": "pchip"}, 0.0, 0.0]}]}),
+])  # fmt: skip
+def test_what_differs_from_the_start_has_no_beginning_in_common(first, then):
+    assert common_frame(parse_case(case(**first)), parse_case(case(**then))) == 0
+
+
+@pytest.mark.parametrize(("first", "then", "why"), [
+    (BOX, {**BOX, "t_end": 1.5}, "_gain"),  # it takes its stretch back so many times until t_end
+    ({"ends.end": "free"}, {"ends.end": END}, "is another one"),  # what turns about one axis has its own method
+])  # fmt: skip
+def test_where_the_run_depends_on_what_comes_it_begins_by_itself(database, settings, caplog, first, then, why):
+    registry = Registry(database)
+    leader = registry.submit(NewJob(case(**first)))
+    run_next(database, settings)
+    follower = registry.submit(NewJob(case(**then), begins_with=leader.id, begins_at=9))
+    run_next(database, settings)
+    assert registry.get(follower.id).status is Status.SUCCESSFUL
+    assert f"does not begin with {leader.id}" in caplog.text and why in caplog.text
+
+
+@pytest.mark.parametrize("harm", ["state", "dataset", "deleted"])
+def test_whatever_is_not_there_any_more_it_is_run_all_the_same(database, settings, harm):
+    registry = Registry(database)
+    leader = registry.submit(NewJob(case()))
+    run_next(database, settings)
+    states = sorted((settings.data / "beginnings" / leader.id).iterdir())
+    assert [int(path.name) for path in states] == [2, 5, 7, 9]
+    if harm == "state":
+        for path in states:
+            path.write_bytes(b"x" * 100)
+    elif harm == "dataset":
+        discard(settings.datasets / registry.get(leader.id).dataset.file)
+    else:
+        from service.jobs.audit import Actor
+
+        registry.delete(leader.id, Actor("local"))
+    follower = registry.submit(NewJob(case(t_end=1.5), begins_with=leader.id, begins_at=9))
+    run_next(database, settings)
+    assert registry.get(follower.id).status is Status.SUCCESSFUL
+
+
+@pytest.mark.parametrize("end", ["run", "cancel"])
+def test_who_waits_for_another_is_run_once_that_has_ended(database, settings, end):
+    registry = Registry(database)
+    leader = registry.submit(NewJob(case()))
+    follower = registry.submit(NewJob(case(t_end=1.3), begins_with=leader.id, begins_at=3, waits=True, priority=9))
+    if end == "cancel":
+        registry.cancel(leader.id)
+    else:
+        run_next(database, settings)
+        assert registry.get(leader.id).status is Status.SUCCESSFUL
+        kept = {int(path.name) for path in (settings.data / "beginnings" / leader.id).iterdir()}
+        assert 3 in kept
+    run_next(database, settings)
+    assert registry.get(follower.id).status is Status.SUCCESSFUL
+    assert json.loads(json.dumps(registry.case(follower.id)))["t_end"] == 1.3

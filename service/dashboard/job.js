@@ -103,7 +103,7 @@ export class JobPage {
   /** @param {Job} job */
   more(job) {
     const shared = job.dataset ? [button("Share link", () => this.share(job))] : [];
-    return [button("Case file", () => save(`${this.address}/case`, `${job.id}.json`)), ...shared,
+    return [button("Rerun with changes", () => location.assign(`#/new?from=${job.id}`)), button("Case file", () => save(`${this.address}/case`, `${job.id}.json`)), ...shared,
       button("Copy address", () => navigator.clipboard.writeText(location.href))];
   }
 

@@ -4,6 +4,7 @@ import { Refusal, setKey } from "./api.js";
 import { ComparePage } from "./compare.js";
 import { JobPage } from "./job.js";
 import { JobsTable } from "./jobs.js";
+import { NewPage } from "./new.js";
 import { byId, notice } from "./page.js";
 
 const EVERY = 2500; // ms
@@ -14,6 +15,7 @@ const EVERY = 2500; // ms
 const PAGES = [
   [/^\/jobs\/([0-9a-z]+)$/, (id) => new JobPage(id)],
   [/^\/compare$/, (_, chosen) => new ComparePage(chosen)],
+  [/^\/new$/, (_, chosen) => new NewPage(chosen)],
 ];
 /** @type {View | null} */
 let view = null;

@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: client demo test serve lint bench bench-work-precision bench-skipping load chaos soak rehearse fuzz stress plausible validate docs lock clean
+.PHONY: client demo test serve lint bench bench-work-precision bench-skipping load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -39,6 +39,9 @@ soak: .venv/.dev  ## an hour of mixed load with faults on one service: does anyt
 rehearse: .venv/.deploy  ## the image built, docker-compose.yml with two workers without an engine, the chart (root; an hour)
 	$(BIN)/python -m pytest tests/deploy
 	$(BIN)/python -m deploy.rehearse
+
+attack: .venv/.dev  ## what strangers would try, on loopback: slow connections, odd requests, odd texts, stopped processes (two hours)
+	$(BIN)/python -m chaos.attack
 
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases
 	FUZZ=long $(BIN)/python -m pytest -s tests/service/api/test_fuzz.py

@@ -57,7 +57,9 @@ async def poll(connections: Sequence[Connection], ids: Sequence[str], seconds: f
     texts = []
     for place, connection in enumerate(connections):  # one by one: a rush of a thousand is another scene
         path = f"/v1/jobs/{ids[place % len(ids)]}"
-        etag = {"If_None_Match": (await connection.ask(connection.text("GET", path))).etag} if unchanged else {}
+        etag: dict[str, Any] = {}
+        if unchanged:
+            etag["If_None_Match"] = (await connection.ask(connection.text("GET", path))).etag
         texts.append(connection.text("GET", path, **etag))
     end = time.perf_counter() + seconds
 

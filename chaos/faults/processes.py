@@ -92,6 +92,15 @@ def stop_worker_past_its_lease(target: Target) -> bool:
     return bool(stopped)
 
 
+def stop_api_past_its_lease(target: Target) -> bool:
+    """The same of one of the API's processes, which may be the one that leads."""
+    found = target.served.apis()
+    if not found or not send(pid := target.random.choice(found), signal.SIGSTOP):
+        return False
+    target.in_a_while(target.lease * target.random.uniform(1.2, 2.0), lambda: send(pid, signal.SIGCONT))
+    return True
+
+
 def stop_child_for_a_moment(target: Target) -> bool:
     """SIGSTOP and SIGCONT within the lease."""
     picked = target.pick()

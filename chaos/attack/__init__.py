@@ -1,0 +1,1 @@
+"""What strangers do: slow and odd connections, odd requests, odd texts; and processes that are killed and stopped."""

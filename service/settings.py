@@ -99,6 +99,13 @@ class Settings:
         float, Positive,
         means("how many times its estimate a run may compute, and at least a minute, before it is ended by name"),
     ] = 20.0  # fmt: skip
+    turn: Annotated[
+        float, Positive, means("how long a job runs before it gives way, with a checkpoint, to one of an owner who has "
+                               "fewer running", "s")
+    ] = 30.0  # fmt: skip
+    most_running: Annotated[
+        Annotated[int, Positive] | None, means("the most jobs of one owner that run at the same time")
+    ] = None
     quota: Annotated[int, Positive, means("the most unfinished jobs of one owner")] = 10_000
     quota_bytes: Annotated[
         Annotated[int, Positive] | None,

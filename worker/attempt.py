@@ -137,12 +137,18 @@ class Attempt:
             if not simulation.finished:
                 _check_budget(simulation, budget)
             try:
-                stopping.check()
+                self._check_stop(simulation)
             except stopping.Stopping:
                 self._save(simulation, writer)
                 raise
             if time.monotonic() >= self._due:
                 self._save(simulation, writer)
+
+    def _check_stop(self, simulation: Run) -> None:
+        """After a step, so that each attempt gets on. Raises Stopping."""
+        stopping.check()
+        if self._lease.gives_way and not simulation.finished:
+            raise stopping.Stopping("it gives way to others")
 
     def _tell(self, run: Run) -> None:
         self._lease.tell(Reached(run.progress, run.t, run.statistics.steps, self._redone, phase=run.phase))

@@ -8,7 +8,7 @@ import time
 from dataclasses import replace
 
 from service.jobs import Reached
-from service.jobs.held import HeldJob
+from service.jobs.held import HeldJob, Wish
 from worker import fence
 
 RENEWAL = 0.5
@@ -43,6 +43,8 @@ class Lease:
         self._started = since
         self._reached = held.job.reached
         self._verdict: Exception | None = None
+        self.gives_way = False
+        """Whether the job is to be handed back with a checkpoint, for others to run."""
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._keep, name=f"lease {held.job.id}", daemon=True)
         self._put_off(since)
@@ -74,12 +76,13 @@ class Lease:
     def renew(self) -> None:
         """Lengthen the lease now, and tell the row what was reached. Raises what the database raises."""
         asked, reached = time.monotonic(), self.reached
-        cancelled = self._held.renew(self._seconds, reached)
-        if cancelled is None:
+        wish = self._held.renew(self._seconds, reached)
+        if wish is None:
             self._verdict = LeaseLost(self._held.job.id)
             return
         self._put_off(asked)
-        if cancelled:
+        self.gives_way = wish is Wish.GIVE_WAY
+        if wish is Wish.CANCEL:
             self._verdict = Cancelled(self._held.job.id)
         elif reached.wall > self._held.job.limits.wall:
             self._verdict = OutOfTime(self._held.job.id)

@@ -10,7 +10,8 @@ import time
 from sqlalchemy.exc import DBAPIError
 
 from service.jobs import Database
-from service.jobs.held import HeldJob, claim, next_in_turn
+from service.jobs.held import HeldJob, claim
+from service.jobs.sharing import next_in_turn
 from service.logs import about
 from service.settings import Settings
 from worker import stopping
@@ -29,10 +30,11 @@ def run_next(database: Database, settings: Settings) -> bool:
     """Run the job whose turn it is, if any waits; a message too many does nothing. Returns whether one was run."""
     sweep(database, settings)
     passed: list[str] = []
-    while job_id := next_in_turn(database, passed):
+    host, most = platform.node(), settings.most_running
+    while job_id := next_in_turn(database, passed, host, most):
         with stopping.at_work(), job_lock(settings.locks / f"{job_id}.lock") as lock:
             asked = time.monotonic()
-            held = claim(database, job_id, settings.lease, f"{platform.node()}:{os.getpid()}") if lock else None
+            held = claim(database, job_id, settings.lease, f"{host}:{os.getpid()}", most) if lock else None
             if lock is not None and held is not None:
                 with about(job=job_id, epoch=held.job.epoch):
                     _run(held, Lease(held, settings.lease, asked), lock, settings)
@@ -51,9 +53,9 @@ def _run(held: HeldJob, lease: Lease, lock: JobLock, settings: Settings) -> None
             with memory_limit(job.limits.memory):
                 ending = attempt.run()
             attempt.publish()  # what a library takes for that is not the job's
-        except stopping.Stopping:
+        except stopping.Stopping as stopped:
             held.release()
-            log.info("job %s is handed back: this worker was told to stop", job.id)
+            log.info("job %s is handed back: %s", job.id, stopped)
             return
         except LeaseLost:
             written = None

@@ -11,7 +11,7 @@ _asked = False
 
 
 class Stopping(Exception):
-    """This worker has been told to stop."""
+    """This worker has been told to stop, or its job to give way."""
 
 
 @contextmanager
@@ -31,7 +31,7 @@ def at_work() -> Iterator[None]:
 def check() -> None:
     """Raise Stopping if this process has been told to stop."""
     if _asked:
-        raise Stopping
+        raise Stopping("this worker was told to stop")
 
 
 def _note(*_: object) -> None:

@@ -15,7 +15,8 @@ from benchmarks.load.clients import connect, listen, poll, submit_all
 from benchmarks.load.connection import Connection
 from service.cases import apply_settings, load_case
 from service.jobs import Database, Reached, Status
-from service.jobs.held import claim, next_in_turn
+from service.jobs.held import claim
+from service.jobs.sharing import next_in_turn
 from service.settings import Settings
 
 POLLERS, FOR = 1000, 15.0

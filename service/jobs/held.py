@@ -1,51 +1,45 @@
-"""A job in the hands of a worker: taken in turn, and written only by who still holds it."""
+"""A job in the hands of a worker: written only by who still holds it."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import ColumnElement, case, exists, func, select, update
+from sqlalchemy import ColumnElement, case, select
 
 from outcomes import Outcome
 from service.jobs.database import Database
 from service.jobs.job import Dataset, Drift, Job, Reached
 from service.jobs.lifecycle import ENDED, Status
-from service.jobs.tables import JOB_COLUMNS, job_of, jobs, owners
+from service.jobs.sharing import host_of, may_run, serve_last, waiting_for_a_worker
+from service.jobs.tables import JOB_COLUMNS, job_of, jobs
 
 CANCELLED = "cancelled while it ran; no dataset is kept"
 
 
-def next_in_turn(database: Database, besides: Collection[str] = ()) -> str | None:
-    """The job to be claimed next, but none of `besides`; None if none waits.
+class Wish(StrEnum):
+    """What becomes of a running job, as its row says."""
 
-    It is of the owner who has the fewest running, and of these the one who was served longest ago; of
-    his jobs it is the oldest among those of the highest priority.
+    GO_ON = "go_on"
+    CANCEL = "cancel"  # its owner does not want it any more
+    GIVE_WAY = "give_way"  # others wait, or this host is to have none
+
+
+def claim(database: Database, job_id: str, lease: float, worker: str, most: int | None = None) -> HeldJob | None:
+    """Take a job that waits, for `lease` seconds; None if it does not wait any more, or not for this worker.
+
+    `worker`: its host, a colon and its process; `most`: how many jobs of one owner may run.
     """
-    of_owner = (jobs.c.owner == owners.c.name, *_waiting(besides))
-    running = (
-        select(func.count()).where(jobs.c.status == Status.RUNNING, jobs.c.owner == owners.c.name).scalar_subquery()
-    )
-    owner = (
-        select(owners.c.name).where(exists().where(*of_owner))
-        .order_by(running, owners.c.served, owners.c.name).limit(1).scalar_subquery()
-    )
-    his = (jobs.c.owner == owner, *_waiting(besides))
-    highest = select(func.max(jobs.c.priority)).where(*his).scalar_subquery()
-    oldest = select(jobs.c.id).where(*his, jobs.c.priority == highest).order_by(jobs.c.id).limit(1)
-    with database.reading() as connection:
-        return connection.scalar(oldest)
-
-
-def claim(database: Database, job_id: str, lease: float, worker: str) -> HeldJob | None:
-    """Take a job that waits, for `lease` seconds; None if it does not wait any more."""
     with database.writing() as transaction:
+        if not may_run(transaction, job_id, host_of(worker), most):
+            return None
         taken = transaction.change(
-            jobs.c.id == job_id, *_waiting(), event="started", status=Status.RUNNING,
+            jobs.c.id == job_id, *waiting_for_a_worker(), event="started", status=Status.RUNNING,
             epoch=jobs.c.epoch + 1, attempts=jobs.c.attempts + 1, fruitless=jobs.c.fruitless + 1,
-            lease_until=transaction.now + lease, started=transaction.now, worker=worker,
+            lease_until=transaction.now + lease, started=transaction.now, worker=worker, gives_way=False,
         )  # fmt: skip
         if not taken:
             return None
@@ -55,8 +49,7 @@ def claim(database: Database, job_id: str, lease: float, worker: str) -> HeldJob
         ).mappings().one())  # fmt: skip
         case_data = json.loads(row.pop("case_json"))
         job = job_of(row)
-        latest = select(func.max(owners.c.served)).scalar_subquery()
-        connection.execute(update(owners).where(owners.c.name == job.owner).values(served=latest + 1))
+        serve_last(transaction, job.owner)
     return HeldJob(database, job, case_data)
 
 
@@ -68,10 +61,10 @@ class HeldJob:
     job: Job
     case: dict[str, Any]
 
-    def renew(self, lease: float, reached: Reached) -> bool | None:
+    def renew(self, lease: float, reached: Reached) -> Wish | None:
         """Lengthen the lease and tell how far the run is.
 
-        Returns whether the owner wants it cancelled; None if the job is another's now.
+        Returns what is to become of the run; None if the job is another's now.
         """
         seen = (jobs.c.steps != reached.steps) | (jobs.c.phase != reached.phase)
         moved = case((seen, 1), else_=0)
@@ -80,7 +73,9 @@ class HeldJob:
                                       version=jobs.c.version + moved, **asdict(reached))
             if not kept:
                 return None
-            return transaction.connection.scalar(select(jobs.c.cancel_requested).where(jobs.c.id == self.job.id))
+            wishes = select(jobs.c.cancel_requested, jobs.c.gives_way).where(jobs.c.id == self.job.id)
+            cancelled, gives_way = transaction.connection.execute(wishes).one()
+        return Wish.CANCEL if cancelled else Wish.GIVE_WAY if gives_way else Wish.GO_ON
 
     def checkpointed(self, reached: Reached) -> bool:
         """Tell of a checkpoint; one farther than any before makes all attempts so far fruitful."""
@@ -115,12 +110,15 @@ class HeldJob:
         return Status(written) if written else None
 
     def release(self) -> None:
-        """Hand back a job that could not be finished through no fault of its own: it waits again."""
+        """Hand back a job that could not be finished through no fault of its own: it waits again, and its owner is
+        served last."""
         with self.database.writing() as transaction:
-            transaction.change(
+            released = transaction.change(
                 *self._mine, event="handed_back", status=Status.ACCEPTED, attempts=jobs.c.attempts - 1,
                 fruitless=case((jobs.c.fruitless > 0, jobs.c.fruitless - 1), else_=0), worker="",
             )  # fmt: skip
+            if released:
+                serve_last(transaction, self.job.owner)
 
     def followers(self) -> list[int]:
         """The frames from which other jobs will begin."""
@@ -131,8 +129,3 @@ class HeldJob:
     @property
     def _mine(self) -> tuple[ColumnElement[bool], ...]:
         return jobs.c.id == self.job.id, jobs.c.epoch == self.job.epoch, jobs.c.status == Status.RUNNING
-
-
-def _waiting(besides: Collection[str] = ()) -> tuple[ColumnElement[bool], ...]:
-    free = (jobs.c.status == Status.ACCEPTED, ~jobs.c.cancel_requested, ~jobs.c.waits)
-    return (*free, jobs.c.id.not_in(besides)) if besides else free

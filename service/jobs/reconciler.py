@@ -16,7 +16,9 @@ from service.jobs.database import Database
 from service.jobs.doorbell import Doorbell
 from service.jobs.leader import Deposed, Leader
 from service.jobs.lifecycle import Status
+from service.jobs.pauses import drain
 from service.jobs.processes import forget_lost
+from service.jobs.sharing import make_room
 from service.jobs.tables import jobs, owners
 from service.rounds import Rounds
 from service.settings import Settings
@@ -140,6 +142,7 @@ class Reconciler:
 
     def __init__(self, database: Database, doorbell: Doorbell, settings: Settings) -> None:
         self._database, self._doorbell, self._attempts = database, doorbell, settings.attempts
+        self._turn, self._most = settings.turn, settings.most_running
         self._watch = Watch(settings.lease)
         self.leader = Leader(database)
         self._interval = min(LOOK, settings.lease / 3)
@@ -168,6 +171,8 @@ class Reconciler:
             log.warning("job %s, epoch %d: its worker has fallen silent", beat.job_id, beat.epoch)
             take_back(self.leader, beat, self._attempts)
         dismiss_cancelled(self.leader)
+        drain(self.leader)
+        make_room(self.leader, self._turn, self._most, time.time())
         tidy = time.monotonic() >= self._tidy_at
         ring_for_all(self._database, self._doorbell, least=int(tidy))
         if tidy:

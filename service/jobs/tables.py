@@ -48,6 +48,7 @@ jobs = Table(
     Column("outcome", String(64), nullable=False, default=""),
     Column("message", Text, nullable=False, default=""),
     Column("cancel_requested", Boolean, nullable=False, default=False),
+    Column("gives_way", Boolean, nullable=False, default=False),
     Column("created", Double, nullable=False),
     Column("started", Double),
     Column("finished", Double),
@@ -177,7 +178,7 @@ audit = Table(
     Column("owner", String(64), nullable=False),
     Column("key", String(12), nullable=False),
     Column("action", String(32), nullable=False),
-    Column("subject", String(26), nullable=False),
+    Column("subject", String(64), nullable=False),
 )
 
 webhooks = Table(
@@ -199,6 +200,15 @@ leader = Table(
     Column("beat", BigInteger, nullable=False, default=0),
 )
 
+pauses = Table(
+    "pauses",  # of a host's workers, or of all (host empty): none takes a job; if it `drains`, none goes on with one
+    metadata,
+    Column("host", String(64), primary_key=True),
+    Column("drains", Boolean, nullable=False),
+    Column("since", Double, nullable=False),
+    Column("owner", String(64), nullable=False),
+)
+
 processes = Table(
     "processes",  # those that run now; `beat` grows while one gets on, `stuck` names parts of it that do not
     metadata,
@@ -213,7 +223,8 @@ processes = Table(
 
 DATASET = tuple(field.name for field in dataclasses.fields(Dataset))
 REACHED = tuple(field.name for field in dataclasses.fields(Reached))
-NOT_OF_THE_JOB = ("case_json", "scalars", "waits", "checkpoint_steps", "drift_method", "drift_topology", "drift_energy")
+NOT_OF_THE_JOB = ("case_json", "gives_way", "scalars", "waits", "checkpoint_steps", "drift_method", "drift_topology",
+                  "drift_energy")  # fmt: skip
 JOB_COLUMNS = [column for column in jobs.columns if column.name not in NOT_OF_THE_JOB]
 FRESH = {column.name: column.default.arg if isinstance(column.default, ColumnDefault) else None
          for column in JOB_COLUMNS}  # fmt: skip

@@ -18,9 +18,10 @@ import numpy as np
 import pytest
 from sqlalchemy.exc import OperationalError
 
-from service.jobs import Job, Limits, NewJob, Registry, Status
-from service.jobs.held import HeldJob, claim
+from service.jobs import Job, Limits, NewJob, Registry, Selection, Status
+from service.jobs.held import HeldJob, Wish, claim
 from service.jobs.measures import measure
+from service.jobs.sharing import make_room
 from service.results import Datasets, DatasetWriter, open_dataset, segments
 from service.results.segments import Segments
 from service.settings import Settings
@@ -176,7 +177,7 @@ def test_a_run_that_fails_keeps_its_frames_and_tells_the_remedy(job, registry, s
 
 
 def test_a_job_cancelled_while_it_runs_leaves_nothing(job, registry, settings, monkeypatch, until):
-    seen: list[bool | None] = []
+    seen: list[Wish | None] = []
     renew = HeldJob.renew
 
     def watched(self, *told):
@@ -185,7 +186,7 @@ def test_a_job_cancelled_while_it_runs_leaves_nothing(job, registry, settings, m
 
     def cancel():
         registry.cancel(job.id)
-        until(lambda: seen.count(True) > 1, "the lease brings the owner's wish, and a renewal later it is judged")
+        until(lambda: seen.count(Wish.CANCEL) > 1, "the lease brings the wish, and a renewal later it is judged")
 
     monkeypatch.setattr(lease, "RENEWAL", 0.01)
     monkeypatch.setattr(HeldJob, "renew", watched)
@@ -351,6 +352,37 @@ def test_a_worker_told_to_stop_hands_its_job_back_and_the_next_one_goes_on(job, 
     done = ended(job, registry, settings)
     assert (done.status, done.attempts, done.reached.steps_redone) == (Status.SUCCESSFUL, 1, 0)
     assert left_over(settings) == [settings.datasets / done.dataset.file]
+
+
+def test_a_long_job_gives_way_to_anothers_and_ends_to_the_bit_as_if_it_had_not(registry, settings, case, monkeypatch):
+    undisturbed = ended(registry.submit(NewJob(case, owner="carol")), registry, settings)
+    long = registry.submit(NewJob(case, owner="alice"))
+
+    def others_come():
+        registry.submit(NewJob(case, owner="bob"))
+        make_room(registry.database, 0.0, None, time.time() + 1000.0)
+
+    tell = lease.Lease.tell
+
+    def tell_and_renew(self, reached):
+        tell(self, reached)
+        self.renew()
+
+    with monkeypatch.context() as interrupted:
+        interrupted.setattr(lease.Lease, "tell", tell_and_renew)
+        interrupted.setattr(attempt, "simulate", simulation_that(others_come))
+        assert run.run_next(registry.database, settings)
+    waiting = registry.get(long.id)
+    assert (waiting.status, waiting.attempts) == (Status.ACCEPTED, 0)
+    assert 0.0 < waiting.progress < 1.0
+    assert run.run_next(registry.database, settings)
+    assert [job.status for job in registry.page(9, Selection(owner="bob")).jobs] == [Status.SUCCESSFUL]
+    done = ended(long, registry, settings)
+    assert (done.status, done.attempts, done.reached.steps_redone) == (Status.SUCCESSFUL, 1, 0)
+    with (open_dataset(settings.datasets / done.dataset.file) as one,
+          open_dataset(settings.datasets / undisturbed.dataset.file) as two):  # fmt: skip
+        for name in one.variables:
+            np.testing.assert_array_equal(one[name].values, two[name].values, err_msg=name)
 
 
 def test_a_worker_that_lost_its_job_writes_nothing_for_it(job, registry, settings, monkeypatch, take_back_all):

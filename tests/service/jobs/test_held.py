@@ -7,7 +7,8 @@ import threading
 import pytest
 
 from service.jobs import Database, Dataset, NewJob, Reached, Registry, Status
-from service.jobs.held import HeldJob, claim, next_in_turn
+from service.jobs.held import HeldJob, Wish, claim
+from service.jobs.sharing import next_in_turn
 
 LEASE = 10.0
 
@@ -102,14 +103,14 @@ def test_a_running_job_is_not_had_again_even_long_after_its_lease(registry, cloc
     first = held(registry)
     clock.now += 100 * LEASE
     assert claim(registry.database, first.job.id, LEASE, "there") is None
-    assert first.renew(LEASE, Reached()) is False
+    assert first.renew(LEASE, Reached()) is Wish.GO_ON
 
 
 def test_a_run_that_came_farther_has_a_new_version_and_a_bare_renewal_has_not(registry):
     job = held(registry)
-    assert job.renew(LEASE, Reached(0.5, 1.0, steps=7)) is False
+    assert job.renew(LEASE, Reached(0.5, 1.0, steps=7)) is Wish.GO_ON
     moved = registry.get(job.job.id)
-    assert job.renew(LEASE, Reached(0.5, 1.0, steps=7)) is False
+    assert job.renew(LEASE, Reached(0.5, 1.0, steps=7)) is Wish.GO_ON
     again = registry.get(job.job.id)
     assert job.job.version < moved.version == again.version
     assert (moved.progress, moved.t, moved.reached.steps) == (0.5, 1.0, 7)
@@ -133,7 +134,7 @@ def test_what_a_run_is_doing_is_told_while_it_runs(registry):
 def test_a_renewal_tells_that_the_owner_cancels(registry):
     job = held(registry)
     assert registry.cancel(job.job.id).status is Status.RUNNING
-    assert job.renew(LEASE, Reached()) is True
+    assert job.renew(LEASE, Reached()) is Wish.CANCEL
 
 
 def test_who_lost_the_job_writes_nothing(registry):

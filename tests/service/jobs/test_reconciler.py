@@ -9,7 +9,7 @@ from sqlalchemy import select, update
 
 from service.jobs import Database, NewJob, Reached, Registry, Status, reconciler
 from service.jobs.doorbell import Doorbell, celery_settings
-from service.jobs.held import HeldJob, claim
+from service.jobs.held import HeldJob, Wish, claim
 from service.jobs.reconciler import (
     AT_ONCE,
     Reconciler,
@@ -83,7 +83,7 @@ def test_a_clock_that_jumps_takes_no_job_from_a_living_worker(registry, clock):
     for jump in (1e9, -2e9):
         clock.now += jump
         assert watch.lost(beats(registry.database)) == []
-        assert job.renew(LEASE, Reached()) is False
+        assert job.renew(LEASE, Reached()) is Wish.GO_ON
 
 
 def test_a_lost_job_waits_again_and_its_worker_is_shut_out(registry):

@@ -1,19 +1,11 @@
 // @ts-check
 /** Curves over time, drawn as SVG; the pointer or a film shows the values at one time. */
 import { element } from "./page.js";
+import { drawn } from "./svg.js";
 import { prefixed, range, ticks, told, widened } from "./scale.js";
 
 /** @typedef {(number | null)[]} Curve */
-const SPACE = "http://www.w3.org/2000/svg";
 const WIDTH = 480, HEIGHT = 200, LEFT = 56, RIGHT = 12, TOP = 10, BOTTOM = 24;
-
-/** @param {string} name @param {Record<string, string | number>} attributes @param {string} [text] */
-function drawn(name, attributes, text) {
-  const made = document.createElementNS(SPACE, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, String(value));
-  if (text !== undefined) made.textContent = text;
-  return made;
-}
 
 export class Chart {
   /** A figure of at most six curves, each over a time in s. @param {string} title @param {string} unit

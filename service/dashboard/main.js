@@ -2,6 +2,8 @@
 /** Which page is shown, as its address says: #/?status=running is the table, #/jobs/ID one job, and so on. */
 import { Refusal, setKey } from "./api.js";
 import { ComparePage } from "./compare.js";
+import { EnsemblePage } from "./ensemble.js";
+import { EnsemblesPage } from "./ensembles.js";
 import { JobPage } from "./job.js";
 import { JobsTable } from "./jobs.js";
 import { NewPage } from "./new.js";
@@ -15,6 +17,8 @@ const EVERY = 2500; // ms
 const PAGES = [
   [/^\/jobs\/([0-9a-z]+)$/, (id) => new JobPage(id)],
   [/^\/compare$/, (_, chosen) => new ComparePage(chosen)],
+  [/^\/ensembles$/, () => new EnsemblesPage()],
+  [/^\/ensembles\/([0-9a-z]+)$/, (id) => new EnsemblePage(id)],
   [/^\/new$/, (_, chosen) => new NewPage(chosen)],
 ];
 /** @type {View | null} */

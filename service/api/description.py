@@ -24,6 +24,7 @@ NOT_OURS = ("HTTPValidationError", "ValidationError")
 PARAMETERS = {
     "job_id": "The id that the submission was answered with",
     "ensemble_id": "The id that the submission of the ensemble was answered with",
+    "key": "A key of the store, such as zarr.json or r/c/0/0/0",
     "process_id": "`simulate`: there is no other",
     "name": "A shipped case",
     "link_id": "A link, as the list of them names it",

@@ -84,7 +84,7 @@ def document(job: Job) -> JobDocument:
     links = {"self": here, "events": f"{here}/events", "case": f"{here}/case", "data": f"{here}/data"}
     dataset = None
     if job.dataset is not None:
-        links["dataset"] = f"{here}/dataset"
+        links |= {name: f"{here}/{name}" for name in ("dataset", "zarr", "opendap")}
         dataset = DatasetDocument(href=links["dataset"], sha256=job.dataset.sha256, bytes=job.dataset.bytes,
                                   fault=job.dataset.fault)
     return JobDocument(

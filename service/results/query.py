@@ -90,6 +90,12 @@ class DatasetSource:
         self.s: NDArray[np.float64] = dataset["s"][:]
         self.variables = {v.name: v for v in (*VARIABLES, *ERRORS.values()) if v.name in dataset.variables}
 
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Those of the dataset as a whole, as plain data."""
+        told = {name: self._dataset.getncattr(name) for name in self._dataset.ncattrs()}
+        return {name: value if isinstance(value, str) else value.item() for name, value in told.items()}
+
     def read(self, variable: Variable, ranges: Mapping[str, slice]) -> NDArray[Any]:
         """The values of one variable at some indices of time and s."""
         values: NDArray[Any] = self._dataset[variable.name][

@@ -1,4 +1,5 @@
-"""What the long-lived processes of a service hold: memory, descriptors, threads, sampled as time goes by.
+"""What the long-lived processes of a service hold, and its disk: memory, descriptors, threads, bytes, sampled as time
+goes by.
 
 A leak is held for ever, what a request takes only while it is answered. So a sample is the least of some looks: a file
 that is just being sent is no leak, though it is open at one look.
@@ -17,24 +18,29 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import mean
+from typing import TypeVar
 
 from chaos.served import Served
 
 ROOM = 1.05
 """Part of the memory of the second quarter that the last may have, on average: what more is growth."""
+DISK_ROOM = 1.10
+"""The same of the disk."""
 SPARE = 3
 """Descriptors and threads that may be there by chance in every look of a sample: clients that stay connected."""
 LOOKS, BETWEEN = 20, 0.1
 """Looks at a process for one sample, and seconds between two of them."""
+Sample = TypeVar("Sample")
 PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 @dataclass
 class Growth:
-    """Samples by process: memory (MB), descriptors, threads."""
+    """Samples by process: memory (MB), descriptors, threads; and of the data directory (MB)."""
 
     served: Served
     samples: dict[tuple[str, int], list[tuple[float, int, int]]] = field(default_factory=dict)
+    disk: list[float] = field(default_factory=list)
     requests: int = 0
 
     def sample(self) -> None:
@@ -45,15 +51,23 @@ class Growth:
                 with suppress(OSError):
                     seen.setdefault((role, pid), []).append(_held(pid))
             time.sleep(BETWEEN)
+        self.disk.append(_size(self.served.settings.data))
         for process, looks in seen.items():
             memory, descriptors, threads = (min(look[i] for look in looks) for i in range(3))
             self.samples.setdefault(process, []).append((memory, int(descriptors), int(threads)))
 
     @property
     def flat(self) -> bool:
-        """Whether every process lived all along, and none holds more in the end than once it was warm."""
+        """Whether every process lived all along, and neither one nor the disk holds more in the end than once it was
+        warm."""
         longest = max(map(len, self.samples.values()))
-        return all(len(found) == longest and _is_flat(found) for found in self.samples.values())
+        return self.disk_flat and all(len(found) == longest and _is_flat(found) for found in self.samples.values())
+
+    @property
+    def disk_flat(self) -> bool:
+        """Whether what is kept has stayed as much as it was."""
+        early, late = _quarters(self.disk)
+        return mean(late) <= DISK_ROOM * mean(early)
 
     def lines(self) -> list[str]:
         """A table: means of memory over the second and the last quarter, most descriptors and threads in them."""
@@ -65,7 +79,9 @@ class Growth:
             held = [" → ".join(str(max(one[i] for one in part)) for part in (early, late)) for i in (1, 2)]
             row = [role, str(len(found)), *memory, *held, "flat" if _is_flat(found) else "GROWS"]
             lines.append("| " + " | ".join(row) + " |")
-        return lines
+        sizes = [f"{mean(part):.1f}" for part in _quarters(self.disk)]
+        row = ["disk", str(len(self.disk)), *sizes, "", "", "flat" if self.disk_flat else "GROWS"]
+        return [*lines, "| " + " | ".join(row) + " |"]
 
     def _processes(self) -> list[tuple[str, int]]:
         served = self.served
@@ -81,7 +97,16 @@ def _held(pid: int) -> tuple[float, int, int]:
     return 1e-6 * pages * PAGE, descriptors, threads
 
 
-def _quarters(found: list[tuple[float, int, int]]) -> tuple[list[tuple[float, int, int]], list[tuple[float, int, int]]]:
+def _size(directory: Path) -> float:
+    """MB of all files below."""
+    total = 0
+    for path in directory.rglob("*"):
+        with suppress(OSError):  # it may have just been removed
+            total += path.stat().st_size if path.is_file() else 0
+    return 1e-6 * total
+
+
+def _quarters(found: list[Sample]) -> tuple[list[Sample], list[Sample]]:
     quarter = max(1, len(found) // 4)
     return found[quarter : 2 * quarter] or found, found[-quarter:]
 

@@ -23,11 +23,12 @@ MOST_REDONE = 0.10
 
 @dataclass
 class Verdict:
-    """Counts over jobs. All but the first four and the steps must be zero."""
+    """Counts over jobs. All but the first five and the steps must be zero."""
 
     jobs: int = 0
     faults: int = 0
     published: int = 0
+    deleted: int = 0
     looks: int = 0
     lost: int = 0
     duplicated: int = 0
@@ -65,7 +66,9 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
     database = Database(settings.database_url)
     found = {job.id: job for job in _all_jobs(Registry(database))}
     verdict = Verdict(jobs=len(found), faults=record.done, overlaps=watch.overlaps, looks=watch.looks)
-    verdict.lost = sum(job_id not in found for job_id in record.accepted)
+    gone = _deleted(database)
+    verdict.deleted = len(gone)
+    verdict.lost = sum(job_id not in found and job_id not in gone for job_id in record.accepted)
     ends, labels = _ends(database), Counter(job.label for job in found.values())
     for job in found.values():
         verdict.lost += job.status not in ENDED
@@ -106,6 +109,12 @@ def _all_jobs(registry: Registry) -> list[Job]:
         page = registry.page(200, Selection(after=page.next))
         found += page.jobs
     return found
+
+
+def _deleted(database: Database) -> set[str]:
+    """The jobs that retention has deleted: they had ended."""
+    with database.reading() as connection:
+        return set(connection.scalars(select(jobs.c.id).where(jobs.c.deleted.is_not(None))))
 
 
 def _ends(database: Database) -> dict[str, int]:

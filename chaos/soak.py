@@ -53,6 +53,8 @@ OPEN = 3
 """So many jobs are kept open."""
 LISTEN = 5.0
 """Seconds for which the events of a job are followed."""
+KEEP, LOG = 50_000_000, 1_000_000
+"""Bytes of datasets that are kept, but for those of the last ten minutes, and of each log."""
 CROWD = 60
 """So many ask at once, after each sample: more than an API process has threads."""
 
@@ -65,7 +67,8 @@ def main() -> int:
     told = parser.parse_args()
     os.environ |= ENVIRONMENT
     with tempfile.TemporaryDirectory(prefix="hockle-soak-", ignore_cleanup_errors=True) as directory:
-        settings = Settings(data=Path(directory) / "data", lease=LEASE, checkpoint=CHECKPOINT)
+        settings = Settings(data=Path(directory) / "data", lease=LEASE, checkpoint=CHECKPOINT, keep_bytes=KEEP,
+                            log_bytes=LOG)  # fmt: skip
         settings.make_directories()
         record, served = Record(told.seed), Served(settings, free_port())
         database, known = Database(settings.database_url), cases()
@@ -101,11 +104,11 @@ def _left(settings: Settings) -> list[str]:
 def _told(record: Record, verdict: Verdict, growth: Growth, left: list[str]) -> str:
     done, outcomes = (", ".join(f"{name} {count}" for name, count in counted.most_common())
                       for counted in (record.faults, verdict.outcomes))  # fmt: skip
-    return (f"{verdict.jobs} jobs ({outcomes}), {verdict.published} datasets, {growth.requests} looks at a job, "
-            f"{verdict.faults} faults ({done}). Lost {verdict.lost}, ended twice {verdict.duplicated}, overlaps "
-            f"{verdict.overlaps}, differing {verdict.not_identical}, wrongly ended {verdict.wrong_outcome}, stuck "
-            f"{'none' if record.all_ended else 'some'}, work directories and lock files left {len(left)}, "
-            f"datasets {verdict.left_over}; {verdict.redone:.1%} of the steps redone.")  # fmt: skip
+    return (f"{verdict.jobs} jobs ({outcomes}), {verdict.deleted} deleted, {verdict.published} datasets, "
+            f"{growth.requests} looks at a job, {verdict.faults} faults ({done}). Lost {verdict.lost}, ended twice "
+            f"{verdict.duplicated}, overlaps {verdict.overlaps}, differing {verdict.not_identical}, wrongly ended "
+            f"{verdict.wrong_outcome}, stuck {'none' if record.all_ended else 'some'}, work directories and lock files "
+            f"left {len(left)}, datasets {verdict.left_over}; {verdict.redone:.1%} of the steps redone.")  # fmt: skip
 
 
 def _soak(target: Target, record: Record, seconds: float) -> Growth:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import shutil
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 from service.jobs import Database, Dataset
@@ -12,7 +13,7 @@ from service.results import Datasets
 from service.results.durable import sync
 from service.settings import Settings
 from service.store.check import FILE
-from service.store.snapshot import bring_back, datasets_in, save
+from service.store.snapshot import bring_back, check_empty, datasets_in, save
 from service.store.verification import all_jobs, look
 
 REGISTRY, DATASETS = "registry.db", "datasets"
@@ -44,12 +45,16 @@ def restore(settings: Settings, folder: Path) -> Iterator[str]:
     """
     if not (folder / REGISTRY).is_file():
         raise FileNotFoundError(f"{folder} holds no backup: {REGISTRY} is not there")
-    database = bring_back(folder / REGISTRY, settings.database_url)
+    check_empty(settings.database_url)
+    for dataset in datasets_in(folder / REGISTRY).values():
+        with suppress(FileNotFoundError):  # it is told below
+            shutil.copyfile(folder / DATASETS / dataset.file, settings.datasets / dataset.file)
+            sync(settings.datasets / dataset.file)
+    sync(settings.datasets)
+    database = bring_back(folder / REGISTRY, settings.database_url)  # the last, so that it can all be done once more
     datasets = Datasets(settings.datasets, settings.copies, settings.objects)
     try:
         for job in all_jobs(database):
-            if job.dataset is not None and (folder / DATASETS / job.dataset.file).is_file():
-                shutil.copyfile(folder / DATASETS / job.dataset.file, settings.datasets / job.dataset.file)
             found = look(database, datasets, job)
             if found is not None and found.fault:
                 yield f"job {job.id}: its dataset {found.file} is {found.fault}"

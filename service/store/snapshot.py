@@ -16,6 +16,7 @@ from service.jobs.tables import audit, leader, metadata, processes
 from service.results.durable import sync
 
 AT_ONCE = 1000
+SQLITE = "sqlite:///"
 KEPT = [table for table in metadata.sorted_tables if table not in (leader, processes)]
 """What is copied row by row: not who runs at the moment."""
 
@@ -43,13 +44,25 @@ def datasets_in(path: Path) -> dict[str, Dataset]:
         return {job_id: Dataset(*told) for job_id, *told in saved.execute(query)}
 
 
+def check_empty(url: str) -> None:
+    """Raises FileExistsError where a registry is kept already."""
+    if url.startswith(SQLITE):
+        if Path(url.removeprefix(SQLITE)).exists():
+            raise FileExistsError(f"{url.removeprefix(SQLITE)} is a registry already")
+        return
+    database = Database(url)
+    with database.reading() as connection:
+        kept = [table.name for table in KEPT if connection.scalar(select(func.count()).select_from(table))]
+    database.close()
+    if kept:
+        raise FileExistsError(f"the database has rows already, in {', '.join(kept)}")
+
+
 def bring_back(path: Path, url: str) -> Database:
-    """Make a registry at `url` from such a file, which stays as it is. Raises FileExistsError where there is one."""
-    if not url.startswith("sqlite:///"):
+    """Make a registry at `url`, where none is kept, from such a file, which stays as it is."""
+    if not url.startswith(SQLITE):
         return _into_empty(path, Database(url))
-    target = Path(url.removeprefix("sqlite:///"))
-    if target.exists():
-        raise FileExistsError(f"{target} is a registry already")
+    target = Path(url.removeprefix(SQLITE))
     beside = target.with_name(f"{target.name}.part")
     shutil.copyfile(path, beside)
     sync(beside)
@@ -64,9 +77,6 @@ def _save_sqlite(source: Path, target: Path) -> None:
 
 
 def _into_empty(path: Path, database: Database) -> Database:
-    with database.reading() as connection:
-        if any(connection.scalar(select(func.count()).select_from(table)) for table in KEPT):
-            raise FileExistsError("the database has jobs or keys already")
     upgraded = path.with_name(f"{path.name}.upgraded")
     shutil.copyfile(path, upgraded)
     try:

@@ -124,6 +124,29 @@ def test_nothing_is_restored_over_what_is_kept(database, settings, ended, tmp_pa
     assert "holds no backup" in capsys.readouterr().err
 
 
+def test_a_restore_that_was_interrupted_is_done_once_more(database, settings, ended, tmp_path, monkeypatch):
+    ended(), ended()
+    list(back_up(database, settings, tmp_path / "saved"))
+    fresh = Settings(data=tmp_path / "fresh")
+    fresh.make_directories()
+    copies = []
+
+    def interrupted(source, target):
+        copies.append(target)
+        if len(copies) == 2:
+            raise KeyboardInterrupt
+        return os.link(source, target)
+
+    with monkeypatch.context() as context, pytest.raises(KeyboardInterrupt):
+        context.setattr("shutil.copyfile", interrupted)
+        list(restore(fresh, tmp_path / "saved"))
+    for copied in fresh.datasets.iterdir():
+        copied.unlink()
+        copied.write_text("half")
+    assert list(restore(fresh, tmp_path / "saved")) == []
+    assert everything(fresh) == everything(settings)
+
+
 def test_a_damaged_backup_is_told_when_it_is_restored(database, settings, ended, tmp_path):
     job_id = ended()
     list(back_up(database, settings, tmp_path / "saved"))

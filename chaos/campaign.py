@@ -87,14 +87,14 @@ def _make_trouble(target: Target, record: Record, count: int, faults: int, only:
             fault = target.random.choices(only, weights)[0]
             with suppress(Exception):  # the database may be away, a process may have just ended
                 record.faults[fault.__name__] += fault(target)
-            _let_run(target, target.random.expovariate(1 / STEPS_BETWEEN))
+            let_run(target, target.random.expovariate(1 / STEPS_BETWEEN))
     finally:
         stopped.set()
         for thread in others:
             thread.join()
 
 
-def _let_run(target: Target, steps: float) -> None:
+def let_run(target: Target, steps: float) -> None:
     """Wait until the workers have taken so many steps, however fast the machine is, or take none for a while."""
     began, deadline = None, time.monotonic() + IDLE
     while time.monotonic() < deadline:

@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from chaos.attack.table import Row
-from chaos.campaign import come_to_an_end, environment, free_port, keep_open
+from chaos.campaign import STEPS_BETWEEN, come_to_an_end, environment, free_port, keep_open, let_run
 from chaos.cases import cases, undisturbed
 from chaos.faults import Fault, Target
 from chaos.faults.broker import kill_broker, stall_broker
@@ -37,8 +37,6 @@ FAULTS: tuple[Fault, ...] = (
     stop_worker_past_its_lease, stop_api_past_its_lease, stall_broker, jump_clock, fill_disk,
 )  # fmt: skip
 QUEUED = 4
-PAUSE = 3.0
-"""Seconds between two faults, on average."""
 LEASES = 3
 CASES = ("short-loop", "free-flight")
 
@@ -98,7 +96,7 @@ def _disturb(target: Target, record: Record, count: int) -> None:
             fault = waiting.pop()
             with suppress(Exception):  # the database may be away, a process may have just ended
                 record.faults[fault.__name__] += fault(target)
-            time.sleep(target.random.expovariate(1 / PAUSE))
+            let_run(target, target.random.expovariate(1 / STEPS_BETWEEN))
     finally:
         stopped.set()
         open_.join()

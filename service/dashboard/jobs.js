@@ -1,6 +1,7 @@
 // @ts-check
 /** The table of jobs: filters, search, pages by cursor, live. */
 import { call, follow, read } from "./api.js";
+import { Columns } from "./columns.js";
 import { MOST } from "./compare.js";
 import { actions, bar, byId, element, isOpen, standing } from "./page.js";
 
@@ -21,6 +22,8 @@ export class JobsTable {
     this.closing = new AbortController();
     /** @type {Set<string>} ids that are to be compared */
     this.compared = new Set();
+    this.columns = new Columns();
+    this.columns.shown = byId("differing").checked;
     byId("compare").hidden = true;
     /** @type {Set<string>} ids that are followed by events */
     this.followed = new Set();
@@ -55,6 +58,25 @@ export class JobsTable {
       this.tell();
     }
     this.tell();
+    await this.arrange();
+  }
+
+  /** Show what differs between the cases, or no more. @param {boolean} shown */
+  async differ(shown) {
+    this.columns.shown = shown;
+    await this.arrange();
+  }
+
+  /** Have the columns that the shown jobs ask for. */
+  async arrange() {
+    const jobs = [...this.known.values()].map(({ job }) => job);
+    if (!await this.columns.update(jobs) || this.closing.signal.aborted) return;
+    document.querySelectorAll("#jobs th.value").forEach((head) => head.remove());
+    document.querySelector("#jobs thead tr")?.append(...this.columns.heads());
+    for (const one of this.known.values()) {
+      one.row.querySelectorAll(".value").forEach((cell) => cell.remove());
+      one.row.append(...this.columns.cells(one.job.id));
+    }
   }
 
   /** Show PAGE jobs more. */
@@ -74,6 +96,7 @@ export class JobsTable {
     for (const job of running) if (this.known.has(job.id)) this.put(job);
     for (const { job } of ended) this.put(await read(job.links.self));
     this.tell();
+    await this.arrange();
     this.listen();
   }
 
@@ -133,6 +156,7 @@ export class JobsTable {
     const row = element("tr", "", element("td", "choose", chosen), what, state, progress, element("td", "", new Date(job.created).toLocaleString()),
       element("td", "", job.owner), element("td", "row", ...actions(job, (deleted) => deleted ? this.remove(job.id) : this.refresh())));
     row.id = job.id;
+    row.append(...this.columns.cells(job.id));
     return row;
   }
 

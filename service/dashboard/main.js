@@ -25,6 +25,9 @@ const PAGES = [
 let view = null;
 let timer = 0;
 
+/** The fields that choose jobs. */
+const filters = () => [...byId("filters").elements].filter((field) => field.name);
+
 /** Leave the page that is shown, and show the one that the address names. */
 function open() {
   view?.close();
@@ -36,7 +39,7 @@ function open() {
   byId("page").replaceChildren();
   document.title = "hockle: jobs";
   const chosen = new URLSearchParams(query ?? "");
-  for (const field of byId("filters").elements) field.value = chosen.get(field.name) ?? "";
+  for (const field of filters()) field.value = chosen.get(field.name) ?? "";
   view = where && page ? page(where.exec(path)?.[1] ?? "", chosen) : new JobsTable(chosen);
   const shown = view;
   guarded(() => shown.fill());
@@ -93,14 +96,20 @@ byId("login").onsubmit = (/** @type {Event} */ event) => {
 
 byId("filters").onsubmit = (/** @type {Event} */ event) => event.preventDefault();
 let typing = 0;
-byId("filters").oninput = () => {
+byId("filters").oninput = (/** @type {Event} */ event) => {
+  if (event.target === byId("differing")) return;
   clearTimeout(typing);
   typing = setTimeout(() => {
     const chosen = new URLSearchParams();
-    for (const field of byId("filters").elements) if (field.value) chosen.set(field.name, field.value);
+    for (const field of filters()) if (field.value) chosen.set(field.name, field.value);
     history.replaceState(null, "", `#/?${chosen}`);
     open();
   }, 250);
+};
+
+byId("differing").onchange = () => {
+  const shown = view;
+  if (shown instanceof JobsTable) guarded(() => shown.differ(byId("differing").checked));
 };
 
 byId("more").onclick = () => {

@@ -69,6 +69,21 @@ def test_filters_are_in_the_address(server, add, page):
     rows(page, 0)
 
 
+def test_columns_show_what_differs_between_the_cases(server, run, page):
+    quick = {"output__interval": 0.25, "numerics__intervals": 10}
+    ids = [run("cantilever-vibration", t_end=end, loads__damping=2 * end, **quick) for end in (0.5, 1.0)]
+    page.goto(server.address)
+    rows(page, 2)
+    assert page.locator("#jobs th.value").count() == 0
+    page.check("#differing")
+    page.wait_for_selector("#jobs th.value")
+    assert page.locator("#jobs th.value").all_inner_texts() == ["loads.damping", "t_end"]
+    assert page.locator(f"#jobs tr[id='{ids[1]}'] .value").all_inner_texts() == ["2", "1"]
+    page.uncheck("#differing")
+    page.wait_for_selector("#jobs th.value", state="detached")
+    assert page.locator("#jobs td.value").count() == 0
+
+
 def test_new_jobs_appear_and_go_to_the_top(server, add, page):
     add(2)
     page.goto(server.address)

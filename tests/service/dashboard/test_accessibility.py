@@ -1,0 +1,52 @@
+"""Every page against axe's rules, light and dark, and on a phone."""
+
+from __future__ import annotations
+
+import httpx
+import pytest
+
+QUICK = {"t_end": 1.0, "output__interval": 0.25, "numerics__intervals": 20}
+PAGES = {"jobs": "#jobs tbody tr", "job": "#page .chart", "compare": "#page .chart",
+         "new": ".verdict .cost", "ensembles": "#page tbody tr", "ensemble": "#page circle"}
+
+
+@pytest.fixture
+def addresses(server, run) -> dict[str, str]:
+    """The address of each page, with something on it."""
+    ids = [run("cantilever-vibration", **QUICK), run("cantilever-vibration", **QUICK | {"t_end": 0.5})]
+    body = {"case": "cantilever-vibration", "parameters": {"loads.damping": [0.5, 1.0]}}
+    ensemble = httpx.post(f"{server.address}/v1/ensembles", json=body).json()["id"]
+    paths = {"jobs": "", "job": f"jobs/{ids[0]}", "compare": f"compare?jobs={','.join(ids)}",
+             "new": "new?case=elastica", "ensembles": "ensembles", "ensemble": f"ensembles/{ensemble}"}
+    return {name: f"{server.address}/#/{path}" for name, path in paths.items()}
+
+
+def violations(page) -> list[str]:
+    """What axe finds, with the element."""
+    from axe_playwright_python.sync_playwright import Axe
+
+    found = Axe().run(page).response["violations"]
+    return [f"{rule['id']}: {node['target']}" for rule in found for node in rule["nodes"]]
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_axe_finds_nothing_on_any_page(addresses, page, scheme):
+    page.emulate_media(color_scheme=scheme)
+    for name, address in addresses.items():
+        page.goto(address)
+        page.wait_for_selector(PAGES[name], state="attached")
+        assert violations(page) == [], name
+
+
+def test_axe_finds_nothing_on_the_login_page(keyed_server, page):
+    page.goto(keyed_server.address)
+    page.wait_for_selector("#login:not([hidden])")
+    assert violations(page) == []
+
+
+def test_no_page_is_wider_than_a_phone(addresses, page):
+    page.set_viewport_size({"width": 390, "height": 800})
+    for name, address in addresses.items():
+        page.goto(address)
+        page.wait_for_selector(PAGES[name], state="attached")
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390, name

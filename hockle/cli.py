@@ -10,7 +10,8 @@ from importlib.metadata import version
 
 from hockle.failure import Failure
 
-COMMANDS = ("local", "plots", "film", "serving", "parts", "keys", "store", "remote", "jobs", "sweep", "again", "demo")
+COMMANDS = ("local", "plots", "film", "serving", "parts", "keys", "store", "remote", "jobs", "operating", "sweep",
+            "again", "demo")
 
 UNIX_ONLY = ("fcntl", "resource")
 """Modules of Python that Windows lacks."""

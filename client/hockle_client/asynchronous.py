@@ -15,6 +15,7 @@ from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
+from urllib.parse import quote
 
 import httpx
 from typing_extensions import Self
@@ -22,7 +23,7 @@ from typing_extensions import Self
 from hockle_client.async_ensembles import AsyncEnsemble
 from hockle_client.case import CaseLike, plain, request_of
 from hockle_client.design import Method, Parameters, sweep_request
-from hockle_client.documents import Cost, EnsembleState, Event, JobState, Link, Status, Verdict
+from hockle_client.documents import Cost, EnsembleState, Event, JobState, Link, Status, Verdict, Workforce
 from hockle_client.handle import JobFacts
 from hockle_client.problems import HockleError, Unreachable, problem_of
 from hockle_client.reading import opened, part_query
@@ -177,6 +178,22 @@ class AsyncClient:
                         for one in told]
         return records
 
+    async def workforce(self) -> Workforce:
+        """How many jobs wait and run, and which hosts have workers or are paused; for operators. Raises Problem."""
+        return Workforce.model_validate_json((await self._ask("GET", "/v1/queue")).content)
+
+    async def pause(self, host: str | None = None, *, drain: bool = False) -> Workforce:
+        """Have the workers of a host, or all, take no job from now on; `drain`: also hand back what they run.
+
+        Raises Problem.
+        """
+        told = await self._ask("PUT", _pause_of(host), params={"drain": str(drain).lower()})
+        return Workforce.model_validate_json(told.content)
+
+    async def resume(self, host: str | None = None) -> Workforce:
+        """Have them take jobs again. Raises Problem."""
+        return Workforce.model_validate_json((await self._ask("DELETE", _pause_of(host))).content)
+
     async def _state(self, job_id: str) -> JobState:
         response = await self._ask("GET", f"/v1/jobs/{_safe(job_id)}")
         return JobState.model_validate_json(response.content)
@@ -310,6 +327,11 @@ class AsyncJob(JobFacts):
         self.state = JobState.model_validate_json(response.content)
         return self
 
+    async def requeue(self) -> AsyncJob:
+        """Have the case of this job, which has failed, run once more; gives the new job. Raises Problem."""
+        response = await self._client._ask("POST", f"/v1/jobs/{self.id}/requeue")
+        return AsyncJob(self._client, JobState.model_validate_json(response.content))
+
     async def again(self, *, set: Mapping[Setting, Any] | Mapping[str, Any] = {}, label: str = "", priority: int = 0,
                     limits: Mapping[str, float] = {}) -> AsyncJob:
         """Hand in its case once more with some values changed, as `t_end` to go on beyond its end.
@@ -402,3 +424,7 @@ def _safe(name: str) -> str:
     if not name.replace("-", "").replace("_", "").isalnum():
         raise HockleError(f"an id has letters and digits only, got {name!r}")
     return name
+
+
+def _pause_of(host: str | None) -> str:
+    return "/v1/queue/pause" if host is None else f"/v1/hosts/{quote(host, safe='')}/pause"

@@ -180,3 +180,28 @@ class Link(Document):
     created: datetime
     expires: datetime
     revoked: datetime | None
+
+
+class PauseInfo(Document):
+    """Since when no job is taken, and by whom it was said; `drains`: what ran was handed back too."""
+
+    drains: bool
+    since: datetime
+    owner: str
+
+
+class HostInfo(Document):
+    """A host: how many jobs it can run at once, and its pause."""
+
+    name: str
+    workers: int
+    paused: PauseInfo | None
+
+
+class Workforce(Document):
+    """The jobs that wait and run, the pause of the whole queue, and the hosts that have workers or are paused."""
+
+    waiting: int
+    running: int
+    paused: PauseInfo | None
+    hosts: list[HostInfo]

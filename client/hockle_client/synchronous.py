@@ -14,13 +14,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
+from urllib.parse import quote
 
 import httpx
 from typing_extensions import Self
 
 from hockle_client.case import CaseLike, plain, request_of
 from hockle_client.design import Method, Parameters, sweep_request
-from hockle_client.documents import Cost, EnsembleState, Event, JobState, Link, Status, Verdict
+from hockle_client.documents import Cost, EnsembleState, Event, JobState, Link, Status, Verdict, Workforce
 from hockle_client.ensembles import Ensemble
 from hockle_client.handle import JobFacts
 from hockle_client.problems import HockleError, Unreachable, problem_of
@@ -176,6 +177,22 @@ class Client:
                         for one in told]
         return records
 
+    def workforce(self) -> Workforce:
+        """How many jobs wait and run, and which hosts have workers or are paused; for operators. Raises Problem."""
+        return Workforce.model_validate_json((self._ask("GET", "/v1/queue")).content)
+
+    def pause(self, host: str | None = None, *, drain: bool = False) -> Workforce:
+        """Have the workers of a host, or all, take no job from now on; `drain`: also hand back what they run.
+
+        Raises Problem.
+        """
+        told = self._ask("PUT", _pause_of(host), params={"drain": str(drain).lower()})
+        return Workforce.model_validate_json(told.content)
+
+    def resume(self, host: str | None = None) -> Workforce:
+        """Have them take jobs again. Raises Problem."""
+        return Workforce.model_validate_json((self._ask("DELETE", _pause_of(host))).content)
+
     def _state(self, job_id: str) -> JobState:
         response = self._ask("GET", f"/v1/jobs/{_safe(job_id)}")
         return JobState.model_validate_json(response.content)
@@ -309,6 +326,11 @@ class Job(JobFacts):
         self.state = JobState.model_validate_json(response.content)
         return self
 
+    def requeue(self) -> Job:
+        """Have the case of this job, which has failed, run once more; gives the new job. Raises Problem."""
+        response = self._client._ask("POST", f"/v1/jobs/{self.id}/requeue")
+        return Job(self._client, JobState.model_validate_json(response.content))
+
     def again(self, *, set: Mapping[Setting, Any] | Mapping[str, Any] = {}, label: str = "", priority: int = 0,
               limits: Mapping[str, float] = {}) -> Job:
         """Hand in its case once more with some values changed, as `t_end` to go on beyond its end.
@@ -401,3 +423,7 @@ def _safe(name: str) -> str:
     if not name.replace("-", "").replace("_", "").isalnum():
         raise HockleError(f"an id has letters and digits only, got {name!r}")
     return name
+
+
+def _pause_of(host: str | None) -> str:
+    return "/v1/queue/pause" if host is None else f"/v1/hosts/{quote(host, safe='')}/pause"

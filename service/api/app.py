@@ -23,6 +23,7 @@ from service.api import (
     front,
     jobs,
     links,
+    operating,
     problems,
     processes,
     scalars,
@@ -53,7 +54,8 @@ TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "OGC API Processes", "description": "The same jobs as one process of OGC API Processes, Part 1."},
         {"name": "service", "description": "Whether it lives, and how it does."}]
 ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, film, stores, links, scalars, ensembles,
-                                    ensemble_events, ensemble_data, cases, processes, watching, front)]
+                                    ensemble_events, ensemble_data, cases, processes, operating, watching,
+                                    front)]
 BURST = 10.0  # s of an owner's rate that may be spent at once
 
 

@@ -81,6 +81,15 @@ def _count(which: ColumnElement[bool]) -> ColumnElement[int]:
     return func.coalesce(func.sum(case((which, 1), else_=0)), 0)
 
 
+def counted(database: Database) -> tuple[int, int]:
+    """How many jobs wait, and how many run."""
+    some = jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING))
+    with database.reading() as connection:
+        found = connection.execute(select(jobs.c.status, func.count()).where(some).group_by(jobs.c.status)).all()
+    many: dict[str, int] = dict(map(tuple, found))
+    return many.get(Status.ACCEPTED, 0), many.get(Status.RUNNING, 0)
+
+
 def _histograms(database: Database, column: Column[float]) -> list[Histogram]:
     """The values of a column by the method of their runs."""
     below = [func.sum(case((column <= bound, 1), else_=0)) for bound in BOUNDS]

@@ -9,7 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Literal
 
-from sqlalchemy import delete, insert, select, update
+from sqlalchemy import delete, func, insert, select, update
 
 from service.jobs.database import Database
 from service.jobs.leader import Leader
@@ -94,6 +94,13 @@ class Roll:
         self.workers = sum(one.kind == "worker" and one.id not in quiet for one in there)
         parts = [f"{one.id} {part}" for one in there if one.stuck for part in one.stuck.split(",")]
         self.silent = sorted(quiet) + parts
+
+
+def hosts(database: Database) -> dict[str, int]:
+    """The hosts with workers, and how many each has."""
+    many = select(processes.c.host, func.count()).where(processes.c.kind == "worker").group_by(processes.c.host)
+    with database.reading() as connection:
+        return dict(map(tuple, connection.execute(many)))
 
 
 def forget(database: Database | Leader, ids: Collection[str]) -> None:

@@ -17,7 +17,7 @@ from service.jobs.audit import trail
 HOUR = 3600.0
 FILLED = {"{job_id}": "", "{name}": "elastica"}
 SCOPE = {"GET": "read", "HEAD": "read", "POST": "submit", "PUT": "submit", "DELETE": "submit"}
-OPERATORS = {"/metrics", "/v1/audit"}
+OPERATORS = {"/metrics", "/v1/audit", "/v1/queue", "/v1/queue/pause", "/v1/hosts/{host}/pause"}
 
 
 def operations() -> list[tuple[str, str]]:
@@ -60,7 +60,7 @@ def alices(keyed, key, case) -> str:
 
 def ask(client, method, path, headers, job_id="0" * 26, case=None):
     path = path.replace("{job_id}", job_id).replace("{name}", "elastica").replace("{process_id}", "simulate")
-    path = path.replace("{link_id}", "0" * 12)
+    path = path.replace("{link_id}", "0" * 12).replace("{host}", "nowhere")
     path += "?variables=Tw" if path.endswith("/data") else f"?variables=Tw&jobs={job_id}" if "scalars" in path else ""
     return client.request(method, path, headers=headers, json=(case or {}) if method == "POST" else None)
 

@@ -26,7 +26,7 @@ def register(subparsers: Any) -> None:
     status_parser.set_defaults(run=status)
     fetch_parser = subparsers.add_parser("fetch", help="get a job's dataset")
     fetch_parser.add_argument("id", metavar="ID")
-    fetch_parser.add_argument("-o", "--output", type=Path, help="default ID.nc")
+    fetch_parser.add_argument("-o", "--output", type=Path, help="default ID.nc; *.glb is glTF, *.zip VTK for ParaView")
     fetch_parser.set_defaults(run=fetch)
     add_server(submit_parser, status_parser, fetch_parser)
 
@@ -59,7 +59,8 @@ def fetch(told: argparse.Namespace) -> int:
     path = told.output or Path(f"{told.id}.nc")
     with connected(told.server) as client:
         try:
-            size = client.job(told.id).fetch(path)
+            job = client.job(told.id)
+            size = job.export(path) if path.suffix in (".glb", ".zip") else job.fetch(path)
         except OSError as error:
             raise Failure(f"cannot write {path}: {error}") from None
     print(f"{path} ({size / 1e6:.1f} MB)")

@@ -41,6 +41,7 @@ SILENCE = 45.0
 FIRST_POLL, LONGEST_POLL = 0.05, 1.0
 """Seconds between looks at a job that is waited for."""
 SCALARS_AT_ONCE = 100
+SHAPES = {".glb": "gltf", ".zip": "vtk"}
 
 
 class AsyncClient:
@@ -373,6 +374,16 @@ class AsyncJob(JobFacts):
         finally:
             beside.unlink(missing_ok=True)
         return size
+
+    async def export(self, path: str | Path) -> int:
+        """Write the moving rod for other programs, by the file's suffix: .glb (glTF), .zip (VTK, for ParaView); also of
+        a job that runs. Gives its bytes. Raises Problem, HockleError, OSError."""
+        path = Path(path)
+        if path.suffix not in SHAPES:
+            raise HockleError(f"path must end in {' or '.join(SHAPES)}, got {path.name}")
+        content = (await self._client._ask("GET", f"/v1/jobs/{self.id}/{SHAPES[path.suffix]}")).content
+        path.write_bytes(content)
+        return len(content)
 
     async def dataset(self) -> xr.Dataset:
         """The whole dataset in xarray, its file held in memory. Raises Problem."""

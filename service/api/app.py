@@ -27,6 +27,7 @@ from service.api import (
     problems,
     processes,
     scalars,
+    shapes,
     stores,
     submitting,
     watching,
@@ -53,9 +54,9 @@ TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "cases", "description": "What can be simulated, and what it would cost."},
         {"name": "OGC API Processes", "description": "The same jobs as one process of OGC API Processes, Part 1."},
         {"name": "service", "description": "Whether it lives, and how it does."}]
-ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, film, stores, links, scalars, ensembles,
-                                    ensemble_events, ensemble_data, cases, processes, operating, watching,
-                                    front)]
+ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, film, stores, shapes, links, scalars,
+                                    ensembles, ensemble_events, ensemble_data, cases, processes, operating,
+                                    watching, front)]
 BURST = 10.0  # s of an owner's rate that may be spent at once
 
 

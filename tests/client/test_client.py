@@ -186,3 +186,13 @@ def test_a_job_goes_on_beyond_its_end_and_is_forked(client, quick):
     assert fork.wait().case()["ends"]["end"]["switches"][-1] == {"at": 0.25, "omega3": 0.0}
     assert (longer.status, fork.status) == ("successful", "successful")
     assert longer.values("Tw")["variables"]["Tw"]["values"][:3] == job.values("Tw")["variables"]["Tw"]["values"][:3]
+
+
+def test_the_moving_rod_is_written_for_other_programs(client, quick, tmp_path):
+    job = client.submit(quick).wait()
+    assert job.export(tmp_path / "run.glb") == (tmp_path / "run.glb").stat().st_size
+    assert (tmp_path / "run.glb").read_bytes()[:4] == b"glTF"
+    job.export(tmp_path / "run.zip")
+    assert (tmp_path / "run.zip").read_bytes()[:2] == b"PK"
+    with pytest.raises(HockleError, match=r"must end in \.glb or \.zip"):
+        job.export(tmp_path / "run.obj")

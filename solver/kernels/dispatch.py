@@ -23,9 +23,10 @@ from functools import wraps
 from types import ModuleType
 from typing import Any
 
-from numba.extending import overload
+from numba import types
+from numba.core.typing.templates import AbstractTemplate, infer_global
 
-from solver.kernels.kernel import OPTIONS, Function
+from solver.kernels.kernel import Function, by_type, inner
 
 _VARIANTS: dict[Any, dict[type, Any]] = {}
 """By the general function: the kernel of each class of records."""
@@ -41,16 +42,25 @@ def dispatched(general: Function) -> Function:
     def call(record: Any, *arguments: Any) -> Any:
         return _VARIANTS[call].get(type(record), general)(record, *arguments)
 
-    parameters = ", ".join(inspect.signature(general).parameters)
-    first = parameters.split(",")[0]
-    source = (f"def choose({parameters}):\n"
-              f"    kernel = variants.get(getattr({first}, 'instance_class', NoneType))\n"
-              f"    return kernel.py_func if kernel else general\n")  # fmt: skip
-    must_be_given = "NotImplementedError" in general.__code__.co_names
-    names: dict[str, Any] = {"variants": _VARIANTS.setdefault(call, {}), "NoneType": type(None),
-                             "general": None if must_be_given else general}  # fmt: skip
-    exec(source, names)  # noqa: S102  # numba wants the parameters of an overload to be those of its function
-    overload(call, jit_options=OPTIONS, strict=False)(names["choose"])  # type: ignore[arg-type]
+    variants = _VARIANTS.setdefault(call, {})
+    default = None if "NotImplementedError" in general.__code__.co_names else inner(general)
+
+    class Choice(AbstractTemplate):
+        """How numba types a call: as one of the variant's own."""
+
+        key = call
+
+        def generic(self, arguments: Any, named: Any) -> Any:
+            kernel = self._chosen(arguments)
+            return kernel and types.Dispatcher(kernel).get_call_type(self.context, arguments, named)
+
+        def get_impl_key(self, signature: Any) -> Any:
+            return self._chosen(signature.args).get_overload(signature.args)
+
+        def _chosen(self, arguments: Any) -> Any:
+            return variants.get(getattr(arguments[0], "instance_class", type(None)), default)
+
+    infer_global(call, types.Function(Choice))  # type: ignore[no-untyped-call]
     return call  # type: ignore[return-value]
 
 
@@ -96,4 +106,4 @@ def for_each(general: Callable[..., Any], call: Callable[..., Any], having: Call
 
     names: dict[str, Any] = {"each": each}
     exec(f"def choose({', '.join(parameters)}):\n    return each({records})\n", names)  # noqa: S102
-    overload(general, strict=False)(names["choose"])
+    by_type(general)(names["choose"])

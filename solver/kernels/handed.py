@@ -1,39 +1,58 @@
 """Records of arrays that a method hands to its kernels by reference.
 
 A kernel that is called from Python takes in the arrays of its arguments one by one. For the hundred and more of a step
-that takes 20 us, as long as an iteration on 20 intervals; by reference it takes one.
+that takes 20 us, as long as an iteration on 20 intervals; by reference it takes one. And what kernels pass on to
+kernels is an address then, not each array in turn: else both calling and compiling would take long.
 
-Who hands over keeps the arrays alive. Kernels count no references to them: that would take as long again.
+Who hands over keeps the arrays alive. Kernels read a record's fields by name, as ever; nobody may write a field.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
+import numba
+import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.experimental import structref
-from numba.extending import intrinsic
-
-from solver.kernels.kernel import kernel
-
-
-@structref.register
-class _ReferenceType(types.StructRef):
-    def preprocess_fields(self, fields: Any) -> Any:
-        return tuple((name, types.unliteral(field)) for name, field in fields)  # type: ignore[no-untyped-call]
+from numba.core.registry import cpu_target
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import NativeValue, infer_getattr, lower_getattr_generic, models, register_model, unbox
+from numpy.typing import NDArray
 
 
-class Reference(structref.StructRefProxy):
+class Referred(types.Type):
+    """The type of a reference to records (a tuple, of which `records` are the parts) or to one (with its fields)."""
+
+    def __init__(self, record: Any) -> None:
+        self.record = record
+        self.instance_class = getattr(record, "instance_class", None)
+        self.fields = getattr(record, "fields", ())
+        self.types = tuple(Referred(kind) if isinstance(kind, types.BaseNamedTuple) else kind for kind in record.types)
+        super().__init__(f"reference to {record}")
+
+    @property
+    def key(self) -> Any:
+        """What tells one type of records from another."""
+        return self.record
+
+
+register_model(Referred)(models.OpaqueModel)
+
+
+class Reference:
     """What a kernel gets: `records` are those that were handed over."""
 
+    __slots__ = ("_memory", "_numba_type_", "address")
     records: Any
 
-
-structref.define_boxing(_ReferenceType, Reference)  # type: ignore[no-untyped-call]
-structref.define_constructor(Reference, _ReferenceType, ["records"])  # type: ignore[no-untyped-call]
+    def __init__(self, records: tuple[Any, ...]) -> None:
+        kind: Any = numba.typeof(records)  # type: ignore[no-untyped-call]
+        self._memory = np.zeros(_context().get_abi_sizeof(_laid_out(kind)), np.uint8)
+        self._numba_type_ = Referred(kind)
+        self.address = self._memory.ctypes.data
+        _write(kind, records, self._memory)
 
 
 @dataclass(frozen=True)
@@ -46,7 +65,7 @@ class Handed:
     @classmethod
     def over(cls, *records: Any) -> Handed:
         """Hand records over."""
-        return cls(records, _refer(records))
+        return cls(records, Reference(records))
 
     def again(self, *records: Any) -> Handed:
         """The same; or what is handed over in its place, if one of the records has been replaced."""
@@ -54,29 +73,80 @@ class Handed:
         return self if same else self.over(*records)
 
 
-def _lent(_context: Any, records: Any) -> Any:
-    def write(target: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
-        return _without_owner(target, builder, records, arguments[0])
-
-    return records(records), write
+def _context() -> Any:
+    return cpu_target.target_context
 
 
-def _without_owner(target: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """The code for a value of this type, each array in it owned by nobody."""
-    if isinstance(kind, types.Array):
-        array = target.make_array(kind)(target, builder, value)
-        array.meminfo = ir.Constant(array.meminfo.type, None)
-        return array._getvalue()
-    for i in range(len(kind) if isinstance(kind, types.BaseTuple) else 0):
-        part = _without_owner(target, builder, kind[i], builder.extract_value(value, i))
-        value = builder.insert_value(value, part, i)
+def _laid_out(kind: Any) -> Any:
+    """How records of a type lie in memory."""
+    return _context().get_data_type(kind)
+
+
+def _offset(kind: Any, k: int) -> int:
+    """Where part k of a tuple begins (bytes)."""
+    laid_out = _laid_out(kind)
+    if isinstance(laid_out, ir.ArrayType):  # parts of one type
+        return k * int(_context().get_abi_sizeof(laid_out.element))
+    return int(laid_out.get_element_offset(_context().codegen().target_data, k))
+
+
+def _tuple(kinds: tuple[Any, ...]) -> Any:
+    return types.BaseTuple.from_types(kinds)  # type: ignore[no-untyped-call]
+
+
+def _write(kind: Any, value: Any, memory: NDArray[np.uint8]) -> None:
+    """Write a value of one of numba's types to where `memory` begins; an array as an address that nobody owns."""
+    if isinstance(kind, types.BaseTuple):
+        parts: Any = kind
+        for k, (part, one) in enumerate(zip(parts, value, strict=True)):
+            _write(part, one, memory[_offset(kind, k) :])
+    elif isinstance(kind, types.Array):
+        numbers = (0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
+        memory[: 8 * len(numbers)].view(np.int64)[:] = numbers
+    elif not isinstance(kind, types.NoneType):
+        dtype = np.dtype(str(kind))
+        memory[: dtype.itemsize].view(dtype)[0] = value
+
+
+@infer_getattr
+class _Fields(AttributeTemplate):
+    """The types of what a kernel finds by name."""
+
+    key = Referred
+
+    def generic_resolve(self, kind: Referred, name: str) -> Any:  # type: ignore[override]
+        if name in kind.fields:
+            return kind.types[kind.fields.index(name)]
+        return _tuple(kind.types) if name == "records" and not kind.fields else None
+
+
+@lower_getattr_generic(Referred)  # type: ignore[no-untyped-call]
+def _read(target: Any, builder: Any, kind: Referred, address: Any, name: str) -> Any:
+    """The code that reads a field, or makes references to all records."""
+    if name in kind.fields:
+        return _part(target, builder, kind, address, kind.fields.index(name))
+    parts = [_part(target, builder, kind, address, k) for k in range(len(kind.types))]
+    return target.make_tuple(builder, _tuple(kind.types), parts)
+
+
+def _part(target: Any, builder: Any, kind: Referred, address: Any, k: int) -> Any:
+    """Part k of what lies at an address. It stays as it is: the compiler may read it once for all times."""
+    part = kind.types[k]
+    place = builder.gep(address, [ir.Constant(ir.IntType(64), _offset(kind.record, k))])
+    if isinstance(part, Referred):
+        return place
+    typed, before = builder.bitcast(place, target.get_data_type(part).as_pointer()), len(builder.block.instructions)
+    value = target.data_model_manager[part].load_from_data_pointer(builder, typed)
+    for instruction in builder.block.instructions[before:]:
+        if isinstance(instruction, ir.LoadInstr):
+            instruction.set_metadata("invariant.load", builder.module.add_metadata([]))
     return value
 
 
-_lend = cast(Callable[[Any], Any], intrinsic(_lent))
-"""Records whose arrays nobody owns: there is nothing to count."""
-
-
-@kernel
-def _refer(records: tuple[Any, ...]) -> Any:
-    return Reference(_lend(records))  # type: ignore[no-untyped-call]
+@unbox(Referred)  # type: ignore[no-untyped-call]
+def _take_in(_kind: Referred, reference: Any, c: Any) -> NativeValue:
+    """The address, from Python."""
+    number = c.pyapi.object_getattr_string(reference, "address")
+    address = c.pyapi.long_as_voidptr(number)
+    c.pyapi.decref(number)
+    return NativeValue(address)  # type: ignore[no-untyped-call]

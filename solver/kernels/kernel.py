@@ -6,6 +6,10 @@ the bit whatever was inlined where, and on every CPU (docs/decisions/0005). Divi
 A kernel that is called from Python gives up the interpreter's lock. Else a run of short steps could keep another thread
 of its process waiting for a second: one that holds the lock for less than the switch interval is never asked for it.
 
+Kernels own no arrays. They read and write those that they are given, and small ones on the stack (`scratch`), which are
+gone when they return. So nothing counts references, which took half of the code of many. Those few that make arrays, to
+return them or for themselves, are `allocating`.
+
 Numba's cache does not see that a kernel called from another file has changed. So the cache lives in a folder
 named by a digest of the whole solver: another version of the code has another cache, and nothing compiles twice.
 That digest says nothing of records of others, a test's or a user's: what the solver's kernels make of them is compiled
@@ -28,17 +32,22 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+from numba import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvidedCacheLocator
 from numba.core.registry import cpu_target
+from numba.extending import overload
 
 log = logging.getLogger(__name__)
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-OPTIONS: dict[str, Any] = {"no_cfunc_wrapper": True, "error_model": "numpy", "nogil": True}
+OPTIONS: dict[str, Any] = {"no_cfunc_wrapper": True, "error_model": "numpy", "nogil": True, "_nrt": False}
 
 OWN = __name__.split(".")[0]
 """The solver's package."""
+
+UPSTAIRS = "run"
+"""The folder of the solver that has no kernels, and that nothing else in it may import."""
 
 APART = "HOCKLE_COMPILES"
 """The environment variable that tells a process that it is the one that compiles."""
@@ -46,10 +55,11 @@ APART = "HOCKLE_COMPILES"
 
 @cache
 def code_digest() -> str:
-    """What tells this version of the solver from every other: a digest of its sources."""
-    digest = hashlib.sha256()
-    for source in sorted(Path(__file__).parents[1].rglob("*.py")):
-        digest.update(source.read_bytes())
+    """What tells this version of the kernels from every other: a digest of all sources that they may depend on."""
+    digest, solver = hashlib.sha256(), Path(__file__).parents[1]
+    for source in sorted(solver.rglob("*.py")):
+        if source.relative_to(solver).parts[0] != UPSTAIRS:
+            digest.update(source.read_bytes())
     return digest.hexdigest()[:16]
 
 
@@ -159,9 +169,16 @@ class _Cache(FunctionCache):
     _impl_class = _Results
 
     def save_overload(self, sig: Any, data: Any) -> None:
+        if _holds_arrays(data.signature.return_type) and not data.target_context.enable_nrt:
+            raise TypeError(f"{self._py_func.__qualname__} returns arrays, so it must be `allocating`")
         if self._py_func.__module__.split(".")[0] != OWN or all(map(_is_own, data.signature.args)):
             with suppress(OSError):  # read-only, or full: another process compiles it once more
                 super().save_overload(sig, data)  # type: ignore[no-untyped-call]
+
+
+def _holds_arrays(kind: Any) -> bool:
+    """Whether a value of one of numba's types is an array, or a tuple that holds one."""
+    return isinstance(kind, types.Array) or any(map(_holds_arrays, getattr(kind, "types", ())))
 
 
 def _is_own(kind: Any) -> bool:
@@ -174,7 +191,7 @@ def _is_own(kind: Any) -> bool:
 
 
 def _compiled(function: Function, **options: Any) -> Function:
-    dispatcher = numba.njit(**OPTIONS, **options)(function)
+    dispatcher = numba.njit(**(OPTIONS | options))(function)
     if numba.config.CACHE_DIR:  # type: ignore[attr-defined]
         dispatcher._cache = _Cache(function)  # type: ignore[no-untyped-call]
     return dispatcher  # type: ignore[no-any-return]
@@ -185,9 +202,20 @@ def kernel(function: Function) -> Function:
     return _compiled(function)
 
 
+def allocating(function: Function) -> Function:
+    """Compile a function that makes arrays."""
+    return _compiled(function, _nrt=True)
+
+
 def inner(function: Function) -> Function:
     """Compile a function that only kernels call: without what Python would need to call it, which takes long."""
     return _compiled(function, no_cpython_wrapper=True)
+
+
+def by_type(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:
+    """Decorate what says, of the types of the arguments, which function kernels are to call for `function`."""
+    options: Any = OPTIONS
+    return overload(function, jit_options=options, strict=False)
 
 
 def inlined(function: Function) -> Function:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, inner, kernel
+from solver.kernels.kernel import allocating, inlined, inner, kernel
 from solver.kernels.lanes import series
 from solver.kernels.scratch import scratch
 
@@ -228,7 +228,7 @@ def quaternion_of(R: Array) -> Array:
     return quaternions
 
 
-@kernel
+@allocating
 def rotate(orientation: Array, vectors: Array) -> Array:
     """Material vectors (n, 3) in the lab frame, by unit quaternions (n, 4)."""
     rotated, R = np.empty_like(vectors), scratch((3, 3))
@@ -239,7 +239,7 @@ def rotate(orientation: Array, vectors: Array) -> Array:
     return rotated
 
 
-@kernel
+@allocating
 def rotate_back(orientation: Array, vectors: Array) -> Array:
     """Lab vectors (n, 3) in the material frame, by unit quaternions (n, 4)."""
     rotated, R = np.empty_like(vectors), scratch((3, 3))

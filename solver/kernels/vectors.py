@@ -12,17 +12,16 @@ from math import sqrt
 from typing import Any
 
 import numba
-from numba.extending import overload
 
 from solver.arrays import Array
-from solver.kernels.kernel import inner
+from solver.kernels.kernel import by_type, inner
 
 
 def vector(a: Any, j: int) -> Any:
     """Line j of an array as a vector: of (n, 3) in space, of complex (n,) in a plane; the number of real (n,)."""
 
 
-@overload(vector, strict=False)
+@by_type(vector)
 def _vector(a: Any, j: Any) -> Any:
     if a.ndim == 2:
         return lambda a, j: (a[j, 0], a[j, 1], a[j, 2])
@@ -42,7 +41,7 @@ def dot(a: Any, b: Any) -> Any:
     """The inner product."""
 
 
-@overload(dot, strict=False)
+@by_type(dot)
 def _dot(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a, b: a * b
@@ -61,7 +60,7 @@ def plus(a: Any, b: Any) -> Any:
     """a + b."""
 
 
-@overload(plus, strict=False)
+@by_type(plus)
 def _plus(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a, b: a + b
@@ -74,7 +73,7 @@ def minus(a: Any, b: Any) -> Any:
     """a - b."""
 
 
-@overload(minus, strict=False)
+@by_type(minus)
 def _minus(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a, b: a - b
@@ -95,7 +94,7 @@ def middle(a: Any, b: Any) -> Any:
     """The mean of two vectors; None of None."""
 
 
-@overload(middle, strict=False)
+@by_type(middle)
 def _middle(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.NoneType):
         return lambda a, b: None
@@ -106,7 +105,7 @@ def without(a: Any, b: Any) -> Any:
     """a - b, or a where b is None."""
 
 
-@overload(without, strict=False)
+@by_type(without)
 def _without(a: Any, b: Any) -> Any:
     if isinstance(b, numba.types.NoneType):
         return lambda a, b: a
@@ -117,7 +116,7 @@ def stiffness(a: Any, j: int) -> Any:
     """Matrix j of an array (n, 3, 3); the number of (n,) about one axis."""
 
 
-@overload(stiffness, strict=False)
+@by_type(stiffness)
 def _stiffness(a: Any, j: Any) -> Any:
     if a.ndim == 1:
         return lambda a, j: a[j]
@@ -128,7 +127,7 @@ def transform(A: Any, x: Any) -> Any:
     """A x, of a matrix or of a number."""
 
 
-@overload(transform, strict=False)
+@by_type(transform)
 def _transform(A: Any, x: Any) -> Any:
     if isinstance(A, numba.types.Float):
         return lambda A, x: A * x
@@ -139,7 +138,7 @@ def times_each(a: Any, b: Any) -> Any:
     """The products of the components: diag(a) b; of two numbers their product."""
 
 
-@overload(times_each, strict=False)
+@by_type(times_each)
 def _times_each(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a, b: a * b
@@ -150,7 +149,7 @@ def diagonal(a: Any) -> Any:
     """The matrix diag(a); a number stays one."""
 
 
-@overload(diagonal, strict=False)
+@by_type(diagonal)
 def _diagonal(a: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a: a
@@ -193,7 +192,7 @@ def in_lab(R: Any, x: Any) -> Any:
     """R x: a material vector in the lab frame."""
 
 
-@overload(in_lab, strict=False)
+@by_type(in_lab)
 def _in_lab(R: Any, x: Any) -> Any:
     if len(x) == 2:
         return lambda R, x: (R[0] * x[0] - R[1] * x[1], R[1] * x[0] + R[0] * x[1])
@@ -204,7 +203,7 @@ def tangent_rate(R: Any, omega: Any) -> Any:
     """T_t = R (omega x a3)."""
 
 
-@overload(tangent_rate, strict=False)
+@by_type(tangent_rate)
 def _tangent_rate(R: Any, omega: Any) -> Any:
     if isinstance(omega, numba.types.Float):
         return lambda R, omega: (-R[2] * omega * R[1], R[2] * omega * R[0])
@@ -216,7 +215,7 @@ def in_lab_by_rotation(R: Any, x: Any) -> Any:
     """d(R x) / d psi for dR = R [d psi]: the matrix -R [x] in space, the vector of an angle in a plane."""
 
 
-@overload(in_lab_by_rotation, strict=False)
+@by_type(in_lab_by_rotation)
 def _in_lab_by_rotation(R: Any, x: Any) -> Any:
     if len(x) == 2:
         return lambda R, x: (-R[2] * (R[1] * x[0] + R[0] * x[1]), R[2] * (R[0] * x[0] - R[1] * x[1]))
@@ -233,7 +232,7 @@ def in_material(R: Any, x: Any) -> Any:
     """R^t x: a lab vector in the material frame; the moment about a plane's normal is the same in both."""
 
 
-@overload(in_material, strict=False)
+@by_type(in_material)
 def _in_material(R: Any, x: Any) -> Any:
     if isinstance(x, numba.types.Float):
         return lambda R, x: x
@@ -246,7 +245,7 @@ def in_material_by_rotation(y: Any) -> Any:
     """d(R^t x) / d psi for y = R^t x: the matrix [y]; nothing in a plane."""
 
 
-@overload(in_material_by_rotation, strict=False)
+@by_type(in_material_by_rotation)
 def _in_material_by_rotation(y: Any) -> Any:
     if isinstance(y, numba.types.Float):
         return lambda y: 0.0
@@ -257,7 +256,7 @@ def tangent_by_rotation(G: Any, R: Any) -> Any:
     """G dT / d psi, dT = R (d psi x a3): what a derivative G by the tangent says of a rotation; None of None."""
 
 
-@overload(tangent_by_rotation, strict=False)
+@by_type(tangent_by_rotation)
 def _tangent_by_rotation(G: Any, R: Any) -> Any:
     if isinstance(G, numba.types.NoneType):
         return lambda G, R: None

@@ -20,12 +20,15 @@ stays as it is: its pairs are summed up as ever.
 from __future__ import annotations
 
 from math import sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.kernels.kernel import inner, kernel
+from solver.kernels.copying import copy
+from solver.kernels.kernel import allocating, inner
+from solver.kernels.vectors import dot, minus, norm, times, vector
 from solver.measures.spherical import half_area
 
 BLOCK = 8
@@ -34,7 +37,7 @@ RIGHT_ANGLE = sqrt(2.0)
 there an arc is at most pi / 2 sqrt(2) times as long as its chord."""
 
 
-@kernel
+@allocating
 def shorten(r: Array, first: Array, last: Array) -> tuple[Array, float]:
     """The polygon `r` (3, n) without the inner vertices of its smooth blocks, and what its pairs add up to the less
     (half areas: Wr = -sum / pi).
@@ -43,30 +46,40 @@ def shorten(r: Array, first: Array, last: Array) -> tuple[Array, float]:
     """
     t = _tangents(r, first, last)
     smooth, alone = _smooth(t), _alone(r, first, last)
-    shorter, many, area, before = np.empty(r.shape), 1, 0.0, t[0]
-    shorter[:, 0] = r[:, 0]
+    shorter, many, area, before = np.empty(r.shape), 1, 0.0, vector(t, 0)
+    copy(r[:, 0], shorter[:, 0])
     for block in range(len(smooth)):
         start, end = BLOCK * block, min(BLOCK * (block + 1), r.shape[1] - 1)
         if smooth[block] and alone[block]:
-            chord = r[:, end] - r[:, start]
-            chord /= np.sqrt(np.sum(chord * chord))
-            area += half_area(before, chord, t[start + 1])
+            x, y, z = minus(_vertex(r, end), _vertex(r, start))
+            length = norm((x, y, z))
+            chord = x / length, y / length, z / length
+            area += half_area(before, chord, vector(t, start + 1))
             for i in range(start + 1, end + 1):
-                area += half_area(t[i], chord, t[i + 1])
+                area += half_area(vector(t, i), chord, vector(t, i + 1))
             before = chord
             start = end - 1
         else:
-            before = t[end]
-        shorter[:, many : many + end - start] = r[:, start + 1 : end + 1]
+            before = vector(t, end)
+        copy(r[:, start + 1 : end + 1], shorter[:, many : many + end - start])
         many += end - start
-    return shorter[:, :many].copy(), area
+    polygon = np.empty((3, many))
+    copy(shorter[:, :many], polygon)
+    return polygon, area
 
 
-@kernel
+@inner
+def _vertex(r: Array, i: int) -> Any:
+    """Vertex i of a polygon (3, n), as a vector."""
+    return r[0, i], r[1, i], r[2, i]
+
+
+@allocating
 def _tangents(r: Array, first: Array, last: Array) -> Array:
     """Unit tangents (n + 1, 3) of the ray, the n - 1 segments and the other ray."""
     t = np.empty((r.shape[1] + 1, 3))
-    t[0], t[-1] = first, last
+    copy(first, t[0])
+    copy(last, t[-1])
     for i in range(r.shape[1] - 1):
         x, y, z = r[0, i + 1] - r[0, i], r[1, i + 1] - r[1, i], r[2, i + 1] - r[2, i]
         length = sqrt(x * x + y * y + z * z)
@@ -74,7 +87,7 @@ def _tangents(r: Array, first: Array, last: Array) -> Array:
     return t
 
 
-@inner
+@allocating
 def _smooth(t: Array) -> NDArray[np.bool_]:
     """Of each block, whether its tangents and those of its neighbours turn by less than a right angle in all."""
     turned, segments = np.zeros(len(t)), len(t) - 2
@@ -88,7 +101,7 @@ def _smooth(t: Array) -> NDArray[np.bool_]:
     return smooth
 
 
-@inner
+@allocating
 def _spheres(r: Array) -> tuple[Array, Array]:
     """Centres (blocks, 3) and radii (blocks,) of spheres, each around all vertices of a block."""
     blocks = (r.shape[1] + BLOCK - 2) // BLOCK
@@ -102,16 +115,17 @@ def _spheres(r: Array) -> tuple[Array, Array]:
     return centres, radii
 
 
-@inner
+@allocating
 def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
     """Of each block, whether the sphere around it is apart from those of all but its neighbours, and from the rays."""
     centres, radii = _spheres(r)
     blocks = len(radii)
     alone = np.ones(blocks, np.bool_)
     for one in range(blocks):
-        if one > 0 and not _ray_apart(centres[one], radii[one], r[:, 0], -first):
+        arrives, leaves = minus(vector(centres, one), _vertex(r, 0)), minus(vector(centres, one), _vertex(r, -1))
+        if one > 0 and not _ray_apart(arrives, radii[one], (-first[0], -first[1], -first[2])):
             alone[one] = False
-        if one < blocks - 1 and not _ray_apart(centres[one], radii[one], r[:, -1], last):
+        if one < blocks - 1 and not _ray_apart(leaves, radii[one], (last[0], last[1], last[2])):
             alone[one] = False
         for other in range(one + 2, blocks):
             apart = 0.0
@@ -123,8 +137,7 @@ def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
 
 
 @inner
-def _ray_apart(centre: Array, radius: float, origin: Array, direction: Array) -> bool:
-    """Whether a ray passes a sphere by."""
-    away = centre - origin
-    away -= max(np.sum(away * direction), 0.0) * direction
-    return bool(np.sum(away * away) > radius * radius)
+def _ray_apart(centre: Any, radius: float, direction: Any) -> bool:
+    """Whether a ray passes by a sphere whose centre lies at `centre` from its beginning."""
+    away = minus(centre, times(max(dot(centre, direction), 0.0), direction))
+    return bool(dot(away, away) > radius * radius)

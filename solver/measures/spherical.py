@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from math import atan2, sqrt
+from typing import Any
 
-from solver.arrays import Array
 from solver.kernels.kernel import inlined, kernel
 
 
 @kernel
-def half_area(a: Array, b: Array, c: Array) -> float:
+def half_area(a: Any, b: Any, c: Any) -> float:
     """Half the signed area of the spherical triangle of directions a, b, c (3,), of any length > 0.
 
     By van Oosterom & Strackee (IEEE Trans. Biomed. Eng. 30 (1983) 125).

@@ -20,8 +20,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, inner, kernel
+from solver.kernels.kernel import allocating, inlined, inner, kernel
 from solver.kernels.rotation import rotate
+from solver.kernels.vectors import minus, norm, vector
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
 
@@ -97,11 +98,11 @@ def _ray(r: Array, origin: Array, direction: Array) -> float:
     The quadrilateral's two corners at infinity are one, so it is a triangle. The segment that
     touches the ray lies in a plane with it and adds nothing.
     """
-    total = 0.0
+    total, start, along = 0.0, (origin[0], origin[1], origin[2]), (direction[0], direction[1], direction[2])
     for i in range(len(r) - 1):
-        a, d = origin - r[i], origin - r[i + 1]
-        if a.any() and d.any():
-            total += half_area(a, direction, d)
+        a, d = minus(start, vector(r, i)), minus(start, vector(r, i + 1))
+        if norm(a) > 0.0 and norm(d) > 0.0:
+            total += half_area(a, along, d)
     return total
 
 
@@ -191,7 +192,7 @@ def _near_pairs(r: Array, i: int, last: int, squares: Array, from_i: Array, from
     return total
 
 
-@kernel
+@allocating
 def _segment_pairs(r: Array, closed: bool) -> float:
     """Half the signed area of all pairs of segments of `r` (3, n); neighbours lie in one plane."""
     n = r.shape[1]

@@ -20,9 +20,10 @@ from solver.methods.space.segments.balances import Driven, Motion, Tangents
 from solver.methods.space.segments.chain import Chain, Residuals, Stages, State
 from solver.methods.space.segments.energies import energies, stage_powers, twist
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
-from solver.methods.space.segments.motion import extrapolate, follow_segments, move, spin_steadily
+from solver.methods.space.segments.motion import extrapolate, follow_segments
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
+from solver.methods.time.radau.newton import move_guess
 from solver.physics.axial import axial_compliance
 from solver.physics.contact.forces import Touch, keeps_apart
 from solver.physics.contact.recipe import foreseen
@@ -209,8 +210,7 @@ class StaggeredMethod(RadauMethod):
 
     def _guess_keeps_apart(self, dt: float) -> bool:
         """Whether the guess leaves parts that press on each other apart: where they rattle, the last step misleads."""
-        spin_steadily(self.state, tableau.C, dt, self.stages)
-        move(self.chain, self.state, self.stages, tableau.C, tableau.INVERSE, dt)
+        move_guess(self._hand_over(), dt, self.state)
         return bool(keeps_apart(self.contact.touch, self._trial_nodes()[0]))
 
     def _guess_standstill(self, dt: float) -> None:

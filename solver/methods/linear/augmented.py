@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
@@ -58,7 +59,7 @@ def wide_residuals(wide: Augmented, Y: Array, past: Array, c0: float, h: float, 
     rows, gamma = system.rows, system.space.gamma
     nothing, at_start = scratch((1, 3)), scratch((1, 12))
     interval_residuals(Y, past, c0, h, AT_LEFT_NODE, nodes, nothing, rows, at_start)
-    wide.b_start[:6] = system.b_start
+    copy(system.b_start, wide.b_start[:6])
     for k in range(12):
         wide.b_start[6 + k] = at_start[0, k] + rows[k] * h * wide.A[0, k]
     for j in range(len(wide.b)):
@@ -94,7 +95,7 @@ def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, sy
     """Write the 18 conditions at s = 0 into the first rows of W (42, 48)."""
     interval_panel(0, Y, c0, h, AT_LEFT_NODE, nodes, section, system.rows, system.columns, mean, W, 6)
     W[:6, :] = 0.0
-    W[:6, :12] = system.start
+    copy(system.start, W[:6, :12])
     for k in range(12):
         W[6 + k, 12 + k] = 1.0
 
@@ -112,13 +113,13 @@ def factor_wide(wide: Augmented, Y: Array, past: Array, c0: float, h: float, nod
         if j == 0:
             wide_start(Y, c0, h, nodes, section, system, mean, W)
         else:
-            W[:18, :24] = wide.panels[j - 1, 24:, 24:]
+            copy(wide.panels[j - 1, 24:, 24:], W[:18, :24])
         wide_panel(j, Y, c0, h, nodes, section, system, mean, W)
         if not eliminate(W, wide.swaps[j]):
             return SINGULAR
     wide.last[:, :] = 0.0
-    wide.last[:18, :24] = wide.panels[len(wide.panels) - 1, 24:, 24:]
-    wide.last[18:, :12] = system.end
+    copy(wide.panels[len(wide.panels) - 1, 24:, 24:], wide.last[:18, :24])
+    copy(system.end, wide.last[18:, :12])
     return CONVERGED if eliminate(wide.last, wide.last_swaps) else SINGULAR
 
 
@@ -136,7 +137,7 @@ def solve_wide(wide: Augmented, system: System, scale: float, b: Array, x: Array
             wide.rhs[j, k] = b[j, k] + scale * (wide.b[j, k] - system.b[j, k])
             wide.rhs[j, 12 + k] = scale * wide.b[j, 12 + k]
     _substitute(wide, end)
-    x[:, :] = wide.x[:, :12]
+    copy(wide.x[:, :12], x)
 
 
 @inner

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.linear.tridiagonal import invert3
@@ -45,6 +46,12 @@ class Factors(NamedTuple):
         shapes = ((N, 2, 2), (N, 2), (N + 2, 3, 3), (N + 2, 3, 3), (N + 2, 3, 3), (N + 2, 3), (N, 2), (N, 2),
                   (2, 2))  # fmt: skip
         return cls(*(np.zeros(shape, dtype) for shape in shapes))
+
+
+@inner
+def widths(factors: Factors) -> tuple[int, int]:
+    """In the plane of an axis."""
+    return 1, 2
 
 
 @inner
@@ -111,7 +118,8 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
     """
     before = scratch_like((2, 2, 3), D)
     rows, beside = before[0], before[1]
-    rows[:, :], beside[:, :] = D[1:, :], neighbour[1:, :]
+    copy(D[1:], rows)
+    copy(neighbour[1:], beside)
     sign = 1.0 if side == 0 else -1.0
     for k in range(2):
         kind, d = driven.kinds[side, k], direction(driven, tangents, side, k)

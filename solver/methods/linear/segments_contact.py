@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.kernel import inner, kernel
 from solver.methods.linear.krylov import KEPT, Krylov, begin, combine, follow, set_out, unsolved
 from solver.methods.linear.stages import solve_stages
@@ -68,7 +69,7 @@ def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: Touch, cou
         place_nodes(chain, stages.R[i], stages.omega[i], stages.base[i], stages.r[i], stages.V[i],
                     coupling.r[i], coupling.V[i])  # fmt: skip
     press(touch, coupling.r, coupling.V)
-    driven.push[:] = touch.push
+    copy(touch.push, driven.push)
 
 
 @inner
@@ -168,9 +169,9 @@ def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transfo
         used += 1
     coupling.known[0] = min(KEPT, max(used, coupling.known[0]))
     combine(krylov, used, size)
-    rows.rotation[:] = residuals.rotation
-    rows.translation[:] = residuals.translation
-    rows.ends[:] = residuals.ends
+    copy(residuals.rotation, rows.rotation)
+    copy(residuals.translation, rows.translation)
+    copy(residuals.ends, rows.ends)
     _load_with_forces(chain, tangents, back, krylov.y, 1.0, touch, near, rows)
     solve_stages(chain, driven, tangents, gamma, lam, rows, real, pair)
     _respond(chain, tangents, transform, real, pair, near, krylov.z)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
@@ -121,7 +122,8 @@ def _start(start: Array, b: Array, first: Array, pivots: Swaps) -> bool:
     And the column of each row's pivot into `pivots` (6,).
     """
     A, rhs = scratch((6, 12)), scratch(6)
-    A[:, :], rhs[:] = start, b
+    copy(start, A)
+    copy(b, rhs)
     for i in range(6):
         column = 0
         for k in range(12):

@@ -9,8 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.dispatch import dispatched
-from solver.kernels.kernel import inlined
+from solver.kernels.kernel import inner
 from solver.methods.space.segments.chain import STAGES
 from solver.methods.space.stages import Record
 
@@ -61,7 +62,13 @@ def update(chain: Record, transform: Array, unit: float, fraction: float, stages
     raise NotImplementedError
 
 
-@inlined
+@dispatched
+def widths(factors: Record) -> tuple[int, int]:
+    """How many numbers stand for the rotation of a row, and for the displacement of a segment or an end."""
+    raise NotImplementedError
+
+
+@inner
 def solve_stages(chain: Record, driven: Record, tangents: Record, gamma: float, pair: complex, rows: Record,
                  real_factors: Record, pair_factors: Record) -> None:  # fmt: skip
     """Solve both systems for the transformed residuals `rows`."""
@@ -73,31 +80,29 @@ def solve_stages(chain: Record, driven: Record, tangents: Record, gamma: float, 
     solve(pair_factors)
 
 
-@inlined
+@inner
 def _load_real(rows: Record, factors: Record) -> None:
     """The first of the transformed residuals as a right-hand side."""
-    n = len(factors.x)
-    width = rows.rotation.size // (STAGES * n)
-    rotation = rows.rotation.reshape(STAGES, n, width)
-    for k in range(width):
-        for a in range(n):
+    n, (turned, _) = len(factors.x), widths(factors)
+    rotation = rows.rotation.reshape(STAGES, n, turned)
+    for a in range(n):
+        for k in range(turned):
             factors.x[a, k] = -rotation[0, a, k]
-    factors.load[:] = rows.translation[0]
-    factors.ends[:] = rows.ends[0]
+    copy(rows.translation[0], factors.load)
+    copy(rows.ends[0], factors.ends)
 
 
-@inlined
+@inner
 def _load_pair(rows: Record, factors: Record) -> None:
     """The second and third of the transformed residuals as the right-hand side of the complex system."""
-    n, load, ends = len(factors.x), factors.load, factors.ends
-    width = rows.rotation.size // (STAGES * n)
-    rotation = rows.rotation.reshape(STAGES, n, width)
-    for k in range(width):
-        for a in range(n):
+    n, load, ends, (turned, moved) = len(factors.x), factors.load, factors.ends, widths(factors)
+    rotation = rows.rotation.reshape(STAGES, n, turned)
+    for a in range(n):
+        for k in range(turned):
             factors.x[a, k] = complex(-rotation[1, a, k], -rotation[2, a, k])
-    for k in range(load.shape[1]):
-        for j in range(len(load)):
+    for j in range(len(load)):
+        for k in range(moved):
             load[j, k] = complex(rows.translation[1, j, k], rows.translation[2, j, k])
     for side in range(2):
-        for k in range(ends.shape[1]):
+        for k in range(moved):
             ends[side, k] = complex(rows.ends[1, side, k], rows.ends[2, side, k])

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.space.segments.balances import Driven, Tangents
@@ -45,6 +46,12 @@ class Factors(NamedTuple):
         shapes = ((N, 3, 3), (N, 3, 3), (N + 2, 6, 6), (N + 2, 6, 6), (N + 2, 6, 6), (N + 2, 6), (N, 3), (N, 3),
                   (2, 3))  # fmt: skip
         return cls(*(np.zeros(shape, dtype) for shape in shapes))
+
+
+@inner
+def widths(factors: Factors) -> tuple[int, int]:
+    """In space."""
+    return 3, 3
 
 
 @inner
@@ -164,7 +171,8 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
     R = tangents.R[0] if side == 0 else tangents.R[-1]
     before = scratch_like((2, 3, 6), D)
     rows, beside = before[0], before[1]
-    rows[:, :], beside[:, :] = D[3:, :], neighbour[3:, :]
+    copy(D[3:], rows)
+    copy(neighbour[3:], beside)
     sign = 1.0 if side == 0 else -1.0
     for k in range(3):
         kind = driven.kinds[side, k]

@@ -81,7 +81,9 @@ def smallest_distance(points: Points, skip: float, enough: float) -> float:
 @kernel
 def smallest_gap(points: Points, skip: float) -> float:
     """The smallest distance (m) of the surfaces at two points more than `skip` of arc apart; inf if there are none."""
-    M, pitch, widest = len(points.p), longest_spacing(points), np.max(points.diameter)
+    M, pitch, widest = len(points.p), longest_spacing(points), 0.0
+    for i in range(M):
+        widest = max(widest, points.diameter[i])
     apart = neighbours(points, skip)
     best = np.inf
     for a in range(M):

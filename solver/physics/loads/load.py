@@ -21,11 +21,10 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 from numba import types
-from numba.extending import overload
 
 from solver.arrays import Array
 from solver.kernels.dispatch import dispatched, for_each, has_variant
-from solver.kernels.kernel import inner
+from solver.kernels.kernel import by_type, inner
 from solver.kernels.vectors import dot
 from solver.physics.section import Section
 
@@ -242,7 +241,7 @@ def carried_power(force: Any, velocity: Any) -> float:
     raise NotImplementedError
 
 
-@overload(carried_power, strict=False, inline="always")
+@by_type(carried_power)
 def _carried_power(force: Any, velocity: Any) -> Any:
     if isinstance(force, types.NoneType) or isinstance(velocity, types.NoneType):
         return lambda force, velocity: 0.0

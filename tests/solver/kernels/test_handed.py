@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver import Contact
 from solver.arrays import Array
@@ -58,3 +59,27 @@ def test_a_contact_search_that_needs_more_room_replaces_its_record():
     handed = Handed.over(search.touch)
     search._make_room(search.touch.points, 5000)
     assert handed.again(search.touch) is not handed
+
+
+class Mixed(NamedTuple):
+    present: bool
+    count: int
+    grid: Array
+    inner: Record
+    nothing: None
+    pair: complex
+    marks: NDArray[np.bool_]
+
+
+@kernel
+def told(given):
+    (mixed,) = given.records
+    total = mixed.inner.factor * mixed.inner.values[1] + mixed.grid[1, 2] + mixed.count + mixed.pair.imag
+    return total if mixed.present and mixed.nothing is None and mixed.marks[1] else -1.0
+
+
+def test_every_kind_of_field_arrives():
+    marks = np.array([False, True])
+    mixed = Mixed(True, 1000, np.arange(6.0).reshape(2, 3), Record(np.arange(2.0), 0.5), None, 1 + 0.25j, marks)
+    assert told(Handed.over(mixed).reference) == 1005.75
+    assert told(Handed.over(mixed._replace(present=False)).reference) == -1.0

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import importlib
 import os
+import shutil
 import subprocess
 import sys
 import threading
 from pathlib import Path
 
 import numpy as np
+import pytest
+from numba.core.dispatcher import Dispatcher
 
+from solver.kernels import kernel as kernels
 from solver.kernels.kernel import kernel
 
 PATIENCE = 20_000_000_000
@@ -61,3 +66,41 @@ def test_records_of_others_stand_in_no_cache(tmp_path):
         environment["PYTHONPATH"] = f"{tmp_path}{os.pathsep}{Path(__file__).parents[3]}"
         subprocess.run([sys.executable, "-c", f"import {name}"], env=environment, check=True)
         (tmp_path / f"{name}.py").unlink()
+
+
+SOLVER = Path(kernels.__file__).parents[1]
+
+
+def test_a_change_of_what_only_runs_methods_leaves_all_kernels_compiled(monkeypatch, tmp_path):
+    solver = Path(shutil.copytree(SOLVER, tmp_path / "solver"))
+    monkeypatch.setattr(kernels, "__file__", str(solver / "kernels" / "kernel.py"))
+
+    def digest_with(change: str) -> str:
+        with (solver / change).open("a") as source:
+            source.write("# changed\n")
+        return str(kernels.code_digest.__wrapped__())
+
+    before = kernels.code_digest.__wrapped__()
+    assert digest_with("run/simulation.py") == before
+    assert digest_with("physics/section.py") != before
+
+
+def test_no_kernel_depends_on_what_the_digest_leaves_out():
+    upstairs = f"{kernels.OWN}.{kernels.UPSTAIRS}"
+    for source in SOLVER.rglob("*.py"):
+        place = source.relative_to(SOLVER)
+        if place.parts[0] == kernels.UPSTAIRS:
+            module = importlib.import_module(".".join((kernels.OWN, *place.with_suffix("").parts)))
+            found = [it for it in vars(module).values() if isinstance(it, Dispatcher)]
+            assert all(it.__module__ != module.__name__ for it in found), f"{source} has a kernel"
+        elif place != Path("__init__.py"):
+            assert upstairs not in source.read_text(), f"{source} imports {upstairs}"
+
+
+def test_a_kernel_that_returns_arrays_must_say_so():
+    @kernel
+    def first_half(a):
+        return 0, a[: len(a) // 2]
+
+    with pytest.raises(TypeError, match="first_half returns arrays"):
+        first_half(np.zeros(4))

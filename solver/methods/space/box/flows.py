@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.dispatch import for_each
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
@@ -73,9 +74,9 @@ def enter_step(given: Reference, old: State, new: State, contact: Array, c0: flo
     """
     section, loads, _, _, work = given.records
     past, early, power = work.past, 1.0 - late, flows.power
-    flows.given[1, :] = flows.given[0]
+    copy(flows.given[0], flows.given[1])
     flows.given[0, :] = 0.0
-    power[1, :] = power[0]
+    copy(power[0], power[1])
     power[0, 0], power[0, 1], power[0, 2] = 0.0, contact[1], contact[0]
     for j in range(len(past)):
         for i in range(3):

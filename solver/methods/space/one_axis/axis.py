@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import allocating
 from solver.kernels.rotation import matrix_of, multiply
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
@@ -20,7 +20,7 @@ Plane = NDArray[np.complex128]
 """Vectors of a plane as complex numbers."""
 
 
-@kernel
+@allocating
 def directions(phi: Array) -> Plane:
     """exp(i phi) (n,), the same on every CPU, which numpy's is not."""
     found = np.empty(len(phi), np.complex128)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.vectors import tangent_by_rotation, vector
@@ -205,7 +206,7 @@ def balance(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages, res
 def tangents_at(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
     """Write the tangents at stage i of the balances and of the ends' conditions."""
     h, N, F = chain.h, len(chain.mass), stages.F[i]
-    tangents.T[:] = stages.T[i]
+    copy(stages.T[i], tangents.T)
     tangents.stiff[:] = 0.0
     for j in range(N + 1):
         spring = tangent(chain.elastic, j) / chain.span[j]

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch
@@ -188,7 +189,7 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
         frame, node = (0, 0) if side == 0 else (N + 1, N)
         R = stages.R[i, frame]
         if side == 0:
-            V[:] = stages.base[i, 1]
+            copy(stages.base[i, 1], V)
         else:
             w, Q = stages.omega[i, N], stages.R[i, N]
             for k in range(3):
@@ -235,7 +236,7 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     """Write the tangents at stage i of the balances and of the ends' conditions."""
     h, N = chain.h, len(chain.mass)
     joint_tangents(chain, stages.bend[i], stages.moment[i], tangents.ahead, tangents.back)
-    tangents.R[:] = stages.R[i]
+    copy(stages.R[i], tangents.R)
     tangents.stiff[:] = 0.0
     tangents.before[:] = 0.0
     tangents.behind[:] = 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, condition_ends, segment_tangents
@@ -57,7 +58,7 @@ def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals
                 for m in range(3):
                     turned[k, m] = R[a, 0, k] * Q[0, m] + R[a, 1, k] * Q[1, m] + R[a, 2, k] * Q[2, m]
             for first, rows in ((3, row), (0, residuals.ends[i, side])):
-                old[:] = rows
+                copy(rows, old)
                 for k in range(3):
                     kind = driven.kinds[side, first + k]
                     if kind in (RATE, LOAD):

@@ -13,7 +13,16 @@ from typing import NamedTuple
 from solver.arrays import Array
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inlined, inner, kernel
-from solver.methods.linear.stages import Scheme, complete, factor, solve, solve_stages, solve_with_contact, update
+from solver.methods.linear.stages import (
+    Scheme,
+    complete,
+    factor,
+    solve,
+    solve_stages,
+    solve_with_contact,
+    update,
+    widths,
+)
 from solver.methods.space.segments.chain import STAGES
 from solver.methods.space.segments.motion import LARGEST_TURN
 from solver.methods.space.stages import (
@@ -65,7 +74,7 @@ def mix(weights: Array, source: Array, target: Array) -> None:
             mixed[i, m] = weights[i, 0] * a + weights[i, 1] * b + weights[i, 2] * c
 
 
-@inlined
+@inner
 def transform_residuals(driven: Record, scheme: Scheme, stages: Record, tangents: Record, residuals: Record,
                         transformed: Record) -> None:  # fmt: skip
     """Write the residuals, in the tangents' frames, as the right-hand sides of the real and the complex system."""
@@ -75,7 +84,7 @@ def transform_residuals(driven: Record, scheme: Scheme, stages: Record, tangents
     mix(scheme.back, residuals.ends, transformed.ends)
 
 
-@inlined
+@inner
 def factor_both(chain: Record, loads: Record, driven: Record, scheme: Scheme, dt: float, stages: Record,
                 tangents: Record, real: Record, pair: Record) -> bool:  # fmt: skip
     """Write the tangents at the middle stage, and factor the real and the complex system; False if one is singular."""
@@ -146,6 +155,14 @@ def step(given: Reference, dt: float, unit: float, part: float, state: Record) -
     return STALLED, LARGEST_ITERATIONS
 
 
+@kernel
+def move_guess(given: Reference, dt: float, state: Record) -> None:
+    """Write how the first guess of a step of dt moves at all stages; `given`: see `step`."""
+    chain, _, _, scheme, stages, _, _ = given.records
+    begin_step(state, scheme.nodes, dt, stages)
+    move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
+
+
 @inner
 def largest_departure(theta: Array) -> float:
     """The largest component of a segment's departure from steady rotation (rad); `theta` (N + 2, ...) with the ends'
@@ -167,34 +184,33 @@ def estimate_error(given: Reference, dt: float, state: Record, centres: Array) -
     """
     chain, _, driven, scheme, stages, _, work = given.records
     factors, mu = work.real, scheme.gamma / dt
-    turned = _load_rotation(chain, state, stages, scheme.error, mu, dt, factors.x)
+    turned = _load_rotation(chain, state, stages, scheme.error, mu, dt, factors)
     moved = _delay(centres, stages.r, stages.V, scheme.error, mu, work.velocities)
     resist(chain, work.tangents, mu, work.velocities, factors.load)
     factors.ends[:] = 0.0
     complete(chain, driven, work.tangents, mu, factors)
     solve(factors)
-    n, turn_error, move_error = len(factors.x), 0.0, 0.0
-    for k in range(state.alpha.size // n):
-        for a in range(1, n - 1):
+    turn_error, move_error, (turns, moves) = 0.0, 0.0, widths(factors)
+    for a in range(1, len(factors.x) - 1):
+        for k in range(turns):
             turn_error = max(turn_error, abs(factors.x[a, k]))
     for j in range(len(factors.moved)):
-        for k in range(factors.moved.shape[1]):
+        for k in range(moves):
             move_error = max(move_error, abs(factors.moved[j, k]))
     return turn_error, turned, move_error, moved
 
 
 @inner
 def _load_rotation(chain: Record, state: Record, stages: Record, weights: Array, mu: float, dt: float,
-                   x: Array) -> float:  # fmt: skip
+                   factors: Record) -> float:  # fmt: skip
     """Write the rotation's right-hand side into x; return the largest rotation (rad) of a segment in the step."""
-    n, count = len(x), state.alpha.size
-    width, turned = count // n, 0.0
+    x, count, (width, _), turned = factors.x, state.alpha.size, widths(factors), 0.0
     theta, theta_t = stages.theta.reshape(STAGES, count), stages.theta_t.reshape(STAGES, count)
     omega, alpha = state.omega.reshape(count), state.alpha.reshape(count)
     inertia = chain.inertia.reshape(count - 2 * width)
     x[:] = 0.0
-    for k in range(width):
-        for a in range(1, n - 1):
+    for a in range(1, len(x) - 1):
+        for k in range(width):
             m = a * width + k
             place, rate = 0.0, alpha[m] / mu
             for i in range(STAGES):

@@ -45,7 +45,7 @@ def _length(j: int, last: int, h: float) -> float:
 @kernel
 def add_contact(new: State, nodes: Nodes, h: float, touch: Touch) -> None:
     """Subtract the densities of the forces of contact from nodes.P, and keep the tangents."""
-    press(touch, new.r.reshape((1, -1, 3)), new.Y.reshape((1, -1, 12)))
+    press(touch, touch.pressing, new.r.reshape((1, -1, 3)), new.Y.reshape((1, -1, 12)))
     members, last = touch.pressing.members, len(new.Y) - 1
     for m in range(members.counts[1]):
         j = members.nodes[m]
@@ -68,7 +68,7 @@ def _move(x: Array, c0: float, system: System, touch: Touch, members: Members, c
 def _change(c0: float, system: System, touch: Touch, coupling: Coupling, y: Array) -> None:
     """y = S x: the change of the forces that belongs to coupling.x."""
     _move(coupling.x, c0, system, touch, touch.pressing.members, coupling)
-    change_forces(touch, 0, y)
+    change_forces(touch, touch.pressing, 0, y)
 
 
 @inner
@@ -116,4 +116,4 @@ def solve_with_contact(linear: LinearSolver, c0: float, h: float, system: System
 def contact_fraction(c0: float, system: System, touch: Touch, coupling: Coupling) -> float:
     """How much of the update system.x may be taken without using up a pair's distance."""
     _move(system.x, c0, system, touch, touch.pairs.members, coupling)
-    return float(allowed_fraction(touch, 0))
+    return float(allowed_fraction(touch, touch.pressing, 0))

@@ -91,6 +91,17 @@ def follow(krylov: Krylov, m: int, size: int) -> None:
 
 
 @kernel
+def project(krylov: Krylov, known: int, size: int) -> None:
+    """Go along the first `known` directions, whose images are known, as far as the residual falls."""
+    V, y = krylov.images, krylov.y
+    for m in range(known):
+        krylov.parts[m] = np.dot(V[m, :size], y[:size])
+        for c in range(size):
+            y[c] -= krylov.parts[m] * V[m, c]
+    krylov.left[1] = _norm(y, size)
+
+
+@kernel
 def combine(krylov: Krylov, used: int, size: int) -> None:
     """Write the solution into y."""
     R, parts, y = krylov.R, krylov.parts, krylov.y

@@ -1,7 +1,9 @@
 """Contact in the staggered method's iteration: forces on the nodes at each stage, and the solve with their tangents.
 
-The rod's tangents are frozen, those of contact are the stages' own: an increment of the forces y at all stages goes
-through the rod's real and complex systems, and comes back as an increment of motion at all stages.
+The rod's tangents are those of the step's first guess. Those of contact are the stages' own: at this iterate, or at an
+earlier one as long as the iteration gets on; then the images of the directions are known, too. An increment of the
+forces y at all stages goes through the rod's real and complex systems, and comes back as an increment of motion at all
+stages.
 """
 
 from __future__ import annotations
@@ -13,12 +15,18 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.kernel import inner, kernel
-from solver.methods.linear.krylov import KEPT, Krylov, begin, combine, follow, set_out, unsolved
+from solver.methods.linear.krylov import KEPT, Krylov, begin, combine, follow, project, set_out, unsolved
 from solver.methods.linear.stages import solve_stages
 from solver.methods.linear.tridiagonal import Factors, node_moves
 from solver.methods.space.segments.balances import Driven, Tangents, share
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
-from solver.physics.contact.forces import Touch, allowed_fraction, change_forces, move_points, press
+from solver.physics.contact.forces import (
+    Touch,
+    allowed_fraction,
+    change_forces,
+    move_points,
+    press,
+)
 from solver.physics.contact.members import Members
 
 SOLVED = 1e-3
@@ -27,9 +35,9 @@ iterations and more time, 1e-1 three times as much."""
 
 
 class Coupling(NamedTuple):
-    """Scratch of the solve with contact: `krylov`, the `responses` of places to its directions and how many of them are
-    `known` (1,); `rows` residuals of the transformed stages; places and velocities of the nodes `r`, `V` (3, N + 1, 3),
-    and their changes `moved`, `accelerated`."""
+    """Scratch of the solve with contact: `krylov`, the `responses` of places to its directions, and of how many of them
+    responses and images are `known` (2,); `rows` residuals of the transformed stages; places and velocities of the
+    nodes `r`, `V` (3, N + 1, 3), and their changes `moved`, `accelerated`."""
 
     krylov: Krylov
     responses: Array
@@ -45,7 +53,7 @@ class Coupling(NamedTuple):
         """Zeros for N = `intervals`; 0 where there is no contact."""
         n = intervals + 1
         krylov, moves = Krylov.empty(9 * n), [np.zeros((3, n, 3)) for _ in range(4)]
-        return cls(krylov, np.zeros_like(krylov.directions), np.zeros(1, np.int64), Residuals.empty(intervals), *moves)
+        return cls(krylov, np.zeros_like(krylov.directions), np.zeros(2, np.int64), Residuals.empty(intervals), *moves)
 
 
 @kernel
@@ -63,12 +71,12 @@ def place_nodes(chain: Chain, R: Array, omega: Array, base: Array, centres: Arra
 
 
 @inner
-def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: Touch, coupling: Coupling) -> None:
-    """Write the forces on the nodes at all stages into `driven.push`."""
+def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: Touch, coupling: Coupling, fresh: bool) -> None:
+    """Write the forces on the nodes of all stages to `driven.push`; if `fresh`, with the tangents that serve on."""
     for i in range(STAGES):
         place_nodes(chain, stages.R[i], stages.omega[i], stages.base[i], stages.r[i], stages.V[i],
                     coupling.r[i], coupling.V[i])  # fmt: skip
-    press(touch, coupling.r, coupling.V)
+    press(touch, touch.tangents if fresh else touch.pressing, coupling.r, coupling.V)
     copy(touch.push, driven.push)
 
 
@@ -130,23 +138,24 @@ def _move(response: Array, inverse: Array, dt: float, touch: Touch, members: Mem
 @inner
 def _change(response: Array, inverse: Array, dt: float, touch: Touch, coupling: Coupling, y: Array) -> None:
     """y = S x: the change of the forces at all stages."""
-    members, size = touch.pressing.members, 3 * touch.pairs.members.counts[1]
+    members, size = touch.tangents.members, 3 * touch.pairs.members.counts[1]
     _move(response, inverse, dt, touch, members, coupling)
     for i in range(STAGES):
         move_points(touch, members, coupling.moved[i], coupling.accelerated[i])
-        change_forces(touch, i, y[i * size : (i + 1) * size])
+        change_forces(touch, touch.tangents, i, y[i * size : (i + 1) * size])
 
 
 @kernel
 def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transform: Array, back: Array, inverse: Array,
                        gamma: float, lam: complex, dt: float, residuals: Residuals, real: Factors, pair: Factors,
-                       touch: Touch, coupling: Coupling, first: bool) -> float:  # fmt: skip
+                       touch: Touch, coupling: Coupling, first: bool, fresh: bool) -> float:  # fmt: skip
     """Solve for the increments that belong to the transformed `residuals`, with the tangents of contact.
 
-    The directions of the step's earlier solves, of which the `first` has none, come first: their responses are known.
-    Returns how much of the increment
-    may be taken without using up a pair's distance.
+    The directions of the step's earlier solves, of which the `first` has none, come first: their responses are known,
+    and their images unless the tangents are `fresh`. Returns how much of the increment may be taken without using up a
+    pair's distance.
     """
+    pressing = touch.tangents if fresh else touch.pressing
     near, krylov, rows, responses = touch.pairs.members, coupling.krylov, coupling.rows, coupling.responses
     size = 3 * STAGES * near.counts[1]
     used = 0
@@ -156,18 +165,21 @@ def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transfo
     _respond(chain, tangents, transform, real, pair, near, krylov.z)
     _change(krylov.z, inverse, dt, touch, coupling, krylov.y)
     begin(krylov, size)
+    if not fresh:
+        used = coupling.known[1]
+        project(krylov, used, size)
     while unsolved(krylov, used, size, SOLVED):
         if used >= coupling.known[0]:
             set_out(krylov, used, size)
             _clear(rows)
-            _load_with_forces(chain, tangents, back, krylov.directions[used], -1.0, touch, touch.pressing.members,
+            _load_with_forces(chain, tangents, back, krylov.directions[used], -1.0, touch, touch.tangents.members,
                               rows)  # fmt: skip
             solve_stages(chain, driven, tangents, gamma, lam, rows, real, pair)
             _respond(chain, tangents, transform, real, pair, near, responses[used])
         _change(responses[used], inverse, dt, touch, coupling, krylov.z)
         follow(krylov, used, size)
         used += 1
-    coupling.known[0] = min(KEPT, max(used, coupling.known[0]))
+    coupling.known[0], coupling.known[1] = min(KEPT, max(used, coupling.known[0])), min(KEPT, used)
     combine(krylov, used, size)
     copy(residuals.rotation, rows.rotation)
     copy(residuals.translation, rows.translation)
@@ -179,7 +191,7 @@ def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transfo
     fraction = 1.0
     for i in range(STAGES):
         move_points(touch, near, coupling.moved[i], coupling.accelerated[i])
-        fraction = min(fraction, allowed_fraction(touch, i))
+        fraction = min(fraction, allowed_fraction(touch, pressing, i))
     return fraction
 
 

@@ -50,7 +50,7 @@ def solve(factors: Record) -> None:
 @dispatched
 def solve_with_contact(chain: Record, driven: Record, tangents: Record, transform: Array, back: Array, inverse: Array,
                        gamma: float, lam: complex, dt: float, residuals: Record, real: Record, pair: Record,
-                       touch: Record, coupling: Record, first: bool) -> float:  # fmt: skip
+                       touch: Record, coupling: Record, first: bool, fresh: bool) -> float:  # fmt: skip
     """As `solve_stages`, with the tangents of contact; return the part of the increments that may be taken."""
     raise NotImplementedError
 

@@ -34,8 +34,8 @@ def move(chain: Record, state: Record, stages: Record, nodes: Array, inverse: Ar
 
 
 @dispatched
-def press_stages(chain: Record, stages: Record, driven: Record, touch: Record, coupling: Record) -> None:
-    """Write the forces of contact at all stages."""
+def press_stages(chain: Record, stages: Record, driven: Record, touch: Record, coupling: Record, fresh: bool) -> None:
+    """Write the forces of contact at all stages; where `fresh`, with their tangents."""
     raise NotImplementedError
 
 

@@ -56,6 +56,7 @@ class Pressing(NamedTuple):
 class Touch(NamedTuple):
     """Everything that contact needs in a step; `present` is False in a scene without contact.
 
+    `pressing`: the pairs at the current iterate; `tangents`: at an earlier one, whose tangents serve on.
     `moved` (M, 9): changes of p, t, w of the points; `borne` (M, 3): forces on them. `push` (stages, n, 3): forces on
     the nodes, lab, N.
     """
@@ -65,6 +66,7 @@ class Touch(NamedTuple):
     points: Points
     pairs: Pairs
     pressing: Pressing
+    tangents: Pressing
     moved: Array
     borne: Array
     push: Array
@@ -77,21 +79,20 @@ def touching(touch: Touch) -> bool:
 
 
 @kernel
-def press(touch: Touch, r: Array, velocity: Array) -> None:
+def press(touch: Touch, pressing: Pressing, r: Array, velocity: Array) -> None:
     """Write the forces on the nodes at all stages into `push`, from nodes `r` (stages, n, 3) and their lab velocities
-    (stages, n, >= 3); list the pairs that press, with their tangents."""
-    pressing = touch.pressing
+    (stages, n, >= 3); list the pairs that press, with their tangents, in `pressing`."""
     dismiss(pressing.members)
     for stage in range(len(pressing.many)):
-        _press_at(touch, r[stage], velocity[stage], stage)
+        _press_at(touch, pressing, r[stage], velocity[stage], stage)
         for pair in range(pressing.many[stage]):
             take_in(pressing.members, touch.points, pressing.first[stage, pair])
             take_in(pressing.members, touch.points, pressing.second[stage, pair])
 
 
 @inner
-def _press_at(touch: Touch, r: Array, velocity: Array, stage: int) -> None:
-    points, pairs, pressing, push, borne = touch.points, touch.pairs, touch.pressing, touch.push[stage], touch.borne
+def _press_at(touch: Touch, pressing: Pressing, r: Array, velocity: Array, stage: int) -> None:
+    points, pairs, push, borne = touch.points, touch.pairs, touch.push[stage], touch.borne
     push[:, :] = 0.0
     stored, lost, many = 0.0, 0.0, 0
     for m in range(pairs.members.counts[0]):
@@ -161,9 +162,9 @@ def move_points(touch: Touch, members: Members, moved: Array, accelerated: Array
 
 
 @kernel
-def change_forces(touch: Touch, stage: int, y: Array) -> None:
+def change_forces(touch: Touch, pressing: Pressing, stage: int, y: Array) -> None:
     """Write the changes of the forces on the nodes near others (3 per node) that belong to `touch.moved` into y."""
-    points, pressing, moved, borne = touch.points, touch.pressing, touch.moved, touch.borne
+    points, moved, borne = touch.points, touch.moved, touch.borne
     slot, members = touch.pairs.members.slot, pressing.members
     first, second = pressing.first[stage], pressing.second[stage]
     n, g, k, pull = pressing.n[stage], pressing.g[stage], pressing.k[stage], pressing.pull[stage]
@@ -191,9 +192,9 @@ def change_forces(touch: Touch, stage: int, y: Array) -> None:
 
 
 @kernel
-def allowed_fraction(touch: Touch, stage: int) -> float:
+def allowed_fraction(touch: Touch, pressing: Pressing, stage: int) -> float:
     """How much of the change `touch.moved` may be taken without using up a pair's distance or gap."""
-    fraction, pairs, pressing, points, moved = 1.0, touch.pairs, touch.pressing, touch.points, touch.moved
+    fraction, pairs, points, moved = 1.0, touch.pairs, touch.points, touch.moved
     for pair in range(pairs.counts[0]):
         a, b = pairs.first[pair], pairs.second[pair]
         change, distance = 0.0, 0.0

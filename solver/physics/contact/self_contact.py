@@ -151,9 +151,10 @@ class SelfContact:
 
     def _make_room(self, points: Points, capacity: int) -> None:
         n, M = self._nodes, len(points.p)
-        pairs, pressing = Pairs.empty(capacity, M, n), Pressing.empty(self._stages, capacity, M, n)
+        pairs = Pairs.empty(capacity, M, n)
+        pressing, tangents = (Pressing.empty(self._stages, capacity, M, n) for _ in range(2))
         changes = np.zeros((M, 9)), np.zeros((M, 3)), np.zeros((self._stages, n, 3))
-        self.touch = Touch(self.present, self._law, points, pairs, pressing, *changes)
+        self.touch = Touch(self.present, self._law, points, pairs, pressing, tangents, *changes)
 
 
 def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen) -> tuple[Points, Law]:

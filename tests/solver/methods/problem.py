@@ -157,7 +157,7 @@ class Problem:
             x[:] = 0.0
             x.ravel()[column] = 1.0
             _move(x, self.c0, system, touch, near, self.work.coupling)
-            change_forces(touch, 0, y)
+            change_forces(touch, touch.pressing, 0, y)
             at = size * (column // 12) + column % 12
             for m in range(near.counts[1]):
                 node = near.nodes[m]

@@ -20,7 +20,7 @@ def in_contact(touch: None) -> bool:
 
 
 @inner
-def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: None, coupling: None) -> None:
+def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: None, coupling: None, fresh: bool) -> None:
     """Nothing presses."""
 
 

@@ -49,6 +49,9 @@ of the rotation itself, for a rod may spin fast with a small seed."""
 IN_CONTACT = 10.0
 """How many times more a step in contact may leave, whose error is that of strands that rattle."""
 
+SERVES = 0.7
+"""Part of the increment before that one may be for the tangents of contact to serve again."""
+
 
 class Work(NamedTuple):
     """Arrays that a step writes and nobody keeps: residuals and their transforms, tangents, both factored systems, what
@@ -116,14 +119,14 @@ def step(given: Reference, dt: float, unit: float, part: float, state: Record) -
     arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
     chain, loads, driven, scheme, stages, touch, work = given.records
-    before, contact = 0.0, in_contact(touch)
+    before, contact, fresh = 0.0, in_contact(touch), True
     residuals, transformed, tangents, real, pair = work.residuals, work.transformed, work.tangents, work.real, work.pair
     begin_step(state, scheme.nodes, dt, stages)
     for iteration in range(1, LARGEST_ITERATIONS + 1):
         if not move(chain, state, stages, scheme.nodes, scheme.inverse, dt) < LARGEST_TURN:
             return STALLED, iteration
         if contact:
-            press_stages(chain, stages, driven, touch, work.coupling)
+            press_stages(chain, stages, driven, touch, work.coupling, fresh)
         evaluate(chain, loads, driven, stages, residuals)
         if iteration == 1:
             if not factor_both(chain, loads, driven, scheme, dt, stages, tangents, real, pair):
@@ -133,7 +136,7 @@ def step(given: Reference, dt: float, unit: float, part: float, state: Record) -
         if contact:
             fraction = solve_with_contact(chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma,
                                           lam, dt, transformed, real, pair, touch, work.coupling,
-                                          iteration == 1)  # fmt: skip
+                                          iteration == 1, fresh)  # fmt: skip
         else:
             solve_stages(chain, driven, tangents, gamma, lam, transformed, real, pair)
         turned, forced = update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
@@ -146,11 +149,12 @@ def step(given: Reference, dt: float, unit: float, part: float, state: Record) -
         if is_enough(size, before):
             move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
             if contact:
-                press_stages(chain, stages, driven, touch, work.coupling)
+                press_stages(chain, stages, driven, touch, work.coupling, False)
             join_stages(chain, stages)
             return CONVERGED, iteration
         if diverges(iteration, size, before) and not contact:
             return STALLED, iteration
+        fresh = fraction < 1.0 or not size < SERVES * before
         before = size if fraction == 1.0 else 0.0
     return STALLED, LARGEST_ITERATIONS
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver.arrays import Array
-from solver.methods.linear.krylov import Krylov, begin, combine, follow, set_out, unsolved
+from solver.methods.linear.krylov import Krylov, begin, combine, follow, project, set_out, unsolved
 
 SIZE = 30
 
@@ -52,6 +52,20 @@ def test_known_directions_serve_another_right_hand_side_and_a_matrix_nearby(seed
     used = solved(krylov, 1.01 * stiff, other, known, 1e-6)
     assert max(0, used - known) < 0.5 * afresh
     assert np.linalg.norm(other - krylov.y - 1.01 * stiff @ krylov.y) < 1e-5 * np.linalg.norm(other)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_where_the_matrix_stays_known_images_serve_another_right_hand_side_without_a_product(seed: int) -> None:
+    stiff, b = system(seed)
+    krylov = Krylov.empty(SIZE)
+    known = solved(krylov, stiff, b, 0, 1e-9)
+    other = stiff @ np.random.default_rng(99).normal(size=SIZE)
+    krylov.y[:] = other
+    begin(krylov, SIZE)
+    project(krylov, known, SIZE)
+    assert not unsolved(krylov, known, SIZE, 1e-5)
+    combine(krylov, known, SIZE)
+    assert np.linalg.norm(other - krylov.y - stiff @ krylov.y) < 1e-5 * np.linalg.norm(other)
 
 
 def test_a_direction_that_says_nothing_new_is_passed_over() -> None:

@@ -254,12 +254,12 @@ def test_no_update_of_newtons_closes_a_gap_that_presses() -> None:
     _, r, velocity = state_of(loop(0.04), s)
     contact.prepare(*state_of(loop(0.04), s), 0.01)
     touch = contact.touch
-    press(touch, r[None], velocity[None])
+    press(touch, touch.pressing, r[None], velocity[None])
     assert touch.pressing.many[0] > 0
     change = state_of(loop(0.015), s)[1] - r
     move_points(touch, touch.pairs.members, change, np.zeros_like(change))
-    fraction = allowed_fraction(touch, 0)
+    fraction = allowed_fraction(touch, touch.pressing, 0)
     assert 0.0 < fraction < 1.0
     gap = touch.pressing.gap[0, : touch.pressing.many[0]].min()
-    press(touch, (r + fraction * change)[None], velocity[None])
+    press(touch, touch.pressing, (r + fraction * change)[None], velocity[None])
     assert 0.1 * gap < touch.pressing.gap[0, : touch.pressing.many[0]].min() < gap

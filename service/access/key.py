@@ -37,7 +37,11 @@ class ApiKey:
     def opens(self, secret: str, now: float) -> bool:
         """Whether `secret` is this key's and the key is good at the time `now`; as slow for a wrong one."""
         same = hmac.compare_digest(sha256(secret), self.sha256)
-        return same and self.revoked is None and now < self.expires
+        return same and self.is_good(now)
+
+    def is_good(self, now: float) -> bool:
+        """Whether it was not revoked, and has not expired at the time `now`."""
+        return self.revoked is None and now < self.expires
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,7 @@ from service.api import (
     submitting,
     watching,
 )
+from service.api.admitted import Admitted
 from service.api.description import describe
 from service.api.feed import Feed
 from service.api.gate import Gate
@@ -82,8 +83,9 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
                 threads: dict[str, Part] = {"reconciler": reconciling, "notifier": notifying,
                                             "submissions": submissions, "feed": feed}
                 with Health(database, doorbell, settings, reconciler.leader, threads) as health:
-                    app.state.parts = Parts(settings, registry, doorbell, KeyStore(database), limit, submissions, feed,
-                                            published, health)
+                    keys = KeyStore(database)
+                    app.state.parts = Parts(settings, registry, doorbell, keys, limit, submissions, feed, published,
+                                            health, Admitted(keys))
                     _warm_up()
                     async with health.shown():
                         yield

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Response
@@ -14,6 +14,7 @@ from service.api.description import problems
 from service.api.ensembles import Seen, document, found, member_document
 from service.api.events import STILL_HERE, STREAM, event
 from service.api.numbers import WHOLE
+from service.api.parts import InParts, Reader
 from service.jobs import Status
 from service.jobs.ensembles import Ensemble, Ensembles
 
@@ -30,7 +31,7 @@ router = APIRouter(prefix="/v1/ensembles/{ensemble_id}", tags=["ensembles"])
 
 @router.get("/events", response_class=Response, responses={**EVENTS, **problems(404, 422)})
 def ensemble_events(
-    ensemble_id: str, ensembles: Seen,
+    ensemble_id: str, ensembles: Seen, parts: InParts, caller: Reader,
     last_event_id: Annotated[int, Header(alias="Last-Event-ID", ge=0, le=2**62), WHOLE] = 0,
 ) -> Response:
     """Follow an ensemble. Each event says how something is now, not what has changed: after a break with
@@ -39,11 +40,12 @@ def ensemble_events(
     standing = ensembles.standing(ensemble.id)
     if standing.ended and last_event_id >= standing.version:
         return Response(status_code=204)
-    return StreamingResponse(_stream(ensembles, ensemble, last_event_id), media_type="text/event-stream",
+    stream = parts.admitted.while_good(caller, _stream(ensembles, ensemble, last_event_id))
+    return StreamingResponse(stream, media_type="text/event-stream",
                              headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"})
 
 
-async def _stream(ensembles: Ensembles, ensemble: Ensemble, seen: int) -> AsyncIterator[str]:
+async def _stream(ensembles: Ensembles, ensemble: Ensemble, seen: int) -> AsyncGenerator[str, None]:
     statuses: dict[int, Status] = {}
     spoke = time.monotonic()
     while True:

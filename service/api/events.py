@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
@@ -14,7 +14,7 @@ from service.api.description import problems
 from service.api.documents import document
 from service.api.feed import Feed
 from service.api.numbers import WHOLE
-from service.api.parts import InParts, Jobs
+from service.api.parts import InParts, Jobs, Reader
 from service.jobs import ENDED, Registry
 
 STILL_HERE = 15.0
@@ -33,17 +33,18 @@ router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["jobs"])
 
 
 @router.get("/events", response_class=Response, responses={**STREAM, **problems(404, 422)})
-async def events(job_id: str, parts: InParts, jobs: Jobs,
+async def events(job_id: str, parts: InParts, jobs: Jobs, caller: Reader,
                  last_event_id: Annotated[int, Header(alias="Last-Event-ID", ge=0, le=2**62), WHOLE] = 0) -> Response:
     """Follow a job; after a break, Last-Event-ID (the job's version that was seen last) goes on from there."""
     job = jobs.get(job_id)
     if job.status in ENDED and last_event_id >= job.version:
         return Response(status_code=204)
-    return StreamingResponse(_stream(jobs, parts.feed, job_id, last_event_id), media_type="text/event-stream",
+    stream = parts.admitted.while_good(caller, _stream(jobs, parts.feed, job_id, last_event_id))
+    return StreamingResponse(stream, media_type="text/event-stream",
                              headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"})
 
 
-async def _stream(jobs: Registry, feed: Feed, job_id: str, seen: int) -> AsyncIterator[str]:
+async def _stream(jobs: Registry, feed: Feed, job_id: str, seen: int) -> AsyncGenerator[str, None]:
     while True:
         job = jobs.get(job_id)
         for one in jobs.events(job_id, seen):

@@ -11,6 +11,7 @@ from fastapi.security.base import SecurityBase
 
 from service.access import Caller, KeyStore, Scope
 from service.access.limits import RateLimit
+from service.api.admitted import Admitted
 from service.api.feed import Feed
 from service.api.health import Health
 from service.api.problems import Problem
@@ -34,6 +35,7 @@ class Parts:
     feed: Feed
     datasets: Datasets
     health: Health
+    admitted: Admitted
 
 
 class _With(SecurityBase):

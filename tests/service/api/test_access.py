@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 
+import httpx
 import pytest
 from fastapi.testclient import TestClient
+from sqlalchemy import update
 
 from service.access import KeyStore, Scope
 from service.api.app import ROUTERS, create_app
@@ -13,6 +16,7 @@ from service.api.gate import is_open
 from service.api.listening import listen
 from service.jobs import Database
 from service.jobs.audit import trail
+from service.jobs.tables import api_keys
 
 HOUR = 3600.0
 FILLED = {"{job_id}": "", "{name}": "elastica"}
@@ -231,3 +235,33 @@ def test_a_webhook_stands_in_the_job_from_its_submission_on(keyed, key, case):
     assert told["webhook"] == expected
     assert keyed.get(f"/v1/jobs/{told['id']}", headers=alice).json()["webhook"] == expected
     assert keyed.post("/v1/jobs", json=case, headers=alice).json()["webhook"] is None
+
+
+@pytest.mark.parametrize("end", ["revoked", "expired"])
+@pytest.mark.parametrize("of", ["jobs", "ensembles"])
+def test_the_events_that_a_key_follows_end_with_it(keyed, key, store, case, until, monkeypatch, of, end):
+    monkeypatch.setattr("service.api.admitted.LOOK", 0.01)
+    mine, others = key("alice"), key("alice")
+    body = case if of == "jobs" else {"case": case, "parameters": {"loads.damping": [0.1, 0.2]}}
+    address = keyed.post(f"/v1/{of}", json=body, headers=mine).json()["links"]["events"]
+    answers: dict[str, httpx.Response] = {}
+
+    def listen(name: str, headers: dict[str, str]) -> None:
+        answers[name] = keyed.get(address, headers=headers)
+
+    threads = [threading.Thread(target=listen, args=told, daemon=True) for told in (("mine", mine), ("others", others))]
+    for thread in threads:
+        thread.start()
+    prefix = mine["Authorization"].split("_")[1]
+    until(lambda: prefix in keyed.app.state.parts.admitted._seen, "somebody listens")
+    if end == "revoked":
+        store.revoke(prefix)
+    else:
+        with keyed.app.state.parts.registry.database.writing() as transaction:
+            gone = update(api_keys).where(api_keys.c.prefix == prefix).values(expires=transaction.now - 1.0)
+            transaction.connection.execute(gone)
+    until(lambda: "mine" in answers, "the stream of the key ends")
+    assert answers["mine"].status_code == 200
+    assert "others" not in answers  # who has a good key goes on
+    keyed.request("POST", address.replace("/events", "/cancel"), headers=others)
+    until(lambda: "others" in answers, "its stream ends with what it follows")

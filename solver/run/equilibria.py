@@ -11,7 +11,7 @@ from solver.kernels.kernel import compile_apart
 from solver.kernels.rotation import rotate_back
 from solver.measures.frame import Fields, Frame, Statistics, complete
 from solver.measures.topology import writhe_of_rod
-from solver.methods.space.segments.balances import motion_at
+from solver.methods.space.segments.balances import Motion
 from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.staggered import orientations_at_nodes
 from solver.outcome import Outcome, RunFailed
@@ -94,7 +94,8 @@ class Equilibria(Run):
             raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, told)
         fields = self._fields(point)
         stages = equations.stages
-        energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], motion_at(stages, 0))
+        motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
+        energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], motion)
         energy = energy._replace(kinetic=0.0, added_mass=0.0)
         frame = Frame(
             t=t, **vars(fields),

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dgbtrf, dgbtrs
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.kernel import kernel
 from solver.kernels.rotation import matrix_of, relative_rotation, turn
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, segment_tangents
@@ -60,10 +61,10 @@ def _turn_all(quaternion: Array, psi: Array, turned: Array) -> None:
 @kernel
 def _lay_down(chain: Chain, quaternion: Array, base: Array, stages: Stages) -> None:
     """Write rotations, places and moments of stage 0; velocities and accelerations stay zero."""
-    stages.quaternion[0] = quaternion
+    copy(quaternion, stages.quaternion[0])
     for a in range(len(quaternion)):
         matrix_of(quaternion[a], stages.R[0, a])
-    stages.base[0, 0] = base
+    copy(base, stages.base[0, 0])
     follow_segments(stages.R[0], stages.omega[0], stages.alpha[0], stages.base[0], chain.h,
                     stages.r[0], stages.V[0], stages.A[0])  # fmt: skip
     bend_joints(chain, quaternion, stages.bend[0], stages.moment[0], stages.left[0], stages.right[0])

@@ -11,12 +11,9 @@ from typing import Any
 from solver.kernels.kernel import by_type
 
 
-def copy(source: Any, target: Any) -> None:
+@by_type
+def copy(source: Any, target: Any) -> Any:
     """Write `source` into `target`, of one shape, in another place."""
-
-
-@by_type(copy)
-def _copy(source: Any, target: Any) -> Any:
     if source.ndim == 1:
         return _copy_line
     if source.layout == target.layout == "C":

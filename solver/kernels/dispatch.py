@@ -26,7 +26,7 @@ from typing import Any
 from numba import types
 from numba.core.typing.templates import AbstractTemplate, infer_global
 
-from solver.kernels.kernel import Function, by_type, inner
+from solver.kernels.kernel import Function, inner, overloads
 
 _VARIANTS: dict[Any, dict[type, Any]] = {}
 """By the general function: the kernel of each class of records."""
@@ -106,4 +106,4 @@ def for_each(general: Callable[..., Any], call: Callable[..., Any], having: Call
 
     names: dict[str, Any] = {"each": each}
     exec(f"def choose({', '.join(parameters)}):\n    return each({records})\n", names)  # noqa: S102
-    by_type(general)(names["choose"])
+    overloads(general, names["choose"])

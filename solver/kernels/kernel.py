@@ -27,7 +27,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from contextlib import suppress
-from functools import cache
+from functools import cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -212,10 +212,21 @@ def inner(function: Function) -> Function:
     return _compiled(function, no_cpython_wrapper=True)
 
 
-def by_type(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:
-    """Decorate what says, of the types of the arguments, which function kernels are to call for `function`."""
+def by_type(choose: Function) -> Function:
+    """Make a function that only kernels call. Which one that is, `choose` says of the types of its arguments."""
+
+    @wraps(choose)
+    def call(*_arguments: Any) -> Any:
+        raise TypeError(f"{choose.__name__} is for kernels")
+
+    overloads(call, choose)
+    return call  # type: ignore[return-value]
+
+
+def overloads(call: Callable[..., Any], choose: Callable[..., Any]) -> None:
+    """Let kernels that call `call` get what `choose` gives for the types of the arguments."""
     options: Any = OPTIONS
-    return overload(function, jit_options=options, strict=False)
+    overload(call, jit_options=options, strict=False)(choose)
 
 
 def inlined(function: Function) -> Function:

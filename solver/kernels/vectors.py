@@ -17,12 +17,9 @@ from solver.arrays import Array
 from solver.kernels.kernel import by_type, inner
 
 
+@by_type
 def vector(a: Any, j: int) -> Any:
     """Line j of an array as a vector: of (n, 3) in space, of complex (n,) in a plane; the number of real (n,)."""
-
-
-@by_type(vector)
-def _vector(a: Any, j: Any) -> Any:
     if a.ndim == 2:
         return lambda a, j: (a[j, 0], a[j, 1], a[j, 2])
     if a.dtype == numba.complex128:
@@ -37,12 +34,9 @@ def matrix(a: Array, j: int) -> Any:
             (a[j, 2, 0], a[j, 2, 1], a[j, 2, 2]))  # fmt: skip
 
 
+@by_type
 def dot(a: Any, b: Any) -> Any:
     """The inner product."""
-
-
-@by_type(dot)
-def _dot(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a, b: a * b
     if len(a) == 2:
@@ -56,12 +50,9 @@ def norm(a: Any) -> float:
     return sqrt(dot(a, a))
 
 
+@by_type
 def plus(a: Any, b: Any) -> Any:
     """a + b."""
-
-
-@by_type(plus)
-def _plus(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a, b: a + b
     if len(a) == 2:
@@ -69,12 +60,9 @@ def _plus(a: Any, b: Any) -> Any:
     return lambda a, b: (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
+@by_type
 def minus(a: Any, b: Any) -> Any:
     """a - b."""
-
-
-@by_type(minus)
-def _minus(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a, b: a - b
     if len(a) == 2:
@@ -90,67 +78,49 @@ def times(factor: float, a: Any) -> Any:
     return factor * a[0], factor * a[1], factor * a[2]
 
 
+@by_type
 def middle(a: Any, b: Any) -> Any:
     """The mean of two vectors; None of None."""
-
-
-@by_type(middle)
-def _middle(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.NoneType):
         return lambda a, b: None
     return lambda a, b: times(0.5, plus(a, b))
 
 
+@by_type
 def without(a: Any, b: Any) -> Any:
     """a - b, or a where b is None."""
-
-
-@by_type(without)
-def _without(a: Any, b: Any) -> Any:
     if isinstance(b, numba.types.NoneType):
         return lambda a, b: a
     return lambda a, b: minus(a, b)
 
 
+@by_type
 def stiffness(a: Any, j: int) -> Any:
     """Matrix j of an array (n, 3, 3); the number of (n,) about one axis."""
-
-
-@by_type(stiffness)
-def _stiffness(a: Any, j: Any) -> Any:
     if a.ndim == 1:
         return lambda a, j: a[j]
     return lambda a, j: matrix(a, j)
 
 
+@by_type
 def transform(A: Any, x: Any) -> Any:
     """A x, of a matrix or of a number."""
-
-
-@by_type(transform)
-def _transform(A: Any, x: Any) -> Any:
     if isinstance(A, numba.types.Float):
         return lambda A, x: A * x
     return lambda A, x: (dot(A[0], x), dot(A[1], x), dot(A[2], x))
 
 
+@by_type
 def times_each(a: Any, b: Any) -> Any:
     """The products of the components: diag(a) b; of two numbers their product."""
-
-
-@by_type(times_each)
-def _times_each(a: Any, b: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a, b: a * b
     return lambda a, b: (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
+@by_type
 def diagonal(a: Any) -> Any:
     """The matrix diag(a); a number stays one."""
-
-
-@by_type(diagonal)
-def _diagonal(a: Any) -> Any:
     if isinstance(a, numba.types.Float):
         return lambda a: a
     return lambda a: ((a[0], 0.0, 0.0), (0.0, a[1], 0.0), (0.0, 0.0, a[2]))
@@ -188,35 +158,26 @@ def scale(factor: float, A: Any) -> Any:
     return times(factor, A[0]), times(factor, A[1]), times(factor, A[2])
 
 
+@by_type
 def in_lab(R: Any, x: Any) -> Any:
     """R x: a material vector in the lab frame."""
-
-
-@by_type(in_lab)
-def _in_lab(R: Any, x: Any) -> Any:
     if len(x) == 2:
         return lambda R, x: (R[0] * x[0] - R[1] * x[1], R[1] * x[0] + R[0] * x[1])
     return lambda R, x: (dot(R[0], x), dot(R[1], x), dot(R[2], x))
 
 
+@by_type
 def tangent_rate(R: Any, omega: Any) -> Any:
     """T_t = R (omega x a3)."""
-
-
-@by_type(tangent_rate)
-def _tangent_rate(R: Any, omega: Any) -> Any:
     if isinstance(omega, numba.types.Float):
         return lambda R, omega: (-R[2] * omega * R[1], R[2] * omega * R[0])
     return lambda R, omega: (R[0][0] * omega[1] - R[0][1] * omega[0], R[1][0] * omega[1] - R[1][1] * omega[0],
                              R[2][0] * omega[1] - R[2][1] * omega[0])  # fmt: skip
 
 
+@by_type
 def in_lab_by_rotation(R: Any, x: Any) -> Any:
     """d(R x) / d psi for dR = R [d psi]: the matrix -R [x] in space, the vector of an angle in a plane."""
-
-
-@by_type(in_lab_by_rotation)
-def _in_lab_by_rotation(R: Any, x: Any) -> Any:
     if len(x) == 2:
         return lambda R, x: (-R[2] * (R[1] * x[0] + R[0] * x[1]), R[2] * (R[0] * x[0] - R[1] * x[1]))
     return lambda R, x: (_by_rotation(R[0], x), _by_rotation(R[1], x), _by_rotation(R[2], x))
@@ -228,12 +189,9 @@ def _by_rotation(row: Any, x: Any) -> Any:
     return row[2] * x[1] - row[1] * x[2], row[0] * x[2] - row[2] * x[0], row[1] * x[0] - row[0] * x[1]
 
 
+@by_type
 def in_material(R: Any, x: Any) -> Any:
     """R^t x: a lab vector in the material frame; the moment about a plane's normal is the same in both."""
-
-
-@by_type(in_material)
-def _in_material(R: Any, x: Any) -> Any:
     if isinstance(x, numba.types.Float):
         return lambda R, x: x
     return lambda R, x: (R[0][0] * x[0] + R[1][0] * x[1] + R[2][0] * x[2],
@@ -241,23 +199,17 @@ def _in_material(R: Any, x: Any) -> Any:
                          R[0][2] * x[0] + R[1][2] * x[1] + R[2][2] * x[2])  # fmt: skip
 
 
+@by_type
 def in_material_by_rotation(y: Any) -> Any:
     """d(R^t x) / d psi for y = R^t x: the matrix [y]; nothing in a plane."""
-
-
-@by_type(in_material_by_rotation)
-def _in_material_by_rotation(y: Any) -> Any:
     if isinstance(y, numba.types.Float):
         return lambda y: 0.0
     return lambda y: ((0.0, -y[2], y[1]), (y[2], 0.0, -y[0]), (-y[1], y[0], 0.0))
 
 
+@by_type
 def tangent_by_rotation(G: Any, R: Any) -> Any:
     """G dT / d psi, dT = R (d psi x a3): what a derivative G by the tangent says of a rotation; None of None."""
-
-
-@by_type(tangent_by_rotation)
-def _tangent_by_rotation(G: Any, R: Any) -> Any:
     if isinstance(G, numba.types.NoneType):
         return lambda G, R: None
     if len(G) == 2:

@@ -236,13 +236,9 @@ def total_power(force: Any, moment: Any, V: Any, omega: Any) -> float:
     return float(dot(force, V) + dot(moment, omega))
 
 
-def carried_power(force: Any, velocity: Any) -> float:
+@by_type
+def carried_power(force: Any, velocity: Any) -> Any:
     """force . velocity, of which either may not be there."""
-    raise NotImplementedError
-
-
-@by_type(carried_power)
-def _carried_power(force: Any, velocity: Any) -> Any:
     if isinstance(force, types.NoneType) or isinstance(velocity, types.NoneType):
         return lambda force, velocity: 0.0
     return lambda force, velocity: dot(force, velocity)

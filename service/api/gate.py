@@ -22,11 +22,12 @@ if TYPE_CHECKING:
     from service.api.parts import Parts
 
 READING = ("GET", "HEAD", "OPTIONS")
-OPEN_TO_ALL = frozenset({"/", "/healthz", "/livez", "/readyz", "/v1/openapi.json"})
+OPEN_TO_ALL = frozenset({"/", "/healthz", "/livez", "/readyz", "/v1/openapi.json", "/docs"})
 SHARED = "/v1/shared/"
 """Below it no key is asked for: the address itself lets in."""
 DASHBOARD = "/dashboard/"
 """The program of the page that asks for the key."""
+DOCUMENTATION = "/docs/"
 SAFE = [
     (b"x-content-type-options", b"nosniff"), (b"x-frame-options", b"DENY"), (b"referrer-policy", b"no-referrer"),
     (b"cross-origin-opener-policy", b"same-origin"), (b"cross-origin-resource-policy", b"same-origin"),
@@ -92,7 +93,7 @@ class Gate:
 
 def is_open(path: str) -> bool:
     """Whether no key is asked for at this path."""
-    return path in OPEN_TO_ALL or path.startswith((SHARED, DASHBOARD))
+    return path in OPEN_TO_ALL or path.startswith((SHARED, DASHBOARD, DOCUMENTATION))
 
 
 def _check_origin(method: str, host: str, origin: str | None) -> None:

@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: client demo test serve lint bench bench-work-precision bench-skipping load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
+.PHONY: client site release demo test serve lint bench bench-work-precision bench-skipping load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -16,7 +16,7 @@ demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 serve: .venv/.runtime  ## API, worker and broker, until Ctrl-C
 	$(BIN)/hockle serve
 
-test: .venv/.dev  ## the whole test suite, two files at a time
+test: .venv/.dev .venv/.docs  ## the whole test suite, two files at a time
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 lint: .venv/.dev  ## style, types, and who may import whom
@@ -65,6 +65,15 @@ validate: .venv/.runtime  ## published scenes, and what they must show
 docs: .venv/.runtime  ## the documents' tables, from the code and the kept results
 	$(BIN)/python -m docs
 
+site: .venv/.docs  ## the documentation as a site, which the API then serves at /docs
+	$(BIN)/python -m mkdocs build --strict --quiet
+
+release: .venv/.deploy site  ## wheels, their checksums and an SBOM, in ./dist
+	rm -rf dist
+	$(BIN)/python -m pip wheel --quiet --no-deps --no-build-isolation --wheel-dir dist . ./client
+	$(BIN)/cyclonedx-py requirements requirements.txt --pyproject pyproject.toml --output-file dist/hockle.cdx.json
+	cd dist && sha256sum -- * > SHA256SUMS
+
 client: .venv/.runtime  ## the parts of the client that follow from others
 	cd client && ../$(BIN)/python -m generate
 
@@ -74,9 +83,10 @@ lock:  ## after a change of a requirements*.in (needs uv)
 	$(LOCK) requirements-dev.in -o requirements-dev.txt
 	$(LOCK) --constraint requirements.txt requirements-bench.in -o requirements-bench.txt
 	$(LOCK) --constraint requirements.txt --constraint requirements-dev.txt requirements-deploy.in -o requirements-deploy.txt
+	$(LOCK) --constraint requirements.txt --constraint requirements-dev.txt requirements-docs.in -o requirements-docs.txt
 
 clean:  ## the environment and all that was made
-	rm -rf .venv var demo build *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv var demo build dist service/site *.egg-info .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 .venv/bin/python:
 	@test -n "$(PYTHON)" || { echo "hockle needs Python 3.11, 3.12 or 3.13: name one with make PYTHON=..." >&2; exit 1; }
@@ -102,4 +112,9 @@ clean:  ## the environment and all that was made
 .venv/.deploy: requirements-deploy.txt .venv/.dev
 	@echo "installing what checks the chart"
 	$(PIP) --require-hashes -r requirements-deploy.txt
+	@touch $@
+
+.venv/.docs: requirements-docs.txt .venv/.runtime
+	@echo "installing what makes the site of the documentation"
+	$(PIP) --require-hashes -r requirements-docs.txt
 	@touch $@

@@ -58,11 +58,12 @@ def gallery() -> str:
     """Each shipped case with the picture that `hockle plot` draws of it."""
     from service.cases import load_case, shipped_cases
 
-    parts = ["# Gallery\n\nThe cases that come with hockle, each as `hockle plot` draws it. `hockle run NAME` runs one.\n"]
+    parts = ["# Gallery\n\nThe cases that come with hockle, as `hockle plot` draws them. `hockle run NAME` runs one.\n"]
     for name, title in shipped_cases().items():
         told = load_case(name).get("description", "")
-        picture = f"![{title}](pictures/cases/{name}.png)\n" if (HERE / "pictures/cases" / f"{name}.png").exists() else ""
-        parts.append(f"## {name}\n\n{title}. {told}\n\n{picture}")
+        parts.append(f"## {name}\n\n{title}. {told}\n")
+        if (HERE / "pictures/cases" / f"{name}.png").exists():
+            parts.append(f"![{title}](pictures/cases/{name}.png)\n")
     return "\n".join(parts)
 
 

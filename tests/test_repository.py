@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-BESIDE = ("requirements-dev.txt", "requirements-s3.txt", "requirements-deploy.txt")
+BESIDE = ("requirements-dev.txt", "requirements-s3.txt", "requirements-deploy.txt", "requirements-docs.txt")
 
 
 @pytest.mark.parametrize("name", ["requirements.txt", *BESIDE])

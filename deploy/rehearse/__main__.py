@@ -39,12 +39,13 @@ def main() -> None:
             with record.step("the base is made and the image built on it"):
                 builder.base()
                 builder.build()
-        stage = Stage(folder, builder.image(), cleanup.enter_context(network(folder / "hosts")))
+        image = builder.image()
+        stage = Stage(folder, image, cleanup.enter_context(network(folder / "hosts")))
         cleanup.callback(stage.close)
         for step in STEPS:
             with record.step(step.__doc__ or step.__name__) as say:
                 say(step(stage))
-    record.write()
+    record.write(image.commit)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import signal
 import subprocess
@@ -46,7 +47,7 @@ class Container:
         """Send a signal to its first process, as an engine does."""
         assert self.process is not None
         [first] = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
-        subprocess.run(["kill", f"-{number.value}", first], check=True)
+        os.kill(int(first), number)
 
     def stop(self) -> float | None:
         """Stop it by its signal; its exit status, or None if its grace was not enough and it was killed."""
@@ -60,14 +61,14 @@ class Container:
             return None
 
     def kill(self) -> None:
-        """End it without warning; the kernel ends all in its namespace."""
+        """End its first process without warning: the kernel ends all others of its namespace."""
         assert self.process is not None
-        self.process.kill()
+        self.signal(signal.SIGKILL)
         self.process.wait()
 
     def _command(self, command: Sequence[str]) -> list[str]:
         space = ["ip", "netns", "exec", self.network.space(self.host)]
-        apart = ["unshare", "--mount", "--uts", "--ipc", "--pid", "--fork", "--kill-child"]
+        apart = ["unshare", "--mount", "--uts", "--ipc", "--pid", "--fork"]
         return [*space, *apart, "sh", "-euc", self._script(command)]
 
     def _script(self, command: Sequence[str]) -> str:

@@ -13,6 +13,8 @@ from typing import Any
 ROOT = Path(__file__).parents[2]
 BASE, IMAGE = "localhost/hockle-base", "localhost/hockle"
 SUITE = "bookworm"
+COMMIT = "org.opencontainers.image.revision"
+"""The label that says of what an image was built."""
 THIS_MACHINE = ("/etc/pip.conf", "/etc/ssl/certs/ca-certificates.crt")
 """How this machine reaches the package index: copied into the base, and never into the repository."""
 
@@ -26,13 +28,14 @@ class Image:
     environment: dict[str, str]
     entrypoint: list[str]
     directory: str
+    commit: str
 
 
 class Builder:
     """buildah without an engine: plain copies as layers, chroot as isolation. What it keeps lies in `folder`."""
 
     def __init__(self, folder: Path, log: Path) -> None:
-        self._folder, self._log = folder, log
+        self._folder, self._log, self._laid_out = folder, log, ""
         folder.mkdir(parents=True, exist_ok=True)
         configuration = folder / "storage.conf"
         configuration.write_text(f'[storage]\ndriver = "vfs"\nrunroot = "{folder}/run"\ngraphroot = "{folder}/graph"\n')
@@ -58,20 +61,23 @@ class Builder:
 
     def build(self) -> None:
         """Build the image from deploy/Dockerfile."""
+        commit = subprocess.check_output(["git", "describe", "--always", "--dirty"], cwd=ROOT, text=True).strip()
         self._run("buildah", "build", "--format", "docker", "--build-arg", f"BASE={BASE}",
-                  "--file", "deploy/Dockerfile", "--tag", IMAGE, ".")  # fmt: skip
+                  "--label", f"{COMMIT}={commit}", "--file", "deploy/Dockerfile", "--tag", IMAGE, ".")  # fmt: skip
 
     def image(self) -> Image:
         """The built image, with its files laid out."""
         told: dict[str, Any] = json.loads(self._buildah("inspect", "--type", "image", IMAGE))["Docker"]["config"]
-        container = self._buildah("from", "--pull-never", IMAGE)
-        files = Path(self._buildah("mount", container))
+        self._laid_out = self._buildah("from", "--pull-never", IMAGE)
+        files = Path(self._buildah("mount", self._laid_out))
         environment = dict(line.split("=", 1) for line in told["Env"])
-        return Image(files, told["User"], environment, told["Entrypoint"], told["WorkingDir"])
+        return Image(files, told["User"], environment, told["Entrypoint"], told["WorkingDir"],
+                     (told["Labels"] or {}).get(COMMIT, "unknown"))  # fmt: skip
 
     def close(self) -> None:
-        """Remove the containers; the images stay, for the next time."""
-        self._buildah("rm", "--all")
+        """Take the laid out files away; the images stay, for the next time."""
+        if self._laid_out:
+            self._buildah("rm", self._laid_out)
 
     def _has(self, name: str) -> bool:
         return subprocess.run(["buildah", "inspect", "--type", "image", name], env=self._environment,

@@ -28,10 +28,9 @@ class Record:
         self._rows.append((what.rstrip("."), "; ".join(said) or "done", monotonic() - began))
         print(f"    {self._rows[-1][1]} ({self._rows[-1][2]:.0f} s)", file=sys.stderr, flush=True)
 
-    def write(self) -> None:
-        """Keep the table."""
-        where = ", ".join(map(_told, (["git", "describe", "--always", "--dirty"], ["uname", "-sr"],
-                                      ["buildah", "--version"])))  # fmt: skip
+    def write(self, commit: str) -> None:
+        """Keep the table, of an image of that commit."""
+        where = ", ".join([f"image of commit {commit}", _told(["uname", "-sr"]), _told(["buildah", "--version"])])
         lines = ["# The rehearsal", "", f"`make rehearse`: {where}.",
                  "Each row is a step that ended as it should; the first that does not ends the rehearsal.", "",
                  "| step | seen | s |", "| --- | --- | ---: |"]  # fmt: skip

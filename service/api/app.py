@@ -15,6 +15,7 @@ from service.api import (
     cases,
     data,
     datasets,
+    documentation,
     ensemble_data,
     ensemble_events,
     ensembles,
@@ -57,7 +58,7 @@ TAGS = [{"name": "jobs", "description": "Submit, follow, list, cancel."},
         {"name": "service", "description": "Whether it lives, and how it does."}]
 ROUTERS = [part.router for part in (submitting, jobs, events, datasets, data, film, stores, shapes, links, scalars,
                                     ensembles, ensemble_events, ensemble_data, cases, processes, operating,
-                                    watching, front)]
+                                    watching, front, documentation)]
 BURST = 10.0  # s of an owner's rate that may be spent at once
 
 

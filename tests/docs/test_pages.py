@@ -1,0 +1,81 @@
+"""What the pages for beginners show is so: every command and every block, in their order."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+from hockle.cli import main, parser
+from tests.hockle.conftest import serving
+
+DOCS = Path(__file__).parents[2] / "docs"
+SHOWN = re.compile(r"^    \$ (hockle [^\n]*)$|^```(json|python)\n(.*?)^```", re.M | re.S)
+REFUSED = "rod.diameter=-1"
+
+
+def shown(page: str) -> list[tuple[str, str]]:
+    """The commands and blocks of a page: what it is, and its text."""
+    found = SHOWN.findall((DOCS / page).read_text())
+    return [(language or "command", command or block) for command, language, block in found]
+
+
+def command(line: str) -> None:
+    status = main(shlex.split(line)[1:])
+    assert status == (1 if REFUSED in line else 0), line
+
+
+def follow(page: str, address: str = "") -> list[str]:
+    """Do what a page shows, in the working directory; the kinds of what was done."""
+    for kind, text in shown(page):
+        if kind == "command":
+            command(text)
+        elif kind == "json":
+            Path("hose.json").write_text(text)
+        else:
+            exec(compile(text.replace("http://127.0.0.1:8000", address), page, "exec"), {})
+    return [kind for kind, _ in shown(page)]
+
+
+def test_the_first_ten_minutes(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert follow("first-ten-minutes.md") == ["command"] * 5 + ["python"]
+    said = capsys.readouterr()
+    assert "completed" in said.out and "rod/diameter" in said.err
+    assert (tmp_path / "cantilever-vibration-snapshots.png").exists()
+
+
+def test_the_tutorial(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    with serving(tmp_path / "served") as server:
+        follow("tutorial.md", server.address)
+    said = capsys.readouterr().out
+    assert said.splitlines()[-3:] == ["successful completed"] * 3
+    assert (tmp_path / "hose-topology.png").exists()
+    assert (tmp_path / "hose.gif").read_bytes().startswith(b"GIF8")
+
+
+def test_accuracy(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert follow("accuracy.md") == ["command", "python", "command"]
+    [(met, error)] = re.findall(r"^(yes|no) (\d\S+)$", capsys.readouterr().out, re.M)
+    assert met == "yes" and 0.0 < float(error) < 1e-2
+
+
+def test_a_backup_is_restored_and_whole(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOCKLE_DATA", str(tmp_path / "served"))
+    with serving(tmp_path / "served") as server:
+        assert server.address
+    for kind, line in shown("deploy/backup.md"):
+        assert kind == "command"
+        command(line.replace("/backups/hockle", str(tmp_path / "backup")))
+
+
+@pytest.mark.parametrize("page", sorted(path.name for path in DOCS.glob("*.md")))
+def test_no_page_shows_a_command_that_there_is_not(page):
+    known = set(next(action for action in parser()._actions if action.choices).choices)
+    named = re.findall(r"^\s+\$ hockle (\w+)", (DOCS / page).read_text(), re.M)
+    assert [name for name in named if name not in known] == []

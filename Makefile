@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: client site release demo test serve lint bench bench-work-precision bench-skipping load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
+.PHONY: client site release demo test serve lint bench bench-work-precision bench-skipping bench-reading load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -29,6 +29,9 @@ bench: .venv/.runtime  ## cost per Newton iteration and per scene
 
 load: .venv/.runtime  ## what the service bears: pollers, submissions, events, a queue of 10,000 jobs
 	$(BIN)/python -m benchmarks.load
+
+bench-reading: .venv/.runtime  ## reading of results and ensembles, beside their aims
+	$(BIN)/python -m benchmarks.reading
 
 chaos: .venv/.dev  ## faults on purpose, on SQLite and PostgreSQL: what became of every job (an hour or two)
 	$(BIN)/python -m chaos

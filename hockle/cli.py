@@ -11,7 +11,7 @@ from importlib.metadata import version
 from hockle.failure import Failure
 
 COMMANDS = ("local", "plots", "film", "serving", "parts", "keys", "store", "remote", "jobs", "operating", "sweep",
-            "again", "demo")
+            "again", "completion", "demo")
 
 UNIX_ONLY = ("fcntl", "resource")
 """Modules of Python that Windows lacks."""

@@ -33,6 +33,8 @@ log = logging.getLogger(__name__)
 class DatasetFile(FileResponse):
     """A file whose Range header is taken as RFC 9110 says: what is none is ignored."""
 
+    chunk_size = 1_000_000  # each one is a way to a thread and back
+
     @classmethod
     def _parse_range_header(cls, http_range: str, file_size: int) -> list[tuple[int, int]]:
         try:

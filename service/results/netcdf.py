@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from service.results.schema import COORDINATES, LABEL_NAMES, LABELS, Variable
 from service.results.segments import Block
 
-CHUNK_BYTES = 1_000_000
+CHUNK_BYTES = 250_000
+"""Of a chunk: reading one frame unpacks one chunk, and smaller ones would pack little worse but be many."""
 Blocks = Callable[[], Iterator[Block]]
 
 

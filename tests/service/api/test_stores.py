@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import socket
+import subprocess
 import threading
 import time
 from collections.abc import Iterator
@@ -110,3 +112,34 @@ def test_too_much_at_once_is_refused_before_it_is_read(client, done, monkeypatch
     monkeypatch.setattr(opendap, "LIMIT", 5)
     assert problem(client.get(f"/v1/jobs/{done}/opendap.dods?Tw")) == (422, "subset_too_large")
     assert client.get(f"/v1/jobs/{done}/opendap.dods?Tw[0:2:4]").status_code == 200
+
+
+@pytest.mark.skipif(shutil.which("ncdump") is None, reason="ncdump is not there")
+def test_ncdump_reads_it_by_opendap(address, done, whole):
+    told = subprocess.check_output(["ncdump", "-v", "Tw", f"{address}/v1/jobs/{done}/opendap"], text=True)
+    assert 'Tw:units = "turn"' in told and "double r(time, s, lab)" in told.replace("  ", " ")
+    values = told.partition(" Tw =")[2].partition(";")[0].split(",")
+    assert np.allclose([float(one) for one in values], whole.Tw)
+
+
+@pytest.mark.skipif(shutil.which("Rscript") is None, reason="R is not there")
+def test_r_reads_it_by_opendap(address, done, whole):
+    program = f"library(ncdf4); f <- nc_open('{address}/v1/jobs/{done}/opendap'); cat(ncvar_get(f, 'Tw'), sep=' ')"
+    told = subprocess.run(["Rscript", "-e", program], capture_output=True, text=True, check=False)
+    if "there is no package" in told.stderr:
+        pytest.skip("R has no ncdf4")
+    assert np.allclose([float(one) for one in told.stdout.split()], whole.Tw)
+
+
+@pytest.mark.skipif(shutil.which("curl") is None, reason="curl is not there")
+def test_curl_gets_a_table(address, done, tmp_path):
+    url = f"{address}/v1/jobs/{done}/data?variables=Tw"
+    subprocess.check_call(["curl", "-sSf", "-H", "Accept: text/csv", "-o", tmp_path / "t.csv", url])
+    assert (tmp_path / "t.csv").read_text().startswith("time,Tw\n0.0,")
+
+
+def test_h5py_reads_the_file(client, done, whole, tmp_path):
+    h5py = pytest.importorskip("h5py")
+    (tmp_path / "x.nc").write_bytes(client.get(f"/v1/jobs/{done}/dataset").content)
+    with h5py.File(tmp_path / "x.nc") as file:
+        assert np.array_equal(file["r"][:], whole.r) and file["r"].attrs["units"] in ("m", b"m")

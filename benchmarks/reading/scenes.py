@@ -1,0 +1,135 @@
+"""What is read of a dataset and of many jobs, each as often as said, and how long each took."""
+
+from __future__ import annotations
+
+import secrets
+import time
+from collections.abc import Callable
+from statistics import fmean
+from typing import Any
+
+import httpx
+import numpy as np
+
+from benchmarks.load.table import Row
+from service.jobs import Database, NewJob
+from service.jobs.registry import insert_jobs
+from service.settings import Settings
+
+LARGE = {"numerics.intervals": 400, "numerics.dt_max": 0.02, "t_end": 5.0, "output.interval": 0.01}
+"""500 frames of 401 nodes, with all fields."""
+MEMBER = {"numerics.intervals": 100, "t_end": 1.0, "output.interval": 0.1}
+TIMES, LISTED, AT_ONCE, MEMBERS = 100, 10_000, 500, 1000
+
+
+def timed(times: int, ask: Callable[[], Any]) -> list[float]:
+    """How long each of so many calls took (s), after one that is not counted."""
+    ask()
+    seconds = []
+    for _ in range(times):
+        began = time.perf_counter()
+        ask()
+        seconds.append(time.perf_counter() - began)
+    return seconds
+
+
+def finished(client: httpx.Client, body: dict[str, Any]) -> str:
+    """The id of a job that has run it."""
+    job = client.post("/v1/jobs", json=body).raise_for_status().json()
+    while job["status"] in ("accepted", "running"):
+        time.sleep(0.2)
+        job = client.get(f"/v1/jobs/{job['id']}").raise_for_status().json()
+    if job["status"] != "successful":
+        raise RuntimeError(f"{job['outcome']}: {job['message']}")
+    return str(job["id"])
+
+
+def of_a_dataset(client: httpx.Client, settings: Settings) -> list[Row]:
+    """Parts of one dataset of 500 frames and 401 nodes, and the whole."""
+    job = finished(client, {"case": "cantilever-vibration", "set": LARGE})
+    data, t = f"/v1/jobs/{job}/data", "&t_min=2.5&t_max=2.5"
+
+    def get(address: str) -> Callable[[], httpx.Response]:
+        return lambda: client.get(address).raise_for_status()
+
+    [file] = settings.datasets.glob(f"{job}.*.nc")
+    size = file.stat().st_size / 1e6
+    rows = [
+        Row("last values of a job (/v1/scalars)", timed(TIMES, get(f"/v1/scalars?jobs={job}&variables=Tw,Wr,Lk")),
+            "<= 10 ms"),
+        Row("Tw, Wr, Lk of 501 frames, JSON", timed(TIMES, get(f"{data}?variables=Tw,Wr,Lk")), "<= 10 ms"),
+        Row("r of one frame, JSON", timed(TIMES, get(f"{data}?variables=r{t}")), "<= 10 ms"),
+        Row("r of one frame, Arrow", timed(TIMES, get(f"{data}?variables=r&format=arrow{t}")), "<= 10 ms"),
+        Row("r of all frames, NetCDF (4.8 MB)", timed(20, get(f"{data}?variables=r&format=netcdf"))),
+        Row("a chunk of r, Zarr", timed(TIMES, get(f"/v1/jobs/{job}/zarr/r/c/3/0/0"))),
+        Row("r of one frame, OPeNDAP", timed(TIMES, get(f"/v1/jobs/{job}/opendap.dods?r[250][0:1:400][0:1:2]"))),
+    ]
+    whole, disk = timed(10, get(f"/v1/jobs/{job}/dataset")), timed(10, file.read_bytes)
+    speed = [f"{size / fmean(seconds):.0f} MB/s" for seconds in (whole, disk)]
+    what = f"the whole file ({size:.0f} MB): {speed[0]}, read from the disk {speed[1]}"
+    return [*rows, Row(what, whole, "disk speed", control=Row("", disk))]
+
+
+def of_many_jobs(client: httpx.Client, settings: Settings) -> list[Row]:
+    """A list of 10,000 jobs read page by page."""
+    database = Database(settings.database_url)
+    for _ in range(LISTED // AT_ONCE):
+        new = [NewJob({"none": secrets.token_hex()}, "listed", "another") for _ in range(AT_ONCE)]
+        with database.writing() as transaction:
+            insert_jobs(transaction, new)
+    database.close()
+    seconds, address = [], "/v1/jobs?limit=100&owner=another"
+    while address:
+        began = time.perf_counter()
+        page = client.get(address).raise_for_status().json()
+        seconds.append(time.perf_counter() - began)
+        address = page["next"]
+    return [Row(f"a page of 100 of {LISTED:,} jobs, to the last", seconds, "p99 <= 20 ms")]
+
+
+def of_an_ensemble(client: httpx.Client, _: Settings) -> list[Row]:
+    """1000 members of the paper's case, accepted and asked for."""
+    accepted, last = [], {}
+    for _ in range(5):
+        values = (secrets.randbelow(10**9) * 1e-9 + np.linspace(0.0, 1.0, MEMBERS)).tolist()
+        body = {"case": "goyal-2003", "set": MEMBER, "parameters": {"loads.damping": values}}
+        began = time.perf_counter()
+        last = client.post("/v1/ensembles", json=body).raise_for_status().json()
+        accepted.append(time.perf_counter() - began)
+    links = last["links"]
+    return [
+        Row("1000 members of goyal-2003 accepted", accepted, "<= 1 s"),
+        Row("status of 1000 members", timed(20, lambda: client.get(links["self"]).raise_for_status())),
+        Row("Tw of 1000 members, JSON", timed(20, lambda: client.get(links["scalars"] + "?variables=Tw"))),
+        Row("1000 members cancelled", timed_once(lambda: client.post(links["self"] + "/cancel").raise_for_status())),
+    ]
+
+
+def timed_once(ask: Callable[[], Any]) -> list[float]:
+    """How long the only call took (s)."""
+    began = time.perf_counter()
+    ask()
+    return [time.perf_counter() - began]
+
+
+def running(client: httpx.Client, members: int, workers: int) -> tuple[float, float]:
+    """Seconds that an ensemble took to its end, and the CPU seconds of its runs by so many workers."""
+    values = (secrets.randbelow(10**9) * 1e-9 + np.linspace(0.0, 1.0, members)).tolist()
+    body = {"case": "goyal-2003", "set": {"numerics.intervals": 100}, "parameters": {"loads.damping": values}}
+    began = time.perf_counter()
+    ensemble = client.post("/v1/ensembles", json=body).raise_for_status().json()
+    while ensemble["finished"] is None:
+        time.sleep(0.5)
+        ensemble = client.get(ensemble["links"]["self"]).raise_for_status().json()
+    return time.perf_counter() - began, _cpu(client, ensemble) / workers
+
+
+def _cpu(client: httpx.Client, ensemble: dict[str, Any]) -> float:
+    import netCDF4
+
+    total = 0.0
+    for member in client.get(ensemble["links"]["members"] + "?limit=1000").json()["members"]:
+        content = client.get(member["links"]["job"] + "/dataset").content
+        with netCDF4.Dataset("run.nc", memory=content) as file:
+            total += float(file.cpu_time)
+    return total

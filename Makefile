@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: client site release demo test serve lint bench bench-work-precision bench-skipping bench-reading load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
+.PHONY: client site release demo test serve lint bench bench-work-precision bench-dashboard bench-skipping bench-reading load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -58,6 +58,9 @@ plausible: .venv/.dev  ## scenes as people would send them, in the default mode:
 
 bench-work-precision: .venv/.bench  ## CPU time against error, beside PyElastica and MuJoCo's cable
 	$(BIN)/python -m benchmarks.work_precision
+
+bench-dashboard: .venv/.dev  ## what the dashboard's pages take in a headless Chromium, and their pictures (minutes)
+	$(BIN)/python -m benchmarks.dashboard
 
 bench-skipping: .venv/.runtime  ## what contact, fluid and loads cost a scene that lacks them (a quarter of an hour)
 	$(BIN)/python -m benchmarks.skipping

@@ -20,6 +20,8 @@ export class Chart {
     this.figure = element("figure", "", this.heading, this.picture, this.legend);
     /** @type {[string, number[], Curve][]} */
     this.curves = [];
+    /** Where the legend tells the values. @type {HTMLElement[]} */
+    this.readings = [];
     this.from = this.low = 0;
     this.to = this.high = this.factor = 1;
     this.picture.addEventListener("pointermove", (event) => this.mark(this.timeAt(/** @type {PointerEvent} */ (event))));
@@ -38,6 +40,8 @@ export class Chart {
     this.picture.setAttribute("aria-label", `${this.title}: ${this.curves.map(([one]) => one).join(", ")} over time`);
     this.picture.replaceChildren(...this.axes(), ...this.curves.map(([, time, values], place) =>
       drawn("path", { class: `line${place}`, d: this.path(time, values) })));
+    this.readings = this.curves.map(() => element("small", ""));
+    this.legend.replaceChildren(...this.curves.map(([one], place) => element("span", `line${place}`, `${one} `, this.readings[place])));
     this.marker = this.picture.appendChild(drawn("line", { class: "marker", y1: TOP, y2: HEIGHT - BOTTOM }));
     this.mark(this.at);
   }
@@ -86,11 +90,10 @@ export class Chart {
       this.marker?.setAttribute("x1", String(x));
       this.marker?.setAttribute("x2", String(x));
     }
-    this.legend.replaceChildren(...this.curves.map(([name, time, values], place) => {
+    this.curves.forEach(([, time, values], place) => {
       const value = values[t === null ? values.length - 1 : nearest(time, t)] ?? null;
-      return element("span", `line${place}`, `${name} `,
-        element("small", "", value === null ? "none" : told(value / this.factor)));
-    }));
+      this.readings[place].textContent = value === null ? "none" : told(value / this.factor);
+    });
   }
 
   /** @param {PointerEvent} event */

@@ -43,5 +43,6 @@ export function prefixed(largest, unit) {
 
 /** A number for people: so many digits that count. @param {number} value @param {number} [digits] */
 export function told(value, digits = 4) {
-  return String(Number(value.toPrecision(digits)));
+  const short = Number(value.toPrecision(digits));
+  return Math.abs(short) >= 1e6 ? short.toExponential() : String(short);
 }

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from service.results.query import Source, UnknownVariable
 
-MOST_NODES = 1500
+MOST_NODES = 600
+"""Of a finer rod only every so many-th node is in a film: more could not be told apart in a picture."""
+
 MOST_NODE_FRAMES = 1_000_000
 """Nodes times frames of a film: 44 MB with all colours. Of more frames only every so many-th is in it."""
 

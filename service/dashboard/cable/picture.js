@@ -7,7 +7,7 @@ import { NODE } from "./film.js";
 /** @typedef {{nodes: Float32Array, radius: number, body: number[], range: number[] | null}} Rod
  * range: the values of the first and the last colour of the scale; null: the rod has the colour `body` */
 
-const FACETS = 16, WIDE = 1024;
+const FACETS = 12, WIDE = 1024;
 /** The colours of a scale from the least value to the largest; each differs from its neighbours in lightness too. */
 export const SCALE = [[0.27, 0.0, 0.33], [0.23, 0.32, 0.55], [0.13, 0.57, 0.55], [0.37, 0.79, 0.38], [0.99, 0.91, 0.14]];
 

@@ -2,51 +2,21 @@
 
 from __future__ import annotations
 
-import socket
-import threading
-import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from shutil import which
 from types import SimpleNamespace
 
 import pytest
-import uvicorn
 
-from service.api.app import create_app
+from benchmarks.dashboard.browser import CHROMIUM, browsing, serving
 from service.cases import apply_settings, load_case, parse_case
 from service.jobs import Database, NewJob, Registry
 from service.jobs.registry import insert_jobs
 from service.settings import Settings
 from worker.run import run_next
 
-CHROMIUM = which("chromium") or which("chromium-browser") or which("google-chrome")
-ARGUMENTS = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
-             "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
-
-
 CASE = parse_case(load_case("elastica")).document()
-
-
-@contextmanager
-def serving(settings: Settings, keyed: bool = False) -> Iterator[SimpleNamespace]:
-    """The API in a thread; gives its address and its application."""
-    app = create_app(settings, keyed=keyed)
-    listening = socket.create_server(("127.0.0.1", 0))
-    server = uvicorn.Server(uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=1))
-    thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
-    thread.start()
-    while not server.started:
-        assert thread.is_alive()
-        time.sleep(0.01)
-    try:
-        yield SimpleNamespace(address=f"http://127.0.0.1:{listening.getsockname()[1]}", app=app)
-    finally:
-        server.should_exit = True
-        thread.join()
-        listening.close()
 
 
 @pytest.fixture
@@ -106,14 +76,9 @@ def context(tmp_path: Path) -> Iterator[object]:
     """A browser with a profile of its own, without any page but an empty one."""
     if CHROMIUM is None:
         pytest.skip("there is no Chromium: apt-get install chromium")
-    api = pytest.importorskip("playwright.sync_api", reason="Playwright's Python package is not installed")
-    with api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch_persistent_context(
-            str(tmp_path / "profile"), executable_path=CHROMIUM, args=ARGUMENTS,
-            viewport={"width": 1200, "height": 800})
-        browser.set_default_timeout(60_000)
+    pytest.importorskip("playwright.sync_api", reason="Playwright's Python package is not installed")
+    with browsing(str(tmp_path / "profile")) as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture

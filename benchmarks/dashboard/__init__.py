@@ -1,0 +1,1 @@
+"""What the dashboard takes in a real browser, and its pictures."""

@@ -14,7 +14,7 @@ from deploy.rehearse.stage import Stage
 from hockle_client import Client, Job
 
 QUICK = {"t_end": 0.5, "output.interval": 0.1, "numerics.intervals": 20}
-SLOW = {"t_end": 20.0, "output.interval": 0.1, "numerics.dt_max": 0.0005}
+SLOW = {"t_end": 8.0, "output.interval": 0.1, "numerics.dt_max": 0.0005}
 MANY = 12
 LOOK = "grep -E '^(CapEff|CapBnd|NoNewPrivs|Uid)' /proc/self/status | tr -s '\\t\\n' '  '"
 

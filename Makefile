@@ -19,7 +19,7 @@ serve: .venv/.runtime  ## API, worker and broker, until Ctrl-C
 test: .venv/.dev .venv/.docs  ## the whole test suite, two files at a time
 	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-lint: .venv/.dev  ## style, types, and who may import whom
+lint: .venv/.dev .venv/.docs  ## style, types, and who may import whom
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo

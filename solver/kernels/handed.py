@@ -16,7 +16,6 @@ import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
-from numba.core.registry import cpu_target
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import NativeValue, infer_getattr, lower_getattr_generic, models, register_model, unbox
 from numpy.typing import NDArray
@@ -49,7 +48,7 @@ class Reference:
 
     def __init__(self, records: tuple[Any, ...]) -> None:
         kind: Any = numba.typeof(records)  # type: ignore[no-untyped-call]
-        self._memory = np.zeros(_context().get_abi_sizeof(_laid_out(kind)), np.uint8)
+        self._memory = np.zeros(_extent(kind)[0], np.uint8)
         self._numba_type_ = Referred(kind)
         self.address = self._memory.ctypes.data
         _write(kind, records, self._memory)
@@ -73,21 +72,25 @@ class Handed:
         return self if same else self.over(*records)
 
 
-def _context() -> Any:
-    return cpu_target.target_context
+def _offsets(kind: Any) -> list[int]:
+    """Where each part of a tuple begins (bytes), and where the tuple ends: as in C."""
+    begins, end, widest = list[int](), 0, 1
+    for part in kind:
+        size, alignment = _extent(part)
+        begins.append(-(-end // alignment) * alignment)
+        end, widest = begins[-1] + size, max(widest, alignment)
+    return [*begins, -(-end // widest) * widest]
 
 
-def _laid_out(kind: Any) -> Any:
-    """How records of a type lie in memory."""
-    return _context().get_data_type(kind)
-
-
-def _offset(kind: Any, k: int) -> int:
-    """Where part k of a tuple begins (bytes)."""
-    laid_out = _laid_out(kind)
-    if isinstance(laid_out, ir.ArrayType):  # parts of one type
-        return k * int(_context().get_abi_sizeof(laid_out.element))
-    return int(laid_out.get_element_offset(_context().codegen().target_data, k))
+def _extent(kind: Any) -> tuple[int, int]:
+    """Size and alignment (bytes) of a value of one of numba's types."""
+    if isinstance(kind, types.BaseTuple):
+        parts: Any = kind
+        return _offsets(kind)[-1], max((_extent(part)[1] for part in parts), default=1)
+    if isinstance(kind, types.Array):
+        return 8 * (5 + 2 * kind.ndim), 8
+    size = 8 if isinstance(kind, types.NoneType) else np.dtype(str(kind)).itemsize
+    return size, min(size, 8)
 
 
 def _tuple(kinds: tuple[Any, ...]) -> Any:
@@ -98,8 +101,8 @@ def _write(kind: Any, value: Any, memory: NDArray[np.uint8]) -> None:
     """Write a value of one of numba's types to where `memory` begins; an array as an address that nobody owns."""
     if isinstance(kind, types.BaseTuple):
         parts: Any = kind
-        for k, (part, one) in enumerate(zip(parts, value, strict=True)):
-            _write(part, one, memory[_offset(kind, k) :])
+        for begin, part, one in zip(_offsets(kind), parts, value, strict=False):
+            _write(part, one, memory[begin:])
     elif isinstance(kind, types.Array):
         numbers = (0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
         memory[: 8 * len(numbers)].view(np.int64)[:] = numbers
@@ -132,7 +135,7 @@ def _read(target: Any, builder: Any, kind: Referred, address: Any, name: str) ->
 def _part(target: Any, builder: Any, kind: Referred, address: Any, k: int) -> Any:
     """Part k of what lies at an address. It stays as it is: the compiler may read it once for all times."""
     part = kind.types[k]
-    place = builder.gep(address, [ir.Constant(ir.IntType(64), _offset(kind.record, k))])
+    place = builder.gep(address, [ir.Constant(ir.IntType(64), _offsets(kind.record)[k])])
     if isinstance(part, Referred):
         return place
     typed, before = builder.bitcast(place, target.get_data_type(part).as_pointer()), len(builder.block.instructions)

@@ -42,8 +42,8 @@ class Other:
     def kill(self) -> None:
         """End it at once."""
         assert self.process is not None
-        self.process.send_signal(signal.SIGQUIT)
-        self.process.wait(30)
+        self.process.send_signal(signal.SIGKILL)
+        self.process.wait()
 
     def stop(self) -> None:
         """Stop it."""

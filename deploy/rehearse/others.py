@@ -11,6 +11,7 @@ import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import ClassVar
 
 from chaos.postgres import binaries
 from deploy.rehearse.compose import Service
@@ -26,6 +27,8 @@ class Other:
     data: Path
     log: Path
     user: str
+    at_once: ClassVar[signal.Signals] = signal.SIGKILL
+    """The signal that ends it and all its processes without ado."""
     process: subprocess.Popen[bytes] | None = field(default=None, init=False)
 
     def start(self) -> None:
@@ -42,7 +45,7 @@ class Other:
     def kill(self) -> None:
         """End it at once."""
         assert self.process is not None
-        self.process.send_signal(signal.SIGKILL)
+        self.process.send_signal(self.at_once)
         self.process.wait()
 
     def stop(self) -> None:
@@ -72,6 +75,8 @@ class Redis(Other):
 
 class PostgreSQL(Other):
     """PostgreSQL, with the user, password and database that its environment names."""
+
+    at_once = signal.SIGQUIT
 
     def _environment(self) -> dict[str, str]:
         return super()._environment() | {"PGHOST": "127.0.0.1"}  # its programs look for another socket than the image's

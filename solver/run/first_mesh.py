@@ -11,7 +11,7 @@ from solver.run.plan import FIRST_INTERVALS
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 
-LARGEST_TURN = 1.0
+LARGEST_TURN = 0.6
 """Rotation (rad) within an interval that the first mesh has at the most."""
 LOOKED_AT = 513
 """Nodes at which the initial shape is looked at."""

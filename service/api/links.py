@@ -79,7 +79,8 @@ def list_links(job_id: str, parts: InParts, jobs: Jobs) -> LinksDocument:
     return LinksDocument(links=[_document(link) for link in found])
 
 
-@router.delete("/v1/jobs/{job_id}/links/{link_id}", status_code=204, responses=problems(404))
+@router.delete("/v1/jobs/{job_id}/links/{link_id}", status_code=204, response_class=Response,
+               responses=problems(404))
 def revoke(job_id: str, link_id: str, parts: InParts, jobs: OwnJobs, caller: Submitter) -> None:
     """Make a link useless from now on."""
     if not LinkStore(parts.registry.database).revoke(jobs.get(job_id).id, link_id, caller.actor):

@@ -21,6 +21,9 @@ router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 DAP = {"XDAP": "2.0", "XDODS-Server": "hockle"}
 BINARY = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
 BYTES: dict[int | str, dict[str, Any]] = {200: {"description": "The value", "content": BINARY}}
+TEXT: dict[int | str, dict[str, Any]] = {
+    200: {"description": "As DAP 2.0 writes it", "content": {"text/plain": {"schema": {"type": "string"}}}}
+}
 
 
 @router.get("/zarr/{key:path}", response_class=Response, responses={**BYTES, **problems(404, 409, 503)})
@@ -40,13 +43,13 @@ def zarr_of(job: Job, key: str, parts: Parts) -> Response:
     return Response(content, media_type=kind, headers={"Cache-Control": "private, immutable"})
 
 
-@router.get("/opendap.dds", response_class=Response, responses={**BYTES, **problems(404, 409, 422, 503)})
+@router.get("/opendap.dds", response_class=Response, responses={**TEXT, **problems(404, 409, 422, 503)})
 def opendap_structure(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Response:
     """What the dataset holds, as OPeNDAP (DAP 2.0) has it: `xarray.open_dataset(address of /v1/jobs/ID/opendap)`."""
     return _dap(jobs.get(job_id), parts, "dds", lambda dataset: dataset.dds(request.url.query))
 
 
-@router.get("/opendap.das", response_class=Response, responses={**BYTES, **problems(404, 409, 503)})
+@router.get("/opendap.das", response_class=Response, responses={**TEXT, **problems(404, 409, 503)})
 def opendap_attributes(job_id: str, parts: InParts, jobs: Jobs) -> Response:
     """The attributes of the dataset, as OPeNDAP has them."""
     return _dap(jobs.get(job_id), parts, "das", lambda dataset: dataset.das())

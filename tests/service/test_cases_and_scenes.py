@@ -103,6 +103,7 @@ NARROWER = {
     "Numerics.increment_tolerance": {inf},
     "Numerics.dt_max": {1e-9},  # more steps than a case may have
     "Scene.output_interval": {1e-9},  # and more frames
+    "Contact.spacing": {1e-9},  # and more contact points
 }
 """What the solver would run and the service refuses."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import secrets
+from collections import defaultdict
 from collections.abc import Iterator
 
 import pytest
@@ -46,7 +47,7 @@ def calls(client: TestClient, job_id: str, case: dict) -> dict[str, int]:
         if path.endswith("/events"):  # where the database can be read it goes on and on
             continue
         for method in operations:
-            address = path.format(job_id=job_id, process_id="simulate", name="elastica", link_id="0", token="0")
+            address = path.format_map(defaultdict(lambda: "0", job_id=job_id, process_id="simulate", name="elastica"))
             body = {"case": case, "reuse": False} if "execution" not in path else {"inputs": {"case": case}}
             body = {"seconds": 60.0} if path.endswith("links") else body
             answer = client.request(method, address, json=body if method in ("post", "put") else None)

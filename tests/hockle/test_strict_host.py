@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import shutil
 import signal
-import stat
 import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from numba import config
@@ -38,17 +38,13 @@ read_only = pytest.mark.skipif(not allowed(*READ_ONLY, *AS_NOBODY), reason="nobo
 
 
 @pytest.fixture
-def room(tmp_path: Path) -> Iterator[Path]:
-    """The one directory that he may write to, with the place of his temporary files in it."""
-    for directory in (tmp_path, *tmp_path.parents):
-        if not directory.stat().st_mode & stat.S_IXOTH:
-            directory.chmod(directory.stat().st_mode | stat.S_IXOTH)
-        if directory.name.startswith("pytest-of-"):
-            break
-    (tmp_path / "tmp").mkdir()
-    give(tmp_path)
-    yield tmp_path
-    shutil.rmtree(tmp_path, ignore_errors=True)
+def room() -> Iterator[Path]:
+    """The one directory that he may write to, with the place of his temporary files in it; below /tmp, since pytest's
+    own may lie where only its owner gets to."""
+    with TemporaryDirectory(dir="/tmp", prefix="hockle-room-") as name:
+        (Path(name) / "tmp").mkdir()
+        give(Path(name))
+        yield Path(name)
 
 
 def give(directory: Path) -> None:

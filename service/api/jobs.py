@@ -53,8 +53,8 @@ class Listing(BaseModel):
         return Selection(self.after, self.status, self.label, self.owner, since, until)
 
 
-@router.get("", responses=problems(422))
-def list_jobs(listing: Annotated[Listing, Query()], jobs: Jobs, caller: Reader) -> JobsDocument:
+@router.get("", response_model=JobsDocument, responses=problems(422))
+def list_jobs(listing: Annotated[Listing, Query()], jobs: Jobs, caller: Reader) -> Response:
     """Jobs, newest first, a page at a time; `next` is the address of the next page."""
     if listing.owner not in (None, caller.owner) and Scope.OPERATE not in caller.scopes:
         raise Problem(403, "scope_missing", f"jobs of another owner than {caller.owner} need the scope operate")
@@ -63,7 +63,8 @@ def list_jobs(listing: Annotated[Listing, Query()], jobs: Jobs, caller: Reader) 
     if page.next is not None:
         query = listing.model_dump(mode="json", exclude_none=True) | {"after": page.next}
         following = f"/v1/jobs?{urlencode(query)}"
-    return JobsDocument(jobs=[document(job) for job in page.jobs], next=following)
+    listed = JobsDocument(jobs=[document(job) for job in page.jobs], next=following)
+    return Response(listed.model_dump_json(), media_type="application/json")
 
 
 @router.get("/{job_id}", response_model=JobDocument, responses={**NOT_MODIFIED, **problems(404)})

@@ -42,16 +42,14 @@ def contact_points(case: CaseSpec) -> tuple[float, float]:
     return points, points * cutoff / spacing if spacing else 0.0
 
 
-def tables_in(part: object, pointer: str = "") -> Iterator[tuple[str, ProfileTable | ScheduleTable]]:
+def tables_in(part: BaseModel | tuple[object, ...], pointer: str = "") -> Iterator[tuple[str, ProfileTable | ScheduleTable]]:
     """Every table of a part, and where it is."""
     if isinstance(part, ProfileTable | ScheduleTable):
         yield pointer, part
-    elif isinstance(part, BaseModel):
-        for name, inner in part:
+        return
+    for name, inner in vars(part).items() if isinstance(part, BaseModel) else enumerate(part):
+        if isinstance(inner, (BaseModel, tuple)):  # of what a case holds most are numbers and texts
             yield from tables_in(inner, f"{pointer}/{name}")
-    elif isinstance(part, tuple):
-        for i, inner in enumerate(part):
-            yield from tables_in(inner, f"{pointer}/{i}")
 
 
 def _refuse_output(case: CaseSpec) -> None:

@@ -85,6 +85,7 @@ jobs = Table(
     Index("jobs_in_turn", "status", "owner", "priority", "id"),
     Index("jobs_by_end", "deleted", "finished"),
     Index("jobs_by_bytes", "owner", "dataset_bytes"),
+    Index("jobs_listed", "deleted", "id"),
 )
 
 owners = Table(

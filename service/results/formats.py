@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from io import BytesIO
+from threading import Lock
 from typing import Any
 
 import netCDF4
@@ -13,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.results.part import Column, Part
-from service.results.query import ONE_AT_A_TIME
 
+ONE_AT_A_TIME = Lock()
+"""The NetCDF library is not thread-safe."""
 TEXT, BINARY = 1_000_000, 10_000_000
 """The most values that are given out at once."""
 

@@ -7,10 +7,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
-from threading import Lock
 from typing import TYPE_CHECKING, Any, Protocol
 
-import netCDF4
+import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,10 +18,6 @@ from service.results.schema import COORDINATES, ERRORS, LABELS, VARIABLES, Varia
 
 if TYPE_CHECKING:
     import xarray as xr
-
-ONE_AT_A_TIME = Lock()
-"""The HDF5 library is not thread-safe."""
-
 
 class UnknownVariable(ValueError):
     """A variable that the dataset does not hold."""
@@ -83,32 +78,30 @@ def open_dataset(path: Path) -> xr.Dataset:
 class DatasetSource:
     """The frames of a dataset that is open."""
 
-    def __init__(self, dataset: netCDF4.Dataset) -> None:
-        dataset.set_auto_mask(False)
-        self._dataset = dataset
-        self.time: NDArray[np.float64] = dataset["time"][:]
-        self.s: NDArray[np.float64] = dataset["s"][:]
-        self.variables = {v.name: v for v in (*VARIABLES, *ERRORS.values()) if v.name in dataset.variables}
+    def __init__(self, file: h5py.File) -> None:
+        self._file = file
+        self.time: NDArray[np.float64] = file["time"][:]
+        self.s: NDArray[np.float64] = file["s"][:]
+        self.variables = {v.name: v for v in (*VARIABLES, *ERRORS.values()) if v.name in file}
 
     @property
     def attributes(self) -> dict[str, Any]:
         """Those of the dataset as a whole, as plain data."""
-        told = {name: self._dataset.getncattr(name) for name in self._dataset.ncattrs()}
-        return {name: value if isinstance(value, str) else value.item() for name, value in told.items()}
+        told = {name: value for name, value in self._file.attrs.items() if not name.startswith("_")}
+        return {name: value.decode() if isinstance(value, bytes) else value.item() for name, value in told.items()}
 
     def read(self, variable: Variable, ranges: Mapping[str, slice]) -> NDArray[Any]:
         """The values of one variable at some indices of time and s."""
-        values: NDArray[Any] = self._dataset[variable.name][
-            tuple(ranges.get(name, slice(None)) for name in variable.dimensions)
-        ]
+        indices = tuple(ranges.get(name, slice(None)) for name in variable.dimensions)
+        values: NDArray[Any] = self._file[variable.name][indices]
         return values
 
 
 @contextmanager
 def opened(path: Path) -> Iterator[DatasetSource]:
-    """The frames of the dataset in a file."""
-    with ONE_AT_A_TIME, netCDF4.Dataset(path) as dataset:
-        yield DatasetSource(dataset)
+    """The frames of the dataset in a file, by HDF5 alone: the NetCDF library looks at every variable to open one."""
+    with h5py.File(path) as file:
+        yield DatasetSource(file)
 
 
 def subset(source: Source, names: Sequence[str], ranges: Ranges = Ranges(), limit: int = 1_000_000,
@@ -166,4 +159,4 @@ def _slice(values: NDArray[np.float64], lowest: float | None, highest: float | N
     """The indices of an increasing coordinate's values within a closed range."""
     first = 0 if lowest is None else int(np.searchsorted(values, lowest, "left"))
     last = len(values) if highest is None else int(np.searchsorted(values, highest, "right"))
-    return slice(first, max(first, last), min(stride, max(1, len(values))))  # netCDF4 takes no stride past 64 bits
+    return slice(first, max(first, last), min(stride, max(1, len(values))))  # HDF5 takes no stride past 64 bits

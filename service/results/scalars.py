@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import netCDF4
+import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from service.results.part import Column
-from service.results.query import ONE_AT_A_TIME, UnknownVariable
+from service.results.query import UnknownVariable
 from service.results.schema import ERRORS, LABELS, VARIABLES, Variable
 
 Value = float | int | list[float | None] | None
@@ -29,10 +29,9 @@ def scalar_variables(names: Sequence[str]) -> list[str]:
 
 def last_values(path: Path, names: Sequence[str]) -> dict[str, Value]:
     """The values of the last frame; None for what the dataset does not hold, and where there is no number."""
-    with ONE_AT_A_TIME, netCDF4.Dataset(path) as dataset:
-        dataset.set_auto_mask(False)
-        frames = len(dataset.dimensions["time"])
-        held = {name: np.asarray(dataset[name][-1]) for name in names if frames and name in dataset.variables}
+    with h5py.File(path) as file:
+        frames = len(file["time"])
+        held = {name: np.asarray(file[name][-1]) for name in names if frames and name in file}
     return {name: _plain(held[name]) if name in held else None for name in names}
 
 

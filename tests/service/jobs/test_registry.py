@@ -6,6 +6,7 @@ import json
 
 import pytest
 from sqlalchemy import select, text
+from sqlalchemy.event import listen
 
 from service.jobs import ENDED, Job, Limits, NewJob, Registry, Selection, Status, UnknownJob, new_id
 from service.jobs.held import claim
@@ -93,6 +94,22 @@ def test_a_status_read_is_a_point_read_by_the_primary_key(registry):
     with registry.database.reading() as connection:
         plan = connection.execute(text("EXPLAIN QUERY PLAN SELECT status FROM jobs WHERE id = 'x'")).all()
     assert "SEARCH jobs USING INDEX" in str(plan)
+
+
+SELECTIONS = [Selection(), Selection("z" * 26), Selection(owner="local"), Selection(status=Status.SUCCESSFUL),
+              Selection(status=Status.ACCEPTED, owner="local"), Selection(label="x"), Selection(since=1.0)]  # fmt: skip
+
+
+@pytest.mark.parametrize("url", ["sqlite"], indirect=True)
+@pytest.mark.parametrize("selection", SELECTIONS, ids=str)
+def test_no_page_sorts_all_jobs_for_the_few_that_it_holds(registry, selection):
+    asked = []
+    with registry.database.reading() as connection:
+        listen(connection.engine, "before_cursor_execute", lambda *told: asked.append(told[2:4]))
+        registry.page(10, selection)
+        [(statement, parameters)] = asked
+        plan = [row[-1] for row in connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", parameters)]
+    assert not any("TEMP B-TREE" in step or "SCAN" in step for step in plan), plan
 
 
 @pytest.mark.parametrize("ask", [Registry.get, Registry.case, Registry.cancel])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import replace
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
@@ -20,8 +20,9 @@ from service.api.numbers import WHOLE
 from service.api.parts import InParts, Parts, Reader, Submitter
 from service.api.problems import Problem
 from service.api.submitting import IdempotencyKey
-from service.cases import check_cost
-from service.cases.beginning import shared_beginnings
+from service.cases import CaseSpec, check_cost
+from service.cases.beginning import Beginning, shared_beginnings
+from service.cases.sampling import Values
 from service.jobs import Job, NewJob, Status, new_id
 from service.jobs.ensembles import Ensemble, Ensembles, Member, NewEnsemble, Standing, UnknownEnsemble
 
@@ -138,19 +139,27 @@ def submit_ensemble(parts: InParts, caller: Submitter, body: Annotated[dict[str,
 def requested(asked: EnsembleRequest, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> NewEnsemble:
     """What is asked for, understood. Raises CaseError for a member's case or cost, or for the limits."""
     limits, values = asked.limits.within(parts.settings.limits), asked.values()
-    jobs, specs = [], list(asked.specs(values))
     ids = sorted(new_id() for _ in values)  # the first member goes first
-    beginnings = shared_beginnings(specs) if asked.differs_late else [None] * len(specs)
-    for job_id, spec, begins in zip(ids, specs, beginnings, strict=True):
+    jobs = []
+    for job_id, (spec, begins) in zip(ids, _with_beginnings(asked, values), strict=True):
         check_cost(spec, parts.settings.longest_run)
         title = spec.title or spec.name
-        job = NewJob(spec.document(), title, caller.owner, asked.label, asked.priority, limits, job_id)
-        if begins is not None:
-            job = replace(job, begins_with=ids[begins.leader], begins_at=begins.frame, waits=True)
-        jobs.append(job)
+        leader, frame = (ids[begins.leader], begins.frame) if begins is not None else (None, 0)
+        jobs.append(NewJob(spec.document(), title, caller.owner, asked.label, asked.priority, limits, job_id,
+                           leader, frame, waits=leader is not None))  # fmt: skip
     digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest()
     return NewEnsemble(asked.design, values, jobs, caller.actor, asked.title or jobs[0].title, asked.label, key, digest,
                        asked.reuse)  # fmt: skip
+
+
+def _with_beginnings(asked: EnsembleRequest, values: list[Values]) -> Iterator[tuple[CaseSpec, Beginning | None]]:
+    """The members' cases, and with which of the others each begins; one after the other, where that is not to be
+    known."""
+    if not asked.differs_late:
+        yield from ((spec, None) for spec in asked.specs(values))
+        return
+    specs = list(asked.specs(values))
+    yield from zip(specs, shared_beginnings(specs), strict=True)
 
 
 @router.get("", responses=problems(422))

@@ -42,7 +42,8 @@ def contact_points(case: CaseSpec) -> tuple[float, float]:
     return points, points * cutoff / spacing if spacing else 0.0
 
 
-def tables_in(part: BaseModel | tuple[object, ...], pointer: str = "") -> Iterator[tuple[str, ProfileTable | ScheduleTable]]:
+def tables_in(part: BaseModel | tuple[object, ...], pointer: str = "",
+              ) -> Iterator[tuple[str, ProfileTable | ScheduleTable]]:
     """Every table of a part, and where it is."""
     if isinstance(part, ProfileTable | ScheduleTable):
         yield pointer, part

@@ -8,7 +8,7 @@ import json
 import os
 import secrets
 import time
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -84,7 +84,7 @@ class NewJob:
     job whose run is also that of this one, up to its frame `begins_at`; `waits`: for its end.
     """
 
-    case: dict[str, Any]
+    case: InitVar[dict[str, Any]]
     title: str = ""
     owner: str = LOCAL
     label: str = ""
@@ -94,11 +94,12 @@ class NewJob:
     begins_with: str | None = None
     begins_at: int = 0
     waits: bool = False
+    case_json: str = field(init=False)
+    """The case as canonical JSON: equal cases give equal text. A thousand texts are held with less ado than as data."""
 
-    @cached_property
-    def case_json(self) -> str:
-        """The case as canonical JSON: equal cases give equal text."""
-        return json.dumps(self.case, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    def __post_init__(self, case: dict[str, Any]) -> None:
+        text = json.dumps(case, sort_keys=True, separators=(",", ":"), allow_nan=False)
+        object.__setattr__(self, "case_json", text)
 
     @cached_property
     def case_sha256(self) -> str:

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 @dataclass(frozen=True)
 class Row:
     """Latencies (s) of one thing, and what they shall be. `rate`: how many a second, where that is told; `control`:
-    the same thing without what is tried here."""
+    the same thing without what is tried here; `cpu`: CPU time (s) that the service took for each."""
 
     what: str
     seconds: Sequence[float]
     aim: str = ""
     rate: float | None = None
     control: Row | None = None
+    cpu: float | None = None
 
     def quantile(self, part: float) -> float:
         """The latency (s) that this part of them does not reach."""
@@ -30,15 +31,17 @@ class Row:
         """What the table shows, by its columns."""
         return {
             "what": self.what, "n": str(len(self.seconds)), "p50 ms": f"{1e3 * self.quantile(0.5):.2f}",
-            "p99 ms": f"{1e3 * self.quantile(0.99):.1f}", "a second": "" if self.rate is None else f"{self.rate:.0f}",
+            "p99 ms": f"{1e3 * self.quantile(0.99):.1f}", "CPU ms": "" if self.cpu is None else f"{1e3 * self.cpu:.1f}",
+            "a second": "" if self.rate is None else f"{self.rate:.0f}",
             "aim": self.aim, "p50 / that of the control": "" if self.ratio is None else f"{self.ratio:.2f}",
         }  # fmt: skip
 
 
 def table(rows: Sequence[Row]) -> list[str]:
-    """The lines of a table in Markdown."""
-    columns = list(rows[0].cells())
-    return [_line(columns), "|---" * len(columns) + "|", *(_line(list(row.cells().values())) for row in rows)]
+    """The lines of a table in Markdown, without the columns in which nothing stands."""
+    cells = [row.cells() for row in rows]
+    columns = [name for name in cells[0] if any(row[name] for row in cells)]
+    return [_line(columns), "|---" * len(columns) + "|", *(_line([row[name] for name in columns]) for row in cells)]
 
 
 def _line(cells: Sequence[str]) -> str:

@@ -19,6 +19,7 @@ def test_a_quantile_is_one_of_the_latencies_in_whatever_order_they_came():
     assert (row.quantile(0.0), row.quantile(0.5), row.quantile(0.99)) == (0.001, 0.002, 0.003)
 
 
-def test_what_has_no_control_or_rate_leaves_the_column_empty():
-    *_, line = table([Row("status", [0.001], "p99 <= 20 ms")])
-    assert line == "| status | 1 | 1.00 | 1.0 |  | p99 <= 20 ms |  |"
+def test_a_column_in_which_nothing_stands_is_left_out():
+    head, _, line, other = table([Row("status", [0.001], "p99 <= 20 ms"), Row("case", [0.001], cpu=0.002)])
+    assert head == "| what | n | p50 ms | p99 ms | CPU ms | aim |"
+    assert (line, other) == ("| status | 1 | 1.00 | 1.0 |  | p99 <= 20 ms |", "| case | 1 | 1.00 | 1.0 | 2.0 |  |")

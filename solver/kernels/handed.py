@@ -10,6 +10,7 @@ Who hands over keeps the arrays alive. Kernels read a record's fields by name, a
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numba
@@ -72,6 +73,7 @@ class Handed:
         return self if same else self.over(*records)
 
 
+@cache
 def _offsets(kind: Any) -> list[int]:
     """Where each part of a tuple begins (bytes), and where the tuple ends: as in C."""
     begins, end, widest = list[int](), 0, 1

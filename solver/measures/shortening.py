@@ -31,6 +31,8 @@ from solver.kernels.kernel import allocating, inner
 from solver.kernels.vectors import dot, minus, norm, times, vector
 from solver.measures.spherical import half_area
 
+Vector = tuple[float, float, float]
+
 BLOCK = 8
 RIGHT_ANGLE = sqrt(2.0)
 """The chord of a right angle on the unit sphere. Chords that sum up to less belong to angles that do so, too: as far as
@@ -38,11 +40,11 @@ there an arc is at most pi / 2 sqrt(2) times as long as its chord."""
 
 
 @allocating
-def shorten(r: Array, first: Array, last: Array) -> tuple[Array, float]:
+def shorten(r: Array, first: Vector, last: Vector) -> tuple[Array, float]:
     """The polygon `r` (3, n) without the inner vertices of its smooth blocks, and what its pairs add up to the less
     (half areas: Wr = -sum / pi).
 
-    It is continued by rays that arrive along the unit vector `first` and leave along `last` (3,).
+    It is continued by rays that arrive along the unit vector `first` and leave along `last`.
     """
     t = _tangents(r, first, last)
     smooth, alone = _smooth(t), _alone(r, first, last)
@@ -75,11 +77,11 @@ def _vertex(r: Array, i: int) -> Any:
 
 
 @allocating
-def _tangents(r: Array, first: Array, last: Array) -> Array:
+def _tangents(r: Array, first: Vector, last: Vector) -> Array:
     """Unit tangents (n + 1, 3) of the ray, the n - 1 segments and the other ray."""
     t = np.empty((r.shape[1] + 1, 3))
-    copy(first, t[0])
-    copy(last, t[-1])
+    for k in range(3):
+        t[0, k], t[-1, k] = first[k], last[k]
     for i in range(r.shape[1] - 1):
         x, y, z = r[0, i + 1] - r[0, i], r[1, i + 1] - r[1, i], r[2, i + 1] - r[2, i]
         length = sqrt(x * x + y * y + z * z)
@@ -116,7 +118,7 @@ def _spheres(r: Array) -> tuple[Array, Array]:
 
 
 @allocating
-def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
+def _alone(r: Array, first: Vector, last: Vector) -> NDArray[np.bool_]:
     """Of each block, whether the sphere around it is apart from those of all but its neighbours, and from the rays."""
     centres, radii = _spheres(r)
     blocks = len(radii)
@@ -125,7 +127,7 @@ def _alone(r: Array, first: Array, last: Array) -> NDArray[np.bool_]:
         arrives, leaves = minus(vector(centres, one), _vertex(r, 0)), minus(vector(centres, one), _vertex(r, -1))
         if one > 0 and not _ray_apart(arrives, radii[one], (-first[0], -first[1], -first[2])):
             alone[one] = False
-        if one < blocks - 1 and not _ray_apart(leaves, radii[one], (last[0], last[1], last[2])):
+        if one < blocks - 1 and not _ray_apart(leaves, radii[one], last):
             alone[one] = False
         for other in range(one + 2, blocks):
             apart = 0.0

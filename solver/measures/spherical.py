@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import atan2, sqrt
 from typing import Any
 
-from solver.kernels.kernel import inlined, kernel
+from solver.kernels.kernel import inlined, inner
 
 
-@kernel
+@inner
 def half_area(a: Any, b: Any, c: Any) -> float:
     """Half the signed area of the spherical triangle of directions a, b, c (3,), of any length > 0.
 

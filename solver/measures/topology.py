@@ -23,10 +23,8 @@ from solver.arrays import Array
 from solver.kernels.kernel import allocating, inlined, inner, kernel
 from solver.kernels.rotation import rotate
 from solver.kernels.vectors import minus, norm, vector
-from solver.measures.shortening import shorten
+from solver.measures.shortening import Vector, shorten
 from solver.measures.spherical import angle, half_area
-
-Vector = tuple[float, float, float]
 
 SMALL_TANGENT = 0.1
 """Below it eight terms of the arctangent's series are exact to rounding: 0.1^16 / 17 = 6e-18."""
@@ -41,13 +39,9 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
 
     Raises ValueError for another shape or a zero tangent; NaN in gives NaN out.
     """
-    outward_start, outward_end = -_unit(start_tangent), _unit(end_tangent)
-    columns, quarter = shorten(_columns(r, 2), -outward_start, outward_end)
-    quarter += _segment_pairs(columns, False)
-    rows = np.ascontiguousarray(columns.T)
-    quarter += _ray(rows, rows[-1], outward_end) - _ray(rows, rows[0], outward_start)
-    across = columns[:, -1] - columns[:, 0]
-    quarter -= half_area(across, outward_end, -outward_start)
+    first, last = _unit(start_tangent), _unit(end_tangent)
+    columns, quarter = shorten(_columns(r, 2), first, last)
+    quarter += _segment_pairs(columns, False) + _rays(np.ascontiguousarray(columns.T), first, last)
     return -quarter / pi
 
 
@@ -58,10 +52,7 @@ def writhe_shares(r: Array, start_tangent: Array, end_tangent: Array) -> tuple[f
 
 def share_of_rays(r: Array, start_tangent: Array, end_tangent: Array) -> float:
     """The part of `writhe` (turns) that the pairs with a ray have in it."""
-    outward_start, outward_end = -_unit(start_tangent), _unit(end_tangent)
-    rays = _ray(r, r[-1], outward_end) - _ray(r, r[0], outward_start)
-    rays -= half_area(r[-1] - r[0], outward_end, -outward_start)
-    return -float(rays) / pi
+    return -float(_rays(r, _unit(start_tangent), _unit(end_tangent))) / pi
 
 
 def writhe_of_rod(r: Array, orientation: Array) -> float:
@@ -83,22 +74,31 @@ def _columns(r: ArrayLike, least: int) -> Array:
     return np.ascontiguousarray(vertices.T)
 
 
-def _unit(direction: ArrayLike) -> Array:
-    vector = np.asarray(direction, dtype=float)
-    norm = float(np.linalg.norm(vector))
-    if norm == 0:
+def _unit(direction: ArrayLike) -> Vector:
+    x, y, z = np.asarray(direction, dtype=float).tolist()
+    length = sqrt(x * x + y * y + z * z)
+    if length == 0.0:
         raise ValueError("a tangent must not be zero")
-    return vector / norm
+    return x / length, y / length, z / length
 
 
 @kernel
-def _ray(r: Array, origin: Array, direction: Array) -> float:
+def _rays(r: Array, first: Vector, last: Vector) -> float:
+    """Half the signed area of all pairs with a ray of the polygon `r` (n, 3): with the one that arrives along `first`,
+    with the one that leaves along `last`, and of these two."""
+    from_start = minus((0.0, 0.0, 0.0), first)
+    across = minus(vector(r, -1), vector(r, 0))
+    return _ray(r, vector(r, -1), last) - _ray(r, vector(r, 0), from_start) - half_area(across, last, first)
+
+
+@inner
+def _ray(r: Array, start: Vector, along: Vector) -> float:
     """Half the signed area of all segments of `r` (n, 3) with the ray from one of its ends.
 
     The quadrilateral's two corners at infinity are one, so it is a triangle. The segment that
     touches the ray lies in a plane with it and adds nothing.
     """
-    total, start, along = 0.0, (origin[0], origin[1], origin[2]), (direction[0], direction[1], direction[2])
+    total = 0.0
     for i in range(len(r) - 1):
         a, d = minus(start, vector(r, i)), minus(start, vector(r, i + 1))
         if norm(a) > 0.0 and norm(d) > 0.0:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import isnan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -35,6 +36,8 @@ def _number(name: str) -> int:
 
 
 R, KAPPA, ORIENTATION = column("r"), column("kappa"), column("orientation")
+JUDGED = [*range(R.start, R.stop), *range(KAPPA.start, KAPPA.stop)]
+"""The components along the rod that a tolerance is for: of r, then of kappa."""
 OMEGA, FORCE = column("omega"), column("f")
 TWIST, WRITHE, BALANCE = _number("Tw"), _number("Wr"), _number("energy_balance")
 CURVATURE = _number("max_curvature")
@@ -55,17 +58,19 @@ def number_of(row: Array, index: int) -> float:
     return float(row[1 + index])
 
 
-def columns_of(rows: Sequence[Array]) -> Columns:
-    """The outputs of many frames, (frames, ...)."""
+def columns_of(rows: Sequence[Array], judged: bool = False) -> Columns:
+    """The outputs of many frames (frames, ...), copied: all, or of those along the rod the `JUDGED` components."""
     table, end = np.array(rows), 1 + len(NUMBERS)
-    return Columns(table[:, end:].reshape(len(table), -1, WIDTH), table[:, None, 1:end])
+    along = table[:, end:].reshape(len(table), -1, WIDTH)
+    return Columns(along[..., JUDGED] if judged else along, table[:, None, 1:end])
 
 
 def frame_of(t: float, columns: Columns) -> Frame:
     """The frame at time `t` (s) of the outputs of one."""
     values: dict[str, Any] = {}
     for output, number in zip(NUMBERS, columns.numbers[0], strict=True):
-        values[output.name] = int(np.nan_to_num(number)) if output.type == "i4" else float(number)
+        value = float(number)
+        values[output.name] = (0 if isnan(value) else int(value)) if output.type == "i4" else value
     for output in ALONG:
         field = columns.along[:, column(output.name)]
         values[output.name] = np.ascontiguousarray(field if output.axes else field[:, 0])

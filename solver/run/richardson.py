@@ -70,10 +70,12 @@ def nowhere_small(error: Array, nodes: int) -> Array:
     many = error.shape[1]
     if many == nodes:
         return error
-    place = np.linspace(0.0, many - 1.0, nodes)
-    before = np.minimum(place.astype(int), many - 2)
-    part = (place - before)[:, None]
-    return np.asarray((1.0 - part) * error[:, before] + part * error[:, before + 1])
+    between = (nodes - 1) // (many - 1)
+    spread = _at_nodes(error, nodes, between)
+    for k in range(1, between):
+        part = k / between
+        spread[:, k::between] = (1.0 - part) * error[:, :-1] + part * error[:, 1:]
+    return spread
 
 
 def _spread(values: Array, nodes: int) -> Array:
@@ -81,12 +83,28 @@ def _spread(values: Array, nodes: int) -> Array:
     many = values.shape[1]
     if many == nodes:
         return values
-    place = np.linspace(0.0, many - 1.0, nodes)
-    first = np.clip(np.floor(place).astype(int) - 1, 0, many - 4)
-    x = (place - first)[:, None]
-    weights = ((1.0 - x) * (2.0 - x) * (3.0 - x) / 6.0, 0.5 * x * (2.0 - x) * (3.0 - x),
-               0.5 * x * (x - 1.0) * (3.0 - x), x * (x - 1.0) * (x - 2.0) / 6.0)  # fmt: skip
-    return np.asarray(sum(weight * values[:, first + k] for k, weight in enumerate(weights)))
+    between = (nodes - 1) // (many - 1)
+    spread = _at_nodes(values, nodes, between)
+    for k in range(1, between):
+        part = k / between
+        new = spread[:, k::between]
+        new[:, 1:-1] = _cubic(1.0 + part, values[:, :-3], values[:, 1:-2], values[:, 2:-1], values[:, 3:])
+        new[:, 0] = _cubic(part, *np.moveaxis(values[:, :4], 1, 0))
+        new[:, -1] = _cubic(2.0 + part, *np.moveaxis(values[:, -4:], 1, 0))
+    return spread
+
+
+def _at_nodes(values: Array, nodes: int, between: int) -> Array:
+    """An array for values at `nodes`, which holds those that there are: at each that is a multiple of `between`."""
+    spread = np.empty((len(values), nodes, values.shape[2]))
+    spread[:, ::between] = values
+    return spread
+
+
+def _cubic(x: float, a: Array, b: Array, c: Array, d: Array) -> Array:
+    """The cubic through a, b, c, d at 0, 1, 2, 3, at x."""
+    p, q, r, s = x, x - 1.0, x - 2.0, x - 3.0
+    return -q * r * s / 6.0 * a + 0.5 * p * r * s * b - 0.5 * p * q * s * c + p * q * r / 6.0 * d
 
 
 def _rms(values: Array) -> Array:

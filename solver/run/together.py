@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +16,7 @@ from solver.run.recording import (
     BALANCE,
     CURVATURE,
     FORCE,
+    JUDGED,
     KAPPA,
     NUMBERS,
     OMEGA,
@@ -100,8 +102,8 @@ class Together:
         tolerated = step_tolerance(self.finest.steps, self._scene.numerics.tolerance or 1.0)
         for rows, most in zip((OMEGA, FORCE), largest, strict=True):
             along[:, rows] = np.maximum(along[:, rows], UNFOLLOWED * min(tolerated, 1.0) * most)
-        for name, least in unseen(self._scene.rod, self.s, lost).items():
-            along[:, column(name)] = np.maximum(along[:, column(name)], least)
+        for name, least in self._unseen.items():
+            along[:, column(name)] = np.maximum(along[:, column(name)], np.sqrt(lost) * least)
         curvature = float(np.linalg.norm(along[:, KAPPA], axis=-1).max())
         numbers[0, CURVATURE] = max(numbers[0, CURVATURE], curvature)
         numbers[0, BALANCE] = max(numbers[0, BALANCE], abs(value.numbers[0, BALANCE]))  # of the solution it is none
@@ -111,7 +113,7 @@ class Together:
     def errors(self) -> Array:
         """The errors of the quantities of a tolerance (frames, 4), relative; see `accuracy`."""
         size = self._sizes()
-        return np.concatenate([errors_of(self._of_frames(here)[1], size) for here in self._pieces()])
+        return np.concatenate([errors_of(self._of_frames(here, True)[1], size) for here in self._pieces()])
 
     def excesses(self, before: Sequence[Excess]) -> list[Excess]:
         """Of each quantity the errors of the finest mesh and of its steps, over the tolerance; `before`: those before
@@ -121,8 +123,8 @@ class Together:
         size, target = self._sizes(), self._scene.numerics.tolerance or 1.0
         mesh, steps = [], []
         for here in self._pieces():
-            mesh.append(errors_of(self._of_mesh(here)[1], size))
-            steps.append(errors_of(self._of_steps(here), size))
+            mesh.append(errors_of(self._of_mesh(here, True)[1], size))
+            steps.append(errors_of(self._of_steps(here, True), size))
         unknown = np.full(len(QUANTITIES), np.inf)
         of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else unknown
         of_steps = excess(target, np.concatenate(steps)) if self._chosen.series else unknown
@@ -131,6 +133,11 @@ class Together:
         totals = [each.total for each in before]
         hopeless = [HOPELESS.get(name, np.inf) for name in QUANTITIES]
         return [Excess(*map(float, each)) for each in zip(of_mesh, of_steps, totals, hopeless, strict=True)]
+
+    @cached_property
+    def _unseen(self) -> dict[str, Array]:
+        """See `unseen`, of an energy of 1 J."""
+        return unseen(self._scene.rod, self.s, 1.0)
 
     @property
     def _many(self) -> int:
@@ -142,50 +149,52 @@ class Together:
             yield slice(i, min(i + self._many, self.frames))
 
     def _sizes(self) -> Array:
-        return sizes(self._scene, (self._columns(self._chosen.finest, here) for here in self._pieces()))
+        return sizes(self._scene, (self._columns(self._chosen.finest, here, True) for here in self._pieces()))
 
-    def _columns(self, i: int, here: slice) -> Columns:
-        return columns_of(self._recorded[i][here])
+    def _columns(self, i: int, here: slice, judged: bool) -> Columns:
+        return columns_of(self._recorded[i][here], judged)
 
-    def _of_frames(self, here: slice) -> tuple[Columns, Columns]:
-        """The values and their errors."""
-        value, mesh = self._of_mesh(here)
-        steps = self._of_steps(here)
+    def _of_frames(self, here: slice, judged: bool = False) -> tuple[Columns, Columns]:
+        """The values and their errors; here and below of all columns or of those that are `judged`."""
+        value, mesh = self._of_mesh(here, judged)
+        steps = self._of_steps(here, judged)
         return value, Columns(mesh.along + steps.along, mesh.numbers + steps.numbers)
 
-    def _of_mesh(self, here: slice) -> tuple[Columns, Columns]:
+    def _of_mesh(self, here: slice, judged: bool) -> tuple[Columns, Columns]:
         """The values and their errors by the mesh, on a diagonal by mesh and steps."""
-        finest = self._columns(self._chosen.finest, here)
-        meshes = [_aligned(self._columns(k, here), finest) for k in self._chosen.meshes]
+        finest = self._columns(self._chosen.finest, here, judged)
+        meshes = [_aligned(self._columns(k, here, judged), finest, judged) for k in self._chosen.meshes]
         doubled = [self._attempts[k].mesh for k in self._chosen.meshes]
         ratios = [2 ** (b - a) for a, b in pairwise(doubled)]
         values, errors = zip(*(extrapolate(series, ratios) for series in zip(*meshes, strict=True)), strict=True)
         along = finest.along + (values[0] - meshes[-1].along)
         numbers = finest.numbers + (values[1] - meshes[-1].numbers)
-        turned = along[..., ORIENTATION]
-        along[..., ORIENTATION] = turned / np.linalg.norm(turned, axis=-1)[..., None]
+        if not judged:
+            turned = along[..., ORIENTATION]
+            turned /= np.sqrt(np.sum(turned**2, axis=-1))[..., None]
         return Columns(along, np.where(UNVERIFIED, finest.numbers, numbers)), Columns(*errors)
 
-    def _of_steps(self, here: slice) -> Columns:
+    def _of_steps(self, here: slice, judged: bool) -> Columns:
         """The error by the steps, as attempts with different steps tell it; none where nothing tells it."""
         series, nodes = self._chosen.series, intervals_of(self.finest.mesh) + 1
         if not series:
             many = min(here.stop, self.frames) - here.start
-            return Columns(np.zeros((many, nodes, WIDTH)), np.zeros((many, 1, len(NUMBERS))))
-        told = [self._columns(k, here) for k in series]
-        along, numbers = zip(*(_aligned(columns, told[-1]) for columns in told), strict=True)
+            return Columns(np.zeros((many, nodes, len(JUDGED) if judged else WIDTH)), np.zeros((many, 1, len(NUMBERS))))
+        told = [self._columns(k, here, judged) for k in series]
+        along, numbers = zip(*(_aligned(columns, told[-1], judged) for columns in told), strict=True)
         longer = self.finest.steps - self._attempts[series[-1]].steps
         part = FALL ** -max(longer, 0)
         return Columns(*(part * error_of_steps(each, longer < 0, n) for each, n in ((along, nodes), (numbers, 1))))
 
 
-def _aligned(columns: Columns, fine: Columns) -> Columns:
-    """With the quaternions' signs as those of a finer mesh: a quaternion and its opposite are the same rotation; and
-    with Wr as near to it as multiples of 2 turns, by which it jumps where a loop hops over an end, bring it."""
-    stride = (fine.along.shape[1] - 1) // (columns.along.shape[1] - 1)
-    along, numbers = columns.along.copy(), columns.numbers.copy()
-    q = along[..., ORIENTATION]
-    opposite = np.sum(q * fine.along[:, ::stride, ORIENTATION], axis=-1) < 0.0
-    along[..., ORIENTATION] = np.where(opposite[..., None], -q, q)
-    numbers[..., WRITHE] += 2.0 * np.round(0.5 * (fine.numbers[..., WRITHE] - numbers[..., WRITHE]))
-    return Columns(along, numbers)
+def _aligned(columns: Columns, fine: Columns, judged: bool) -> Columns:
+    """With Wr as near to that of a finer mesh as multiples of 2 turns, by which it jumps where a loop hops over an end,
+    bring it; and with the quaternions' signs as there, if all columns are looked at: a quaternion and its opposite are
+    the same rotation."""
+    Wr = columns.numbers[..., WRITHE]
+    Wr += 2.0 * np.round(0.5 * (fine.numbers[..., WRITHE] - Wr))
+    if not judged:
+        stride = (fine.along.shape[1] - 1) // (columns.along.shape[1] - 1)
+        q = columns.along[..., ORIENTATION]
+        q[np.sum(q * fine.along[:, ::stride, ORIENTATION], axis=-1) < 0.0] *= -1.0
+    return columns

@@ -127,7 +127,7 @@ def _fixed(told: Scene, intervals: int, tolerated: float, most: float) -> tuple[
 
 def _error(told: Scene, frames: Sequence[Frame], truth: Sequence[Frame]) -> float:
     """The true error over the tolerance."""
-    mine, exact = (columns_of([row_of(frame) for frame in series]) for series in (frames, truth))
+    mine, exact = (columns_of([row_of(frame) for frame in series], judged=True) for series in (frames, truth))
     many = [columns.along.shape[1] - 1 for columns in (mine, exact)]
     strides = [each // min(many) for each in many]
     along = mine.along[:, :: strides[0]] - exact.along[:, :: strides[1]]

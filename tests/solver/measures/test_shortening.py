@@ -28,7 +28,7 @@ def whole(monkeypatch: pytest.MonkeyPatch):
 
 
 def vertices_left(r: Array, first: Array, last: Array) -> int:
-    unit = [direction / np.linalg.norm(direction) for direction in (first, last)]
+    unit = [tuple(direction / np.linalg.norm(direction)) for direction in (first, last)]
     shorter, _ = shorten(np.ascontiguousarray(r.T), *unit)
     assert shorter[:, 0] == pytest.approx(r[0], abs=0)
     assert shorter[:, -1] == pytest.approx(r[-1], abs=0)

@@ -42,7 +42,7 @@ def truth() -> list[VerifiedFrame]:
 
 def true_errors(tolerance: float) -> np.ndarray:
     """Of `QUANTITIES`, the largest of all frames."""
-    rows = columns_of([row_of(frame) for frame in done(tolerance)[1]]), columns_of([row_of(f) for f in truth()])
+    rows = (columns_of([row_of(frame) for frame in frames], judged=True) for frames in (done(tolerance)[1], truth()))
     ours, theirs = rows
     step = (theirs.along.shape[1] - 1) // (ours.along.shape[1] - 1)
     apart = Columns(np.abs(ours.along - theirs.along[:, ::step]), np.abs(ours.numbers - theirs.numbers))

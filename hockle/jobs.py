@@ -16,6 +16,7 @@ def register(subparsers: Any) -> None:
     listing = subparsers.add_parser("jobs", help="list jobs, newest first")
     listing.add_argument("--status", choices=STATUSES, help="only jobs of this status")
     listing.add_argument("--label", help="only jobs with exactly this label")
+    listing.add_argument("--ensemble", metavar="ID", help="only members of this ensemble")
     listing.add_argument("-n", type=int, default=20, metavar="NUMBER", dest="many", help="at most so many (default 20)")
     listing.set_defaults(run=jobs)
     cancelling = subparsers.add_parser("cancel", help="cancel jobs")
@@ -36,7 +37,7 @@ def register(subparsers: Any) -> None:
 def jobs(told: argparse.Namespace) -> int:
     """Print a line for each job: id, status, progress, when it was submitted, label, title."""
     with connected(told.server) as client:
-        for job in islice(client.jobs(status=told.status, label=told.label), told.many):
+        for job in islice(client.jobs(status=told.status, label=told.label, ensemble=told.ensemble), told.many):
             state = job.state
             print(f"{state.id}  {state.status:10}  {state.progress:4.0%}  {state.created:%Y-%m-%d %H:%M}"
                   f"  {state.label:12}  {state.title}".rstrip())

@@ -105,9 +105,11 @@ class Client:
         return Job(self, self._state(job_id))
 
     def jobs(self, *, status: Status | None = None, label: str | None = None, owner: str | None = None,
-             since: datetime | None = None, until: datetime | None = None) -> Iterator[Job]:
-        """All jobs that meet what is given, newest first; `since` and `until` are aware times. Raises Problem."""
-        told = {"limit": "200", "status": status, "label": label, "owner": owner,
+             since: datetime | None = None, until: datetime | None = None,
+             ensemble: str | None = None) -> Iterator[Job]:
+        """All jobs that meet what is given, newest first; `since` and `until` are aware times, `ensemble` is the id of
+        the one whose members are meant. Raises Problem."""
+        told = {"limit": "200", "status": status, "label": label, "owner": owner, "ensemble": ensemble,
                 "since": since and since.isoformat(), "until": until and until.isoformat()}
         query = {name: value for name, value in told.items() if value is not None}
         page = (self._ask("GET", "/v1/jobs", params=query)).json()

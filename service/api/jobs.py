@@ -46,11 +46,12 @@ class Listing(BaseModel):
                               description="another than oneself needs the scope operate")
     since: Instant | None = Field(None, description="submitted at this time or later")
     until: Instant | None = Field(None, description="submitted before this time")
+    ensemble: str | None = Field(None, pattern="^[0-9a-z]{26}$", description="only members of the one with this id")
 
     def selection(self) -> Selection:
         """The same for the registry."""
         since, until = (None if time is None else time.timestamp() for time in (self.since, self.until))
-        return Selection(self.after, self.status, self.label, self.owner, since, until)
+        return Selection(self.after, self.status, self.label, self.owner, since, until, self.ensemble)
 
 
 @router.get("", response_model=JobsDocument, responses=problems(422))

@@ -17,7 +17,10 @@ export class Chart {
     this.picture = drawn("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "chart", role: "img" });
     this.heading = element("figcaption", "", title);
     this.legend = element("div", "legend");
-    this.figure = element("figure", "", this.heading, this.picture, this.legend);
+    /** The time that is told, above the picture: to move it draws no curve anew. */
+    this.marker = element("div", "marker");
+    this.marker.style.inset = `${100 * TOP / HEIGHT}% 0 ${100 * BOTTOM / HEIGHT}% 0`;
+    this.figure = element("figure", "", this.heading, element("div", "plot", this.picture, this.marker), this.legend);
     /** @type {[string, number[], Curve][]} */
     this.curves = [];
     /** Where the legend tells the values. @type {HTMLElement[]} */
@@ -42,7 +45,6 @@ export class Chart {
       drawn("path", { class: `line${place}`, d: this.path(time, values) })));
     this.readings = this.curves.map(() => element("small", ""));
     this.legend.replaceChildren(...this.curves.map(([one], place) => element("span", `line${place}`, `${one} `, this.readings[place])));
-    this.marker = this.picture.appendChild(drawn("line", { class: "marker", y1: TOP, y2: HEIGHT - BOTTOM }));
     this.mark(this.at);
   }
 
@@ -84,12 +86,9 @@ export class Chart {
   /** Show the values at a time; null: at the end. @param {number | null} t */
   mark(t) {
     this.at = t;
-    this.marker?.toggleAttribute("hidden", t === null);
-    if (t !== null) {
-      const x = this.x(Math.min(Math.max(t, this.from), this.to));
-      this.marker?.setAttribute("x1", String(x));
-      this.marker?.setAttribute("x2", String(x));
-    }
+    this.marker.hidden = t === null;
+    const x = this.x(Math.min(Math.max(t ?? this.to, this.from), this.to));
+    this.marker.style.transform = `translateX(${100 * x / WIDTH}%)`;
     this.curves.forEach(([, time, values], place) => {
       const value = values[t === null ? values.length - 1 : nearest(time, t)] ?? null;
       this.readings[place].textContent = value === null ? "none" : told(value / this.factor);

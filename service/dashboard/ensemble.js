@@ -47,7 +47,13 @@ export class EnsemblePage {
     const counts = Object.entries(one.counts).filter(([, many]) => many).map(([status, many]) => `${many} ${status}`).join(", ");
     const open = one.counts.accepted + one.counts.running > 0;
     this.head.replaceChildren(element("h2", "", one.title || one.id), element("p", `status ${one.status}`, one.status),
-      element("p", "faint", `${one.members} members: ${counts}`), ...(open ? [progress(one), button("Cancel", () => this.cancel())] : []));
+      element("p", "faint", `${one.members} members: ${counts}`), this.jobs(), ...(open ? [progress(one), button("Cancel", () => this.cancel())] : []));
+  }
+
+  jobs() {
+    const link = /** @type {HTMLAnchorElement} */ (element("a", "", "Its jobs in the table"));
+    link.href = `#/?ensemble=${this.one.id}`;
+    return link;
   }
 
   /** @param {string[]} columns @param {string[]} parameters @param {string[]} scalars */

@@ -8,7 +8,7 @@ import { actions, bar, byId, element, isOpen, standing } from "./page.js";
 /** @typedef {import("./api.js").Job} Job */
 const PAGE = 50, LARGEST_PAGE = 200;
 const STREAMS = 3; // a browser keeps at most six connections to a host
-const FILTERS = ["status", "label", "owner", "since"];
+const FILTERS = ["status", "label", "owner", "since", "ensemble"];
 
 export class JobsTable {
   /** @param {URLSearchParams} chosen the filters, as in the address of this page */
@@ -29,6 +29,7 @@ export class JobsTable {
     this.followed = new Set();
     this.body = /** @type {HTMLElement} */ (document.querySelector("#jobs tbody"));
     this.body.replaceChildren();
+    this.offer([]);
   }
 
   /** @param {number} limit @param {Record<string, string>} [more] */
@@ -48,6 +49,17 @@ export class JobsTable {
     return [job.title, job.label, job.id, job.outcome].join("\n").toLowerCase().includes(sought);
   }
 
+  /** Offer ensembles as filters, and the one that is chosen. @param {{id: string, title: string}[]} ensembles */
+  offer(ensembles) {
+    const field = /** @type {HTMLSelectElement} */ (document.querySelector("#filters [name=ensemble]"));
+    const chosen = this.chosen.get("ensemble") ?? "", known = new Map([...field.options].map((one) => [one.value, one]));
+    for (const { id, title } of known.has(chosen) ? ensembles : [{ id: chosen, title: "" }, ...ensembles]) {
+      const option = known.get(id) ?? field.appendChild(new Option("", id));
+      option.textContent = title || id;
+    }
+    field.value = chosen;
+  }
+
   /** Read older pages until as many jobs are shown as are wanted, or there are no more. */
   async fill() {
     while (this.next && this.known.size < this.wanted && !this.closing.signal.aborted) {
@@ -59,6 +71,8 @@ export class JobsTable {
     }
     this.tell();
     await this.arrange();
+    const { ensembles } = await read("/v1/ensembles");
+    if (!this.closing.signal.aborted) this.offer(ensembles);
   }
 
   /** Show what differs between the cases, or no more. @param {boolean} shown */

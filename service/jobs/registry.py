@@ -17,7 +17,7 @@ from service.jobs.database import Database, Transaction
 from service.jobs.deletion import delete_jobs
 from service.jobs.job import Job, NewJob
 from service.jobs.lifecycle import ENDED, Status
-from service.jobs.tables import FRESH, JOBS, events, job_of, jobs, owners
+from service.jobs.tables import FRESH, JOBS, events, job_of, jobs, members, owners
 
 AT_ONCE = 1000
 ONE_JOB = JOBS.where(jobs.c.id == bindparam("job_id"))
@@ -58,6 +58,7 @@ class Selection:
     owner: str | None = None
     since: float | None = None
     until: float | None = None
+    ensemble: str | None = None
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,9 @@ class Registry:
         query = JOBS.where(*kept).order_by(jobs.c.id.desc()).limit(limit + 1)
         wanted = {jobs.c.status: selection.status, jobs.c.label: selection.label, jobs.c.owner: selection.owner}
         query = query.where(*(column == value for column, value in wanted.items() if value is not None))
+        if selection.ensemble is not None:
+            its = select(members.c.job_id).where(members.c.ensemble_id == selection.ensemble)
+            query = query.where(jobs.c.id.in_(its))
         if selection.after is not None:
             query = query.where(jobs.c.id < selection.after)
         if selection.since is not None:

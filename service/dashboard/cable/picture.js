@@ -68,7 +68,7 @@ export class Picture {
   /** @param {HTMLCanvasElement} canvas  Throws Error where there is no WebGL 2. */
   constructor(canvas) {
     this.canvas = canvas;
-    const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: false });
+    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
     if (!gl) throw new Error("this browser has no WebGL 2: the cable cannot be drawn");
     this.gl = gl;
     this.tube = program(gl, TUBE, TUBE_COLOUR);
@@ -107,7 +107,7 @@ export class Picture {
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.BLEND);
-    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     const matrix = camera.matrix(this.aspect);
     this.drawStrokes(matrix, lines, gl.LINES);
     gl.useProgram(this.tube);

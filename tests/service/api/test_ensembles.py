@@ -244,6 +244,21 @@ def events(client, address, **headers):
     return answer.status_code, told
 
 
+def test_the_jobs_of_one_ensemble_are_listed_page_by_page(client, grid, case):
+    client.post("/v1/jobs", json=case)
+    ensemble = client.post("/v1/ensembles", json=grid).json()
+    members = {member["job"] for member in client.get(ensemble["links"]["members"]).json()["members"]}
+    address, listed = f"/v1/jobs?limit=2&ensemble={ensemble['id']}", []
+    while address:
+        page = client.get(address).json()
+        listed += [job["id"] for job in page["jobs"]]
+        address = page["next"]
+    assert listed == sorted(members, reverse=True)
+    assert client.get("/v1/jobs?ensemble=" + "0" * 26).json()["jobs"] == []
+    refused = client.get("/v1/jobs?ensemble=first").json()
+    assert refused["errors"][0]["parameter"] == "ensemble"
+
+
 def test_one_stream_tells_of_all_members(client, done):
     status, told = events(client, done)
     assert status == 200

@@ -60,6 +60,38 @@ def test_colours_have_a_scale_with_units(film):
     assert orange(coloured).sum() < 0.2 * orange(plain).sum()
 
 
+def test_a_verified_run_is_coloured_by_its_error(server, run, page):
+    page.goto(f"{server.address}/#/jobs/{run('elastica', **BENT, numerics__verify=True)}")
+    page.wait_for_selector(".player:not([hidden])")
+    plain = seen(page)
+    page.select_option("[name=colour]", "error")
+    low, high, unit = page.inner_text(".scale").split()
+    assert (float(low), unit) == (0.0, "m") and 0.0 < float(high) < 0.1  # nothing is wrong where it is clamped
+    assert orange(seen(page)).sum() < 0.2 * orange(plain).sum()
+
+
+FLOOR = {"stiffness": 100.0, "normal": [-1.0, 0.0, 0.0], "height": -0.5, "friction": 0.3}
+LINES = """async (shape) => {
+  const { Surroundings } = await import("/dashboard/cable/surroundings.js");
+  const { lines } = new Surroundings(shape, [[0, 0, 0], [0.5, 0, 1]], [-1, 0, 0]), heights = [];
+  for (let k = 0; k < lines.length; k += 7) if (Math.abs(lines[k + 3] - 0.55) < 1e-6) heights.push(lines[k]);
+  return heights;
+}"""
+
+
+def test_a_floor_is_drawn_where_it_lies(server, run, page):
+    pictures = []
+    for more in ({}, {"loads__floor": FLOOR}):
+        page.goto(f"{server.address}/#/jobs/{run('elastica', **BENT, **more)}")
+        page.wait_for_selector(".player:not([hidden])")
+        pixels = seen(page)
+        pictures.append((pixels[..., 0] > pixels[..., 2] + 0.08) & ~orange(pixels))
+    without, with_floor = pictures
+    assert with_floor.sum() > without.sum() + 1000  # the floor is brown, the ground of a scene without one is grey
+    heights = page.evaluate(LINES, {"loads": {"floor": FLOOR}})
+    assert len(heights) > 20 and set(heights) == {0.5}
+
+
 def test_views_differ_and_the_pointer_turns_the_cable(film):
     pictures, stripe = [seen(film)], []
     for view in ("along e1", "along e2", "along e3", "free"):
@@ -89,6 +121,23 @@ def test_it_plays_to_its_end_and_marks_its_time_in_the_curves(film):
     film.wait_for_function("() => document.querySelector('.clock output').innerText === 't = 6 s'")
     film.wait_for_function("() => document.querySelector('.clock button').innerText === 'Play'")
     assert film.locator("#page .legend").all_inner_texts() != before
+
+
+def test_no_curve_is_drawn_anew_as_the_time_changes(film):
+    film.wait_for_selector("#page .chart")
+    film.evaluate("""() => {
+      window.drawn = [];
+      const watch = new MutationObserver((seen) => window.drawn.push(...seen));
+      document.querySelectorAll("svg.chart").forEach((one) => watch.observe(one, {
+        attributes: true, childList: true, characterData: true, subtree: true }));
+    }""")
+    places = []
+    for t in (0.0, 3.0, 6.0):
+        scrub(film, t)
+        box, plot = (film.locator(f"#page {one}").first.bounding_box() for one in (".marker", ".plot"))
+        places.append((box["x"] - plot["x"]) / plot["width"])
+    assert film.evaluate("() => new Promise(done => setTimeout(() => done(window.drawn.length)))") == 0
+    assert places == pytest.approx([56 / 480, (56 + 468) / 2 / 480, 468 / 480], abs=2e-3)  # of what the axes span
 
 
 def test_a_picture_is_saved_as_it_is_seen(film, tmp_path: Path):

@@ -40,6 +40,20 @@ def test_members_are_points_and_lines_that_lead_to_their_runs(server, ensemble, 
     assert "1000" in page.inner_text("#page table")
 
 
+def test_the_table_of_jobs_shows_those_of_one_ensemble(server, add, ensemble, page):
+    add(2)
+    page.goto(f"{server.address}/#/ensembles/{ensemble}")
+    page.click("text=Its jobs in the table")
+    page.wait_for_function("() => document.querySelectorAll('#jobs tbody tr').length === 6")
+    assert page.url.endswith(f"#/?ensemble={ensemble}")
+    page.wait_for_selector("#filters [name=ensemble] option:has-text('densities')", state="attached")
+    assert page.input_value("#filters [name=ensemble]") == ensemble
+    page.select_option("#filters [name=ensemble]", "")
+    page.wait_for_function("() => document.querySelectorAll('#jobs tbody tr').length === 8")
+    page.select_option("#filters [name=ensemble]", label="densities and dampings")
+    page.wait_for_function("() => document.querySelectorAll('#jobs tbody tr').length === 6")
+
+
 def test_any_scalar_is_drawn_against_any_parameter(server, ensemble, page):
     page.goto(f"{server.address}/#/ensembles/{ensemble}")
     page.wait_for_selector("#page circle")

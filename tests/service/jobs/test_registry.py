@@ -97,7 +97,8 @@ def test_a_status_read_is_a_point_read_by_the_primary_key(registry):
 
 
 SELECTIONS = [Selection(), Selection("z" * 26), Selection(owner="local"), Selection(status=Status.SUCCESSFUL),
-              Selection(status=Status.ACCEPTED, owner="local"), Selection(label="x"), Selection(since=1.0)]  # fmt: skip
+              Selection(status=Status.ACCEPTED, owner="local"), Selection(label="x"), Selection(since=1.0),
+              Selection(ensemble="x")]  # fmt: skip
 
 
 @pytest.mark.parametrize("url", ["sqlite"], indirect=True)

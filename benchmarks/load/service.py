@@ -22,14 +22,17 @@ TOLD = ENVIRONMENT | {"REDIS_URL": "", "HOCKLE_QUOTA": "1000000"}
 APIS = 2
 
 
-def cpu_time() -> float:
-    """CPU time (s) that the processes have taken that this one has started, and those that they have."""
+def cpu_time(called: str = "") -> float:
+    """CPU time (s) that the processes have taken that this one has started, and those that they have; of those alone
+    that have `called` in their command."""
     parents, seconds = {}, {}
     for entry in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):  # it has just ended
             fields = entry.read_text().rpartition(")")[2].split()
             pid = int(entry.parent.name)
-            parents[pid], seconds[pid] = int(fields[1]), sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
+            used = sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
+            meant = called.encode() in entry.with_name("cmdline").read_bytes()
+            parents[pid], seconds[pid] = int(fields[1]), used if meant else 0.0
     ours = {os.getpid()}
     while more := {pid for pid, parent in parents.items() if parent in ours} - ours:
         ours |= more

@@ -427,8 +427,8 @@ class Job(JobFacts):
         self._client._ask("DELETE", f"/v1/jobs/{self.id}/links/{_safe(link_id)}")
 
     def _linked(self, told: dict[str, Any]) -> Link:
-        href = told.pop("href", None)
-        return Link(url=None if href is None else f"{self._client.url}{href}", **told)
+        addresses = {"url": told.pop("href"), "zarr": told.pop("zarr")}
+        return Link(**{name: one and f"{self._client.url}{one}" for name, one in addresses.items()}, **told)
 
 
 def _safe(name: str) -> str:

@@ -1,4 +1,4 @@
-"""/v1/jobs/{id}/links: who may share a dataset; /v1/shared/{token}.nc: the dataset, for whoever has the link."""
+"""/v1/jobs/{id}/links: who may share a dataset; /v1/shared/{token}: the dataset, for whoever has the link."""
 
 from __future__ import annotations
 
@@ -16,9 +16,11 @@ from service.api.bodies import json_object
 from service.api.datasets import FILE, dataset_of, whole
 from service.api.description import NOT_MODIFIED, problems
 from service.api.gate import SHARED
-from service.api.parts import InParts, Jobs, OwnJobs, Submitter
+from service.api.parts import InParts, Jobs, OwnJobs, Parts, Submitter
 from service.api.problems import Problem
+from service.api.stores import BYTES, zarr_of
 from service.cases import CaseError
+from service.jobs import Job
 from service.meaning import means
 
 DAY = 86400.0
@@ -36,10 +38,12 @@ class LinkRequest(BaseModel):
 
 
 class LinkDocument(BaseModel):
-    """A link to a dataset. `href` is told once, when the link is made: with it anybody reads the dataset."""
+    """A link to a dataset. `href` and `zarr` are told once, when the link is made: with them anybody reads the dataset,
+    the file itself or a Zarr store."""
 
     id: str
     href: str | None
+    zarr: str | None
     created: datetime
     expires: datetime
     revoked: datetime | None
@@ -69,7 +73,7 @@ def share(job_id: str, parts: InParts, jobs: OwnJobs, caller: Submitter,
         raise CaseError.of(error) from None
     dataset_of(jobs.get(job_id), parts)
     link, token = LinkStore(parts.registry.database).create(job_id, caller.actor, asked.seconds)
-    return _document(link, f"{SHARED}{token}.nc")
+    return _document(link, f"{SHARED}{token}")
 
 
 @router.get("/v1/jobs/{job_id}/links", responses=problems(404))
@@ -92,6 +96,18 @@ def revoke(job_id: str, link_id: str, parts: InParts, jobs: OwnJobs, caller: Sub
             responses={**FILE, **NOT_MODIFIED, **problems(404, 416, 429, 503)})
 def shared(token: Annotated[str, Path(max_length=100)], request: Request, parts: InParts) -> Response:
     """The dataset of a link, whole or by byte ranges, as `/v1/jobs/{id}/dataset` gives it; no key is asked for."""
+    return whole(_job(token, parts), request, parts)
+
+
+@router.get(SHARED + "{token}/zarr/{key:path}", response_class=Response, responses={**BYTES, **problems(404, 429, 503)})
+def shared_zarr(token: Annotated[str, Path(max_length=100)], key: Annotated[str, Path(max_length=200)],
+                parts: InParts) -> Response:
+    """The same as `/v1/jobs/{id}/zarr` gives it: `xarray.open_zarr(address of /v1/shared/TOKEN/zarr)`."""
+    return zarr_of(_job(token, parts), key, parts)
+
+
+def _job(token: str, parts: Parts) -> Job:
+    """The job whose dataset a link opens. Raises Problem."""
     link = LinkStore(parts.registry.database).opened(token, time.time())
     if link is None:
         raise Problem(404, "link_not_good", "this link is not good: it is unknown, expired or revoked")
@@ -99,11 +115,13 @@ def shared(token: Annotated[str, Path(max_length=100)], request: Request, parts:
     if grant.wait > 0:
         raise Problem(429, "too_many_requests", f"this link is used too often: wait {grant.wait:.2f} s",
                       {"Retry-After": str(ceil(grant.wait))})
-    return whole(parts.registry.get(link.job_id), request, parts)
+    return parts.registry.get(link.job_id)
 
 
-def _document(link: Link, href: str | None = None) -> LinkDocument:
-    return LinkDocument(id=link.id, href=href, created=_instant(link.created), expires=_instant(link.expires),
+def _document(link: Link, address: str | None = None) -> LinkDocument:
+    href, zarr = (None, None) if address is None else (f"{address}.nc", f"{address}/zarr")
+    return LinkDocument(id=link.id, href=href, zarr=zarr, created=_instant(link.created),
+                        expires=_instant(link.expires),
                         revoked=None if link.revoked is None else _instant(link.revoked))
 
 

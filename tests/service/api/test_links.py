@@ -61,6 +61,7 @@ def test_a_link_needs_no_key_and_gives_the_same_bytes(keyed, alice, job):
     link = shared(keyed, job, alice, seconds=60)
     with_key = keyed.get(f"{job}/dataset", headers=alice)
     without = keyed.get(link["href"])
+    assert keyed.get(f"{link['zarr']}/zarr.json").json()["node_type"] == "group"
     assert (without.status_code, without.content) == (200, with_key.content)
     assert without.headers["etag"] == with_key.headers["etag"]
     part = keyed.get(link["href"], headers={"Range": "bytes=0-9"})

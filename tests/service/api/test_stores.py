@@ -59,6 +59,17 @@ def test_xarray_opens_a_zarr_store_lazily_with_the_same_values(address, done, wh
 
 
 @pytest.mark.filterwarnings("ignore::zarr.errors.UnstableSpecificationWarning")
+def test_a_link_opens_the_zarr_store_too_until_it_is_revoked(address, client, done, whole):
+    pytest.importorskip("zarr")
+    link = client.post(f"/v1/jobs/{done}/links", json={}).json()
+    with xr.open_zarr(f"{address}{link['zarr']}") as remote:
+        xr.testing.assert_equal(remote.load(), whole)
+    assert problem(client.get(f"{link['zarr']}/r/c/9/0/0")) == (404, "no_such_key")
+    client.delete(f"/v1/jobs/{done}/links/{link['id']}")
+    assert problem(client.get(f"{link['zarr']}/zarr.json")) == (404, "link_not_good")
+
+
+@pytest.mark.filterwarnings("ignore::zarr.errors.UnstableSpecificationWarning")
 def test_chunks_are_of_some_frames_and_the_last_one_is_filled_up(address, done, whole, monkeypatch):
     zarr = pytest.importorskip("zarr")
     from service.results import zarr as ours

@@ -6,6 +6,7 @@ import asyncio
 import inspect
 import secrets
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -48,21 +49,31 @@ class Blocking:
         return [self._wrapped(one) for one in told] if isinstance(told, list) else told
 
 
-@pytest.fixture(params=["sync", "async"])
-def connect(request: pytest.FixtureRequest) -> Iterator[Any]:
-    """`connect(url, ...)` is a client of either kind."""
+KINDS = ("sync", "async")
+
+
+@contextmanager
+def connecting(kind: str) -> Iterator[Any]:
+    """`connect(url, ...)` is a client of that kind; they are closed at the end."""
     runner = asyncio.Runner()
     opened: list[Any] = []
 
     def make(*told: Any, **named: Any) -> Any:
-        one = Client(*told, **named) if request.param == "sync" else Blocking(AsyncClient(*told, **named), runner)
+        one = Client(*told, **named) if kind == "sync" else Blocking(AsyncClient(*told, **named), runner)
         opened.append(one)
         return one
 
     yield make
     for one in opened:
-        one.close() if request.param == "sync" else one.aclose()
+        one.close() if kind == "sync" else one.aclose()
     runner.close()
+
+
+@pytest.fixture(params=KINDS)
+def connect(request: pytest.FixtureRequest) -> Iterator[Any]:
+    """`connect(url, ...)` is a client of either kind."""
+    with connecting(request.param) as connect:
+        yield connect
 
 
 @pytest.fixture(scope="module")

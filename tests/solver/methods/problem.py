@@ -34,6 +34,7 @@ from solver.physics.loads.registry import Loads
 from solver.physics.section import Section, sample
 from solver.scene.curve import Curve
 from solver.scene.ends import End
+from tests.solver.methods.as_in_runs import call
 
 LENGTH = 0.4
 CLAMPED = np.zeros(6, np.int64)
@@ -58,10 +59,9 @@ def two_turns() -> Initial:
 
 
 @kernel
-def panel_of(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, problem_nodes, section, rows: Array,
-             columns: Array, mean: Array, panel: Array) -> None:  # type: ignore[no-untyped-def]  # fmt: skip
+def panel_of(j: int, Y: Array, c0: float, h: float, system, nodes, section, mean: Array, panel: Array) -> None:  # type: ignore[no-untyped-def]  # fmt: skip
     """`interval_panel` as Python may call it."""
-    interval_panel(j, Y, c0, h, space, problem_nodes, section, rows, columns, mean, panel, 6)
+    interval_panel(j, Y, c0, h, system.space, nodes, section, system.rows, system.columns, mean, panel, 6)
 
 
 @dataclass
@@ -91,13 +91,14 @@ class Problem:
         """All residuals in the order of the system's rows."""
         system = self.work.system
         work = self.work
-        balance_nodes(self.old, self.new, work.past, self.c0, self.section, self.loads, work.nodes)
-        if touching(self.contact.touch):
-            add_contact(self.new, work.nodes, self.h, self.contact.touch)
-        form_residuals(self.new, work.past, self.c0, self.h, self.section, self.ends, work.nodes, work.feedback, system)
+        call(balance_nodes, self.old, self.new, work.past, self.c0, self.section, self.loads, work.nodes)
+        if call(touching, self.contact.touch):
+            call(add_contact, self.new, work.nodes, self.h, self.contact.touch)
+        call(form_residuals, self.new, work.past, self.c0, self.h, self.section, self.ends, work.nodes, work.feedback,
+             system)  # fmt: skip
         wide = self.work.linear
         if isinstance(wide, Augmented):
-            wide_residuals(wide, self.new.Y, work.past, self.c0, self.h, work.nodes, system)
+            call(wide_residuals, wide, self.new.Y, work.past, self.c0, self.h, work.nodes, system)
             parts = [wide.b_start, wide.b.ravel(), system.b_end]
         else:
             parts = [system.b_start, system.b.ravel(), system.b_end]
@@ -135,13 +136,13 @@ class Problem:
         A, W = np.zeros((size * (N + 1), size * (N + 1))), np.zeros((left + size, 2 * size))
         A[:6, :12] = system.start
         if self.wide:
-            wide_start(Y, self.c0, self.h, nodes, self.section, system, mean, W)
+            call(wide_start, Y, self.c0, self.h, nodes, self.section, system, mean, W)
             A[:18, :24] = W[:18, :24]
         for j in range(N):
             if self.wide:
-                wide_panel(j, Y, self.c0, self.h, nodes, self.section, system, mean, W)
+                call(wide_panel, j, Y, self.c0, self.h, nodes, self.section, system, mean, W)
             else:
-                panel_of(j, Y, self.c0, self.h, system.space, nodes, self.section, system.rows, system.columns, mean, W)
+                call(panel_of, j, Y, self.c0, self.h, system, nodes, self.section, mean, W)
             A[left + size * j : left + size * (j + 1), size * j : size * (j + 2)] = W[left:]
         A[left + size * N :, size * N : size * N + 12] = system.end
         return A + self._contact_matrix(A.shape[0], size, left)
@@ -156,8 +157,8 @@ class Problem:
         for column in range(12 * len(x)):
             x[:] = 0.0
             x.ravel()[column] = 1.0
-            _move(x, self.c0, system, touch, near, self.work.coupling)
-            change_forces(touch, touch.pressing, 0, y)
+            call(_move, x, self.c0, system, touch, near, self.work.coupling)
+            call(change_forces, touch, touch.pressing, 0, y)
             at = size * (column // 12) + column % 12
             for m in range(near.counts[1]):
                 node = near.nodes[m]

@@ -11,15 +11,16 @@ from solver.methods.linear.banded import Banded
 from solver.methods.linear.box_contact import solve_with_contact
 from solver.methods.linear.registry import LINEAR_SOLVERS
 from solver.methods.linear.shooting import LARGEST_GROWTH, Shooting
-from solver.methods.linear.system import LinearSolver, factor, solve
+from solver.methods.linear.system import LinearSolver
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
+from tests.solver.methods.as_in_runs import call, factor, solve
 from tests.solver.methods.problem import Problem, problem
 
 
 def factored(case: Problem, linear: LinearSolver) -> int:
     """How factoring the assembled system ended."""
     work = case.work
-    return factor(linear, case.new.Y, work.past, case.c0, case.h, work.nodes, case.section, work.system)
+    return int(call(factor, linear, case.new.Y, work.past, case.c0, case.h, work.nodes, case.section, work.system))
 
 
 def eliminate(case: Problem, linear: LinearSolver | None = None) -> Array:
@@ -27,7 +28,7 @@ def eliminate(case: Problem, linear: LinearSolver | None = None) -> Array:
     case.residual()
     system, linear = case.work.system, linear or case.work.linear
     assert factored(case, linear) == CONVERGED
-    solve(linear, system, 1.0, system.b, system.x)
+    call(solve, linear, system, 1.0, system.b, system.x)
     return system.x.copy()
 
 
@@ -65,7 +66,7 @@ def test_shooting_agrees_with_elimination_while_little_is_lost(diameter: float, 
     case.residual()
     shooting, shot, system = Shooting.empty(60), np.zeros_like(x), case.work.system
     assert factored(case, shooting) == CONVERGED
-    solve(shooting, system, 1.0, system.b, shot)
+    call(solve, shooting, system, 1.0, system.b, shot)
     growth = float(shooting.growth[0])
     assert growth < 1e8
     # both err by rounding times the condition of the system; shooting by its growth besides
@@ -89,7 +90,7 @@ def test_the_solve_with_contact_solves_the_whole_system(solver: str) -> None:
     expected = np.linalg.solve(case.matrix(), case.residual()).reshape(-1, 12)
     work, linear = case.work, LINEAR_SOLVERS[solver].empty(24)
     eliminate(case, linear)
-    iterations = solve_with_contact(linear, case.c0, case.h, work.system, case.contact.touch, work.coupling)
+    iterations = call(solve_with_contact, linear, case.c0, case.h, work.system, case.contact.touch, work.coupling)
     # the solve stops at a relative residual of 1e-6 in the contact forces
     assert np.abs(case.work.system.x - expected).max() <= 1e-4 * np.abs(expected).max()
     assert 0 < iterations <= 40

@@ -16,6 +16,7 @@ from solver.methods.space.one_axis.balances import balance, tangents_at
 from solver.physics.ends import LOAD, LOAD_LAB, RATE, RATE_LAB
 from solver.physics.loads.following import Record as Following
 from solver.physics.loads.registry import LoadsAbout
+from tests.solver.methods.as_in_runs import call
 from tests.solver.scenes import ROD
 
 N, STAGE, STEP = 5, 1, 1e-6
@@ -40,7 +41,7 @@ class Problem:
         """Of rotation (N + 2), of translation (N, 2), and of the ends (2, 2), one after the other."""
         method, stages, found = self.method, self.method.stages, self.method.work.residuals
         stages.T[STAGE] = np.exp(1j * stages.phi[STAGE])
-        balance(method.chain, self.loads, method.driven, stages, found, STAGE)
+        call(balance, method.chain, self.loads, method.driven, stages, found, STAGE)
         return np.concatenate([found.rotation[STAGE], found.translation[STAGE].ravel(), found.ends[STAGE].ravel()])
 
     def changed(self, change: Callable[[float], None]) -> Array:
@@ -70,7 +71,7 @@ def problem(kinds: str, fluid: Fluid | None) -> Problem:
     driven.kinds[:] = KINDS[kinds]
     found = Problem(method, method.applied.records._replace(following=Following(True, following, np.zeros((3, N)))))
     found.residuals()
-    tangents_at(method.chain, found.loads, driven, stages, STAGE, method.work.tangents)
+    call(tangents_at, method.chain, found.loads, driven, stages, STAGE, method.work.tangents)
     return found
 
 

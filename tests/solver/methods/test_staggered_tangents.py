@@ -14,6 +14,7 @@ from solver.methods.space.segments.balances import balance_segments, condition_e
 from solver.methods.space.segments.joints import bend_joints
 from solver.methods.staggered import StaggeredMethod
 from solver.physics.loads.registry import Loads
+from tests.solver.methods.as_in_runs import call
 from tests.solver.scenes import ROD
 
 N, STAGE, STEP = 5, 1, 1e-6
@@ -43,10 +44,10 @@ class Problem:
     def residuals(self) -> tuple[Array, Array, Array]:
         """Of rotation, with the sign of the system's rows, of translation, and of the ends."""
         method, stages, residuals = self.method, self.method.stages, self.method.work.residuals
-        bend_joints(method.chain, *(a[STAGE] for a in (stages.quaternion, stages.bend, stages.moment, stages.left,
-                                                       stages.right)))  # fmt: skip
-        balance_segments(method.chain, self.loads, method.driven, stages, residuals, STAGE)
-        condition_ends(method.chain, method.driven, stages, residuals, STAGE)
+        call(bend_joints, method.chain, *(a[STAGE] for a in (stages.quaternion, stages.bend, stages.moment, stages.left,
+                                                             stages.right)))  # fmt: skip
+        call(balance_segments, method.chain, self.loads, method.driven, stages, residuals, STAGE)
+        call(condition_ends, method.chain, method.driven, stages, residuals, STAGE)
         rotation = residuals.rotation[STAGE].copy()
         rotation[0] *= -1.0
         return rotation, residuals.translation[STAGE].copy(), residuals.ends[STAGE].copy()
@@ -99,7 +100,7 @@ def problem(term: str, kinds: str, fluid: Fluid | None = None) -> Problem:
         loads = loads._replace(**{name: type(getattr(loads, name))(True, *arrays)})
     found = Problem(method, loads)
     found.residuals()
-    segment_tangents(method.chain, found.loads, driven, stages, STAGE, method.work.tangents)
+    call(segment_tangents, method.chain, found.loads, driven, stages, STAGE, method.work.tangents)
     return found
 
 

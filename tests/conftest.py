@@ -15,13 +15,20 @@ from service.results import bucket
 LONGEST = 60.0
 
 
+COMPILED = (
+    "solver.warm('box'), load('box', True, 'banded'), load('box', True, 'shooting'), load('box', True, wide=True)",
+    "solver.warm('staggered')",
+)
+"""All kernels that tests need, in two parts that take as long as each other."""
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """Before tests run side by side, compile the kernels of both methods, each once: else each side does it."""
+    """Before tests run side by side, compile the kernels, each once: else each side does it."""
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         return
-    warming = [subprocess.Popen([sys.executable, "-c", f"import solver; solver.warm({method!r})"])
-               for method in ("box", "staggered")]  # fmt: skip
-    for process in warming:
+    load = "import solver; from solver.run.warming import load"
+    compiling = [subprocess.Popen([sys.executable, "-c", f"{load}; {statement}"]) for statement in COMPILED]
+    for process in compiling:
         process.wait()
 
 

@@ -24,7 +24,7 @@ def switched() -> Scene:
     end = End((FIXED, FIXED, STOPPED), (FIXED, FIXED, (Condition("rate", SPIN),)))
     return Scene(rod=ARC_ROD, initial=ARC, start=End.clamp(), end=end, t_end=0.8, output_interval=0.1,
                  fluid=Fluid(1000.0, 1.0, 0.1, 0.01), gravity=(0.0, 0.0, -1.0),
-                 numerics=Numerics(intervals=20, dt_max=0.02))  # fmt: skip
+                 numerics=Numerics(intervals=20, dt_max=0.1, increment_tolerance=0.5))  # fmt: skip
 
 
 def shot() -> Scene:
@@ -40,7 +40,7 @@ def pressed() -> Scene:
 
 def staggered() -> Scene:
     """The switched scene by the staggered method."""
-    numerics = Numerics(method="staggered", intervals=20, dt_max=0.05, increment_tolerance=1e-3)
+    numerics = Numerics(method="staggered", intervals=20, dt_max=0.2, increment_tolerance=1e-2)
     return replace(switched(), numerics=numerics)
 
 
@@ -56,7 +56,7 @@ def about_one_axis() -> Scene:
 
 def staggered_pressed() -> Scene:
     """The pressed strands by the staggered method."""
-    numerics = Numerics(method="staggered", intervals=40, dt_max=0.02, increment_tolerance=1e-2)
+    numerics = Numerics(method="staggered", intervals=40, dt_max=0.02, increment_tolerance=3e-2)
     return replace(pressed(), numerics=numerics)
 
 
@@ -67,7 +67,7 @@ def balanced() -> Scene:
 
 def verified() -> Scene:
     """Two resolutions side by side."""
-    return bent_cantilever(Numerics(method="staggered", intervals=10, dt_max=0.05, verify=True))
+    return replace(bent_cantilever(Numerics(method="staggered", intervals=10, dt_max=0.05, verify=True)), t_end=1.0)
 
 
 def refined() -> Scene:

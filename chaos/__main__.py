@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from chaos.campaign import environment, run_seed
-from chaos.cases import cases, undisturbed
+from chaos.cases import cases, undisturbed, with_halves
 from chaos.judge import judge
 from chaos.postgres import binaries
 from chaos.report import Report
@@ -30,7 +30,7 @@ def main() -> int:
     told = parser.parse_args()
     stop_on_signals()  # and clean up then
     os.environ |= ENVIRONMENT
-    known = cases()
+    known = with_halves(cases())
     expected = {name: undisturbed(case) for name, case in known.items()}
     kinds = KINDS if told.database == "both" else (told.database,)
     good = True

@@ -17,6 +17,7 @@ from sqlalchemy import func, select
 from chaos.disk import small_disk
 from chaos.faults import WEIGHTS, Fault, Target
 from chaos.postgres import postgres
+from chaos.reader import Reader
 from chaos.record import Record
 from chaos.served import Served, send, wait_for
 from chaos.submitter import Submitter
@@ -59,7 +60,7 @@ def run_seed(seed: int, settings: Settings, server: Any, small: bool, cases: Map
     target = Target(served, database, random.Random(seed), server, small, submitter.submit)  # no secret
     served.start()
     try:
-        with Watch(settings) as watch:
+        with Watch(settings) as watch, Reader(served.address, record.reads):
             _make_trouble(target, record, count, faults, only or tuple(WEIGHTS))
             for thread in target.later:
                 thread.join()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from service.cases import apply_settings, build_scene, load_case, parse_case
 from service.results import DatasetWriter, open_dataset
 from solver import simulate
 
+HALF = ", half"
 SETTINGS: dict[str, dict[str, Any]] = {
     "goyal-2003": {"t_end": 20.0, "numerics.intervals": 160, "output.interval": 0.2, "numerics.dt_max": 0.005},
     "short-loop": {"t_end": 8.0, "numerics.intervals": 80, "output.interval": 0.08, "numerics.method": "staggered"},
@@ -26,6 +28,12 @@ SETTINGS: dict[str, dict[str, Any]] = {
 def cases() -> dict[str, dict[str, Any]]:
     """The cases by name."""
     return {name: apply_settings(load_case(name), settings) for name, settings in SETTINGS.items()}
+
+
+def with_halves(cases: Mapping[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """The same, and each to half its end, from which a run of the whole goes on: the members of an ensemble."""
+    return {**cases, **{f"{name}{HALF}": apply_settings(case, {"t_end": case["t_end"] / 2})
+                        for name, case in cases.items()}}  # fmt: skip
 
 
 def digest(dataset: Path) -> str:

@@ -14,6 +14,7 @@ from chaos.record import Record
 from chaos.watch import Watch
 from outcomes import Outcome
 from service.jobs import ENDED, Database, Job, Registry, Status
+from service.jobs.ensembles import Ensembles
 from service.jobs.registry import Selection
 from service.jobs.tables import events, jobs, owners
 from service.settings import Settings
@@ -23,17 +24,19 @@ MOST_REDONE = 0.10
 
 @dataclass
 class Verdict:
-    """Counts over jobs. All but the first five and the steps must be zero."""
+    """Counts over jobs. All but the first six and the steps must be zero."""
 
     jobs: int = 0
     faults: int = 0
     published: int = 0
     deleted: int = 0
     looks: int = 0
+    read_live: int = 0
     lost: int = 0
     duplicated: int = 0
     overlaps: int = 0
     not_identical: int = 0
+    not_as_read: int = 0
     wrong_outcome: int = 0
     left_over: int = 0
     miscounted: int = 0
@@ -49,8 +52,8 @@ class Verdict:
     @property
     def bad(self) -> tuple[int, ...]:
         """All that must be zero."""
-        return (self.lost, self.duplicated, self.overlaps, self.not_identical, self.wrong_outcome, self.left_over,
-                self.miscounted)  # fmt: skip
+        return (self.lost, self.duplicated, self.overlaps, self.not_identical, self.not_as_read,
+                self.wrong_outcome, self.left_over, self.miscounted)  # fmt: skip
 
     @property
     def good(self) -> bool:
@@ -69,10 +72,12 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
     gone = _deleted(database)
     verdict.deleted = len(gone)
     verdict.lost = sum(job_id not in found and job_id not in gone for job_id in record.accepted)
-    ends, labels = _ends(database), Counter(job.label for job in found.values())
+    ensembles = Ensembles(database)
+    verdict.lost += sum(not ensembles.standing(one).ended for one in record.ensembles)
+    ends, submitted = _ends(database), Counter((job.label, job.case_sha256) for job in found.values())
     for job in found.values():
         verdict.lost += job.status not in ENDED
-        verdict.duplicated += ends.get(job.id, 0) > 1 or labels[job.label] > 1
+        verdict.duplicated += ends.get(job.id, 0) > 1 or submitted[job.label, job.case_sha256] > 1
         verdict.steps += job.reached.steps
         verdict.steps_redone += job.reached.steps_redone
         verdict.outcomes[job.outcome] += 1
@@ -83,6 +88,9 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
             verdict.published += 1
             name = record.accepted.get(job.id)
             made = digest(settings.datasets / job.dataset.file)
+            reads = [read for read in record.reads if read.job == job.id]
+            verdict.read_live += len(reads)
+            verdict.not_as_read += sum(not read.is_of(settings.datasets / job.dataset.file) for read in reads)
             verdict.not_identical += made not in ([expected[name]] if name else expected.values())
     named = {job.dataset.file for job in found.values() if job.dataset}
     verdict.left_over = len({path.name for path in settings.datasets.iterdir()} ^ named)

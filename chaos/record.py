@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
+from chaos.reader import Read
+
 
 @dataclass
 class Record:
@@ -17,6 +19,10 @@ class Record:
     """The jobs of too little memory."""
     poisoned: set[str] = field(default_factory=set)
     """The jobs whose every process is killed."""
+    ensembles: set[str] = field(default_factory=set)
+    """Ids of the ensembles that are known to be on disk; their jobs are among those above."""
+    reads: list[Read] = field(default_factory=list)
+    """What was read of jobs while they ran."""
     faults: Counter[str] = field(default_factory=Counter)
     all_ended: bool = False
 

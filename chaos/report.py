@@ -10,8 +10,8 @@ from chaos.judge import Verdict
 from validation.provenance import provenance
 
 RESULTS = Path(__file__).parent / "results"
-COLUMNS = ("jobs", "faults", "published", "lost", "duplicated", "overlaps", "not_identical", "wrong_outcome",
-           "left_over", "miscounted")  # fmt: skip
+COLUMNS = ("jobs", "faults", "published", "read_live", "lost", "duplicated", "overlaps", "not_identical", "not_as_read",
+           "wrong_outcome", "left_over", "miscounted")  # fmt: skip
 HEAD = ("seed", *(name.replace("_", " ") for name in COLUMNS), "redone", "s", "")
 
 

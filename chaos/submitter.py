@@ -12,6 +12,7 @@ from typing import Any
 
 import httpx
 
+from chaos.cases import HALF
 from chaos.record import Record
 from chaos.served import PATIENCE, Served
 from service.cases import apply_settings, load_case
@@ -20,6 +21,8 @@ from service.jobs.job import LEAST_MEMORY
 PERIOD = 50
 STARVED, POISONED = 7, 13
 """Of so many jobs one has too little memory, and of one every process is killed: those with these numbers."""
+ENSEMBLE, AMONG = 1, 5
+"""One of so many submissions, the one with this number, is an ensemble: a case to its end, and to half of that."""
 GREEDY = apply_settings(load_case("goyal-2003"), {"numerics.intervals": 10_000})
 """A case that needs more at once."""
 
@@ -38,24 +41,37 @@ class Submitter:
         with self._lock:
             number, name = next(self._numbers), self._random.choice(sorted(self._cases))
         body = {"case": self._cases[name], "label": f"{self._record.seed}-{number}", "reuse": False}
+        if number % AMONG == ENSEMBLE and f"{name}{HALF}" in self._cases:
+            self._submit_ensemble(name, body)
+            return
         starved, poisoned = (number % PERIOD == its for its in (STARVED, POISONED))
         if starved:
             body |= {"case": GREEDY, "limits": {"memory": LEAST_MEMORY}}
-        job_id = self._accepted(body)
+        job_id = self._accepted("/v1/jobs", body)["id"]
         if starved:
             self._record.starved.add(job_id)
         if poisoned:
             self._record.poisoned.add(job_id)
         self._record.accepted[job_id] = name
 
-    def _accepted(self, body: dict[str, Any]) -> str:
-        """Hand in a job until there is an answer: the key makes one of it, whatever became of answers before."""
+    def _submit_ensemble(self, name: str, body: dict[str, Any]) -> None:
+        ends = {self._cases[each]["t_end"]: each for each in (name, f"{name}{HALF}")}
+        ensemble = self._accepted("/v1/ensembles", body | {"parameters": {"t_end": [*ends]}})
+        self._record.ensembles.add(ensemble["id"])
+        for member in self._asked("GET", ensemble["links"]["members"])["members"]:
+            self._record.accepted[member["job"]] = ends[member["values"]["t_end"]]
+
+    def _accepted(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
+        """Hand in until there is an answer: the key makes one of it, whatever became of answers before."""
+        return self._asked("POST", path, json=body, headers={"Idempotency-Key": body["label"]})
+
+    def _asked(self, method: str, path: str, **more: Any) -> dict[str, Any]:
         deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline:
             with suppress(httpx.TransportError):
-                answer = httpx.post(f"{self._address}/v1/jobs", json=body, timeout=20.0, trust_env=False,
-                                    headers={"Idempotency-Key": body["label"]})  # fmt: skip
-                if answer.status_code in (200, 202):
-                    return str(answer.json()["id"])
+                answer = httpx.request(method, f"{self._address}{path}", timeout=20.0, trust_env=False, **more)
+                if answer.is_success:
+                    found: dict[str, Any] = answer.json()
+                    return found
             time.sleep(0.1)
-        raise TimeoutError("the API accepts nothing")
+        raise TimeoutError(f"the API never answers {method} {path}")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from chaos.campaign import environment, run_seed
-from chaos.cases import cases, undisturbed
+from chaos.cases import cases, undisturbed, with_halves
 from chaos.faults.broker import double_messages, lose_message, wipe_broker
 from chaos.faults.files import tear_checkpoint
 from chaos.faults.processes import kill_at_rename, kill_child, stop_child_past_its_lease
@@ -31,11 +31,12 @@ pytestmark = [
     pytest.param("postgresql", marks=pytest.mark.skipif(binaries() is None, reason="no PostgreSQL on this machine")),
 ])  # fmt: skip
 def test_every_job_ends_exactly_once_whatever_is_killed_lost_or_stopped(kind, tmp_path: Path):
-    known = {name: case for name, case in cases().items() if name in ("short-loop", "free-flight")}
+    known = with_halves({name: case for name, case in cases().items() if name in ("short-loop", "free-flight")})
     expected = {name: undisturbed(case) for name, case in known.items()}
     with environment(kind, tmp_path / "data") as (settings, server, small):
         record, watch = run_seed(1, settings, server, small, known, JOBS, FAULTS, QUICK)
         verdict = judge(record, watch, settings, expected)
     assert record.all_ended
     assert verdict.jobs >= JOBS and verdict.published > 0
+    assert record.ensembles and verdict.read_live > 0
     assert not any(verdict.bad), verdict

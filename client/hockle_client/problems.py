@@ -50,6 +50,9 @@ class Fault:
         """Where in the case, or in the query."""
         return (self.pointer or "").removeprefix("/case") or self.parameter or "the case"
 
+    def __str__(self) -> str:
+        return f"{self.place} {self.rule}" + ("" if self.value is None else f", got {self.value!r}")
+
 
 class Problem(HockleError):
     """The server said no (RFC 9457).
@@ -79,8 +82,8 @@ class Problem(HockleError):
         return self.status in TEMPORARY or self.name == "in_flight"
 
     def _told(self) -> str:
-        lines = [f"  {fault.place} {fault.rule}, got {fault.value!r}" for fault in self.errors]
-        return "\n".join(["the server refused the case:", *lines]) if lines else self.detail
+        lines = [f"  {fault}" for fault in self.errors]
+        return "\n".join(["the server refused this:", *lines]) if lines else self.detail
 
 
 def problem_of(response: httpx.Response) -> Problem:

@@ -146,9 +146,9 @@ class EnsembleRequest(BaseModel):
                     "must not be given with a sample: it fills low to high" if field == "values"
                     else "needs a sample, which says how the range is filled")  # fmt: skip
                 raise refusal(f"parameters/{name}/{field}", None, rule)
-            if field == wanted and not there:
-                rule = "is required for a grid" if field == "values" else "is required for a sample, and high"
-                raise refusal(f"parameters/{name}/{field}", None, rule)
+        if wanted and getattr(one, wanted) is None:
+            rule = "is required for a grid" if wanted == "values" else "is required for a sample, and high"
+            raise refusal(f"parameters/{name}/{wanted}", None, rule)
 
     @property
     def _where(self) -> str:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from fastapi import Header, Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from service.api.numbers import WHOLE
 from service.api.problems import Problem
+from service.cases.errors import refusal
 from service.results import Ranges, SubsetTooLarge, UnknownVariable
 from service.results.formats import FORMATS, Format
 from service.results.part import Part
@@ -46,6 +47,14 @@ class VariablesInRanges(Variables):
     s_max: float | None = Field(None, allow_inf_nan=False)
     time_stride: Annotated[int, Field(ge=1), WHOLE] = 1
     s_stride: Annotated[int, Field(ge=1), WHOLE] = 1
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for low, high in (("t_min", "t_max"), ("s_min", "s_max")):
+            least, most = getattr(self, low), getattr(self, high)
+            if least is not None and most is not None and most < least:
+                raise refusal(high, most, f"must be >= {low}, which is {least}")
+        return self
 
     @property
     def ranges(self) -> Ranges:

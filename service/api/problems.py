@@ -6,6 +6,7 @@ import json
 import logging
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from difflib import get_close_matches
 from http import HTTPStatus
 from typing import Any, cast
 
@@ -17,7 +18,8 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
-from service.cases import MOST_TOLD, CaseError
+from service.cases import MOST_TOLD, CaseError, FieldError
+from service.cases.errors import field_error
 from service.jobs import DeletedJob, Pinned, UnknownJob
 from service.jobs.sqlite import FilesReplaced
 from service.jobs.submission import KeyReused, QuotaReached
@@ -95,10 +97,19 @@ def _allowed(request: Request) -> str:
     return ", ".join(filter(is_there, METHODS))
 
 
-async def _parameters(_: Request, error: RequestValidationError) -> JSONResponse:
-    errors = [{"parameter": ".".join(map(str, fault["loc"][1:])), "value": shown(fault.get("input")),
-               "rule": fault["msg"]} for fault in error.errors()[:MOST_TOLD]]
+async def _parameters(request: Request, error: RequestValidationError) -> JSONResponse:
+    faults = [field_error(fault | {"loc": fault["loc"][1:]}) for fault in error.errors()[:MOST_TOLD]]
+    errors = [{"parameter": fault.pointer[1:].replace("/", "."), "value": shown(fault.value),
+               "rule": fault.rule + (_meant(request, fault) if fault.unknown else "")} for fault in faults]
     return Problem(422, "invalid_parameters", _told("parameter", errors), errors=errors).response()
+
+
+def _meant(request: Request, fault: FieldError) -> str:
+    """The parameter that is most like one which the route does not have."""
+    parameters = request.scope["route"].dependant.query_params
+    models = [one.field_info.annotation for one in parameters]
+    names = [name for model in models for name in getattr(model, "model_fields", ())]
+    return "".join(f": did you mean {name}?" for name in get_close_matches(fault.pointer[1:80], names, n=1))
 
 
 async def _case(_: Request, error: CaseError) -> JSONResponse:
@@ -160,5 +171,6 @@ async def _bug(request: Request, error: Exception) -> JSONResponse:
 
 
 def _told(where: str, errors: list[dict[str, Any]], untold: int = 0) -> str:
-    first, more = "; ".join(f"{e[where] or 'the whole'}: {e['rule']}" for e in errors[:3]), len(errors) - 3 + untold
+    faults = [FieldError(e[where] or "the whole", e["value"], e["rule"]) for e in errors[:3]]
+    first, more = "; ".join(map(str, faults)), len(errors) - 3 + untold
     return first if more <= 0 else f"{first}; and {more} more"

@@ -13,21 +13,27 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 
 _RULES = {
     "missing": "is required",
-    "extra_forbidden": "is not a field of a case",
+    "extra_forbidden": "is not a known field",
     "finite_number": "must be a finite number",
     "greater_than": "must be > {gt:g}",
     "greater_than_equal": "must be >= {ge:g}",
     "less_than": "must be < {lt:g}",
     "less_than_equal": "must be <= {le:g}",
     "float_type": "must be a number",
+    "float_parsing": "must be a number",
     "int_from_float": "must be an integer",
     "int_type": "must be an integer",
+    "int_parsing": "must be an integer",
     "string_pattern_mismatch": "must match {pattern}",
+    "string_too_short": "must have at least {min_length} characters",
     "string_too_long": "must have at most {max_length} characters",
     "too_short": "must have at least {min_length} entries",
     "too_long": "must have at most {max_length} entries",
     "tuple_type": "must be a list",
     "model_type": "must be an object",
+    "literal_error": "must be {expected}",
+    "enum": "must be {expected}",
+    "value_error": "{error}",
 }
 TAG = re.compile("<[a-z]+>")
 """What tells the kinds of a value apart; it is no field."""
@@ -69,7 +75,7 @@ class CaseError(ValueError):
     def of(cls, error: ValidationError) -> CaseError:
         """The same faults as pydantic found them, in the words of this package."""
         found = error.errors(include_url=False)
-        return cls([_field_error(detail) for detail in found[:MOST_TOLD]], max(len(found) - MOST_TOLD, 0))
+        return cls([field_error(detail) for detail in found[:MOST_TOLD]], max(len(found) - MOST_TOLD, 0))
 
 
 def refusal(at: str, value: object, rule: str) -> PydanticCustomError:
@@ -77,7 +83,8 @@ def refusal(at: str, value: object, rule: str) -> PydanticCustomError:
     return PydanticCustomError("refused", "refused", {"at": at, "value": value, "rule": rule})
 
 
-def _field_error(detail: ErrorDetails) -> FieldError:
+def field_error(detail: ErrorDetails) -> FieldError:
+    """A fault as pydantic found it, in the words of this package."""
     context = detail.get("ctx", {})
     parts = [str(part) for part in detail["loc"] if not TAG.fullmatch(str(part))]
     pointer = "".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts)

@@ -133,7 +133,7 @@ RANGE = {"low": 0, "high": 1}
 @pytest.mark.parametrize(("change", "pointer", "rule"), [
     ({"parameters": {}}, "/parameters", "is required"),
     ({"parameters": {"a": {"path": "loads.damping"}}}, "/parameters/a/values", "is required for a grid"),
-    ({"parameters": {"a": RANGE}}, "/parameters/a/values", "is required for a grid"),
+    ({"parameters": {"a": RANGE}}, "/parameters/a/low", "needs a sample"),
     ({"parameters": {"a": RANGE | {"values": [1]}}}, "/parameters/a/low", "needs a sample"),
     ({"parameters": {"a": {"low": 1, "high": 0}}}, "/parameters/a/high", "must be > low"),
     ({"parameters": {"a": {"low": 1}}}, "/parameters/a/high", "both ends"),

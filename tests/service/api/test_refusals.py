@@ -154,6 +154,29 @@ def test_a_faulty_list_query_is_refused_by_the_name_of_its_parameter(client, que
     assert [error["parameter"] for error in problem["errors"]] == [query.partition("=")[0]]
 
 
+@pytest.mark.parametrize(("query", "told"), [
+    ("", "variables is required"), ("variables=r&t_min=abc", "t_min must be a number, got 'abc'"),
+    ("variables=r&t_min=5&t_max=1", "t_max must be >= t_min, which is 5.0, got 1.0"),
+    ("variables=r&s_min=1&s_max=0", "s_max must be >= s_min, which is 1.0, got 0.0"),
+    ("variables=r&time_stride=0", "time_stride must be >= 1, got '0'"),
+    ("variables=r&time_stride=2.5", "time_stride must be a whole number in digits, got '2.5'"),
+    ("variables=r&format=xml", "format must be 'json', 'csv', 'netcdf' or 'arrow', got 'xml'"),
+    ("variables=r&t_mim=5", "t_mim is not a known field: did you mean t_min?, got '5'"),
+])
+def test_a_refused_query_names_the_parameter_the_value_and_the_rule(client, query, told):
+    problem = assert_problem(client.get(f"/v1/jobs/nobody/data?{query}"), 422)
+    assert problem["detail"] == told
+    assert problem["errors"][0]["parameter"] == told.split()[0]
+
+
+def test_a_refused_body_names_the_field_the_value_and_the_rule(client):
+    assert assert_problem(client.post("/v1/jobs/nobody/links", json={"hours": 1}), 422)["detail"] == (
+        "/hours is not a known field, got 1")
+    ranged = {"case": "elastica", "parameters": {"loads.damping": {"low": 1, "high": 2}}}
+    assert assert_problem(client.post("/v1/ensembles", json=ranged), 422)["detail"] == (
+        "/parameters/loads.damping/low needs a sample, which says how the range is filled")
+
+
 @pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "10.0.0.7:80", "", "[::1"])
 def test_a_foreign_host_is_refused(client, host):
     assert_problem(client.get("/v1/jobs", headers={"Host": host}), 421)

@@ -29,7 +29,7 @@ from hockle_client.problems import HockleError, Unreachable, problem_of
 from hockle_client.reading import opened, part_query
 from hockle_client.retrying import Retries
 from hockle_client.schema import Setting
-from hockle_client.showing import Line, show_many
+from hockle_client.showing import Line
 from hockle_client.streaming import Download, Events
 
 if TYPE_CHECKING:
@@ -158,13 +158,13 @@ class AsyncClient:
                    progress: bool = False) -> list[AsyncJob]:
         """The jobs when all have ended, however. Raises TimeoutError after so many seconds."""
         deadline = None if timeout is None else time.monotonic() + timeout
-        waited = list(jobs)
+        line, waited = Line() if progress else None, list(jobs)
         for done, job in enumerate(waited):
-            if progress:
-                show_many(done, len(waited))
+            if line is not None:
+                line.show_many(done, len(waited))
             await job.wait(None if deadline is None else max(0.0, deadline - time.monotonic()))
-        if progress:
-            show_many(len(waited), len(waited))
+        if line is not None:
+            line.show_many(len(waited), len(waited))
         return waited
 
     async def scalars(self, jobs: Iterable[AsyncJob | str], *variables: str) -> list[dict[str, Any]]:

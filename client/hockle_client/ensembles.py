@@ -13,7 +13,7 @@ from typing_extensions import Self
 
 from hockle_client.documents import EnsembleState, Event, MemberState, SobolIndex, Status
 from hockle_client.reading import opened, part_query
-from hockle_client.showing import show_many
+from hockle_client.showing import Line
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -62,16 +62,16 @@ class Ensemble:
 
         Raises TimeoutError after so many seconds, Problem.
         """
-        pause, since = FIRST_POLL, time.monotonic()
+        line, pause, since = Line() if progress else None, FIRST_POLL, time.monotonic()
         while not (self.refresh()).ended:
-            if progress:
-                show_many(self.state.ended_members, self.state.members)
+            if line is not None:
+                line.show_many(self.state.ended_members, self.state.members)
             if timeout is not None and time.monotonic() - since > timeout:
                 raise TimeoutError(f"ensemble {self.id} has not ended within {timeout:g} s: it is {self.status}")
             time.sleep(pause)
             pause = min(LONGEST_POLL, 2 * pause)
-        if progress:
-            show_many(self.state.members, self.state.members)
+        if line is not None:
+            line.show_many(self.state.members, self.state.members)
         return self
 
     def members(self, status: Status | None = None) -> Iterator[MemberState]:

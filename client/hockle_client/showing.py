@@ -1,4 +1,4 @@
-"""How far a job is, on a terminal's line."""
+"""How far jobs are, on a terminal's line."""
 
 from __future__ import annotations
 
@@ -9,25 +9,32 @@ from hockle_client.documents import JobState
 
 
 class Line:
-    """One line on stderr, written over as the job goes on."""
+    """One line on stderr, written over as jobs go on."""
 
     def __init__(self) -> None:
         self._since = time.monotonic()
+        self._first: float | None = None
+        """The part that was done when it was first looked at."""
         self._long = 0
 
     def show(self, job: JobState) -> None:
-        """Say how far it is."""
-        told = f"{job.title or job.id}: {job.status} {job.progress:4.0%}, t = {job.t:.2f} s, {self._left(job)}"
-        print(f"\r{told:{self._long}}", end="\n" if job.ended else "", file=sys.stderr, flush=True)
+        """Say how far a job is."""
+        told = f"{job.title or job.id}: {job.status} {job.progress:4.0%}, t = {job.t:.2f} s"
+        self._write(told, job.progress, job.ended)
+
+    def show_many(self, ended: int, jobs: int) -> None:
+        """Say how many jobs have ended."""
+        self._write(f"{ended} of {jobs} jobs have ended", ended / max(jobs, 1), ended == jobs)
+
+    def _write(self, told: str, done: float, ended: bool) -> None:
+        told = f"{told}, {self._time(done, ended)}"
+        print(f"\r{told:{self._long}}", end="\n" if ended else "", file=sys.stderr, flush=True)
         self._long = len(told)
 
-    def _left(self, job: JobState) -> str:
+    def _time(self, done: float, ended: bool) -> str:
+        """The seconds that passed, or, where that can be known, those that are left."""
         passed = time.monotonic() - self._since
-        if job.ended or not 0.0 < job.progress < 1.0:
+        self._first = done if self._first is None else self._first
+        if ended or done <= self._first:
             return f"{passed:.0f} s"
-        return f"{passed * (1.0 - job.progress) / job.progress:.0f} s left"
-
-
-def show_many(ended: int, jobs: int) -> None:
-    """Say on a line of its own how many jobs have ended."""
-    print(f"\r{ended} of {jobs} jobs have ended", end="\n" if ended == jobs else "", file=sys.stderr, flush=True)
+        return f"{passed * (1.0 - done) / (done - self._first):.0f} s left"

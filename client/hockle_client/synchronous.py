@@ -28,7 +28,7 @@ from hockle_client.problems import HockleError, Unreachable, problem_of
 from hockle_client.reading import opened, part_query
 from hockle_client.retrying import Retries
 from hockle_client.schema import Setting
-from hockle_client.showing import Line, show_many
+from hockle_client.showing import Line
 from hockle_client.streaming import Download, Events
 
 if TYPE_CHECKING:
@@ -157,13 +157,13 @@ class Client:
              progress: bool = False) -> list[Job]:
         """The jobs when all have ended, however. Raises TimeoutError after so many seconds."""
         deadline = None if timeout is None else time.monotonic() + timeout
-        waited = list(jobs)
+        line, waited = Line() if progress else None, list(jobs)
         for done, job in enumerate(waited):
-            if progress:
-                show_many(done, len(waited))
+            if line is not None:
+                line.show_many(done, len(waited))
             job.wait(None if deadline is None else max(0.0, deadline - time.monotonic()))
-        if progress:
-            show_many(len(waited), len(waited))
+        if line is not None:
+            line.show_many(len(waited), len(waited))
         return waited
 
     def scalars(self, jobs: Iterable[Job | str], *variables: str) -> list[dict[str, Any]]:

@@ -82,7 +82,7 @@ def test_a_job_that_is_not_there_is_told(client):
 def test_lists_hold_what_is_asked_for_over_all_pages(client, quick, capsys):
     made = [client.submit(quick.set("t_end", 0.1 + 0.01 * i), label="many").id for i in range(5)]
     waited = client.wait([client.job(job_id) for job_id in made], progress=True)
-    assert capsys.readouterr().err.endswith("\r5 of 5 jobs have ended\n")
+    assert capsys.readouterr().err.splitlines()[-1].startswith("5 of 5 jobs have ended, ")
     assert [job.status for job in waited] == ["successful"] * 5
     assert [job.id for job in client.jobs(label="many", status="successful")][:5] == made[::-1]
     assert list(client.jobs(label="nothing")) == []

@@ -36,21 +36,35 @@ def sweep(told: argparse.Namespace) -> int:
     """Hand in the cases, and print the ensemble's id; wait for its numbers if any are asked for."""
     from hockle.settings import read_case
 
+    if told.sample and told.size is None:
+        raise Failure(f"--sample {told.sample} needs --size: how many points")
+    names = _scalars(told.scalars) if told.scalars else []
     case = read_case(told.case, told.settings)
     parameters = dict(_varied(one) for one in told.vary)
     with connected(told.server) as client:
         ensemble = client.sweep(case, parameters, sample=told.sample, size=told.size, seed=told.seed, label=told.label)
         print(ensemble.id, file=sys.stderr if told.scalars else sys.stdout, flush=True)
-        if not told.scalars:
+        if not names:
             return 0
         client.patience = PATIENCE
         ensemble.wait(progress=True)
-        table = ensemble.csv(*told.scalars.split(","))
+        table = ensemble.csv(*names)
     if told.output is None:
         print(table, end="")
     else:
         told.output.write_text(table, encoding="utf-8")
     return 0 if ensemble.status == "successful" else 1
+
+
+def _scalars(text: str) -> list[str]:
+    """The names, known before anything is run. Raises Failure."""
+    from service.results import UnknownVariable
+    from service.results.scalars import scalar_variables
+
+    try:
+        return scalar_variables(text.split(","))
+    except UnknownVariable as error:
+        raise Failure(f"--scalars: {error}") from None
 
 
 def _varied(text: str) -> tuple[str, Any]:

@@ -53,7 +53,7 @@ def authenticate(authorization: str | None, find: Callable[[str], ApiKey | None]
     scheme, _, text = authorization.partition(" ")
     told = split(text.strip())
     if scheme.lower() != "bearer" or told is None:
-        raise Refused("Authorization must be Bearer and an API key")
+        raise Refused("this is no API key: send Authorization: Bearer hk_..., as hockle keys create prints it")
     prefix, secret = told
     key = find(prefix)
     if not (key or NOBODY).opens(secret, now) or key is None:

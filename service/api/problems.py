@@ -129,7 +129,7 @@ async def _deleted_job(_: Request, error: Exception) -> JSONResponse:
 
 
 async def _pinned(_: Request, error: Exception) -> JSONResponse:
-    detail = f"job {error} is pinned: unpin it (DELETE /v1/jobs/{error}/pin) before it is deleted"
+    detail = f"job {error} is pinned: unpin it (hockle unpin ID, DELETE /v1/jobs/{error}/pin) before it is deleted"
     return Problem(409, "pinned", detail).response()
 
 

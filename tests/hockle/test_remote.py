@@ -145,6 +145,16 @@ def test_a_sweep_that_cannot_be_run_is_told_so(case_file, capsys, varied, told):
     assert told in refusal(capsys, "sweep", case_file, varied)
 
 
+@pytest.mark.parametrize(("option", "told"), [
+    (["--scalars", "Tw,r"], "--scalars: variable must be one of"),
+    (["--sample", "sobol"], "--sample sobol needs --size"),
+])
+def test_a_sweep_is_refused_before_anything_is_run(case_file, capsys, option, told):
+    assert told in refusal(capsys, "sweep", case_file, "loads.damping=0,0.25", "--label", "refused", *option)
+    assert main(["jobs", "--label", "refused"]) == 0
+    assert capsys.readouterr().out == ""
+
+
 def test_a_job_is_run_again_with_a_change(case_file, capsys):
     assert main(["submit", case_file, "--set", "t_end=0.3", "--wait"]) == 0
     job_id = capsys.readouterr().out.split()[0]

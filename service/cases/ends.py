@@ -26,6 +26,9 @@ _KINDS: tuple[tuple[Literal["rate", "position", "load"], str, str], ...] = (
     ("position", "x", "theta"),
     ("load", "f", "q"),
 )
+_NAMES = {(rotation, i): [(kind, f"{turn if rotation else shift}{i + 1}") for kind, shift, turn in _KINDS]
+          for rotation in (False, True) for i in range(3)}  # fmt: skip
+"""Kind and name of the conditions that each component may have."""
 
 
 Displacement = Annotated[
@@ -70,8 +73,7 @@ class _Conditions(Spec):
 
     def _present(self, rotation: bool, i: int) -> list[tuple[Literal["rate", "position", "load"], str]]:
         """Kind and name of each condition on one component (there should be one at most)."""
-        names = [(kind, f"{turn if rotation else shift}{i + 1}") for kind, shift, turn in _KINDS]
-        return [(kind, name) for kind, name in names if getattr(self, name) is not None]
+        return [(kind, name) for kind, name in _NAMES[rotation, i] if getattr(self, name) is not None]
 
     def condition(self, rotation: bool, i: int, since: float = 0.0) -> Condition | None:
         """The condition on component `i` (0, 1, 2) from `since` (s) on, None where none is given."""
@@ -154,7 +156,7 @@ class EndObject(_Conditions):
 
     def _require(self, rotation: bool, i: int) -> None:
         if self.condition(rotation, i) is None:
-            names = ", ".join(f"{turn if rotation else shift}{i + 1}" for _, shift, turn in _KINDS)
+            names = ", ".join(name for _, name in _NAMES[rotation, i])
             raise refusal("", None, f"needs a preset, or one of {names}")
 
     def build(self) -> End:

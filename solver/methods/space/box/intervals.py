@@ -58,7 +58,7 @@ def interval_residuals(Y: Array, past: Array, c0: float, h: float, space: SpaceS
             b[j, 9 + i] = rows[9 + i] * rotation
 
 
-@inner
+@inlined
 def _take_means(j: int, Y: Array, left: float, right: float, nodes: Nodes, mean: Array) -> None:
     """Write the weighted means of kappa, omega, F and q, and a3 x R_m^t F_m, into `mean` (MEANS, 3)."""
     for i in range(3):

@@ -10,7 +10,7 @@ Who hands over keeps the arrays alive. Kernels read a record's fields by name, a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from struct import Struct
 from typing import Any
 
 import numba
@@ -19,7 +19,6 @@ from llvmlite import ir
 from numba import types
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import NativeValue, infer_getattr, lower_getattr_generic, models, register_model, unbox
-from numpy.typing import NDArray
 
 
 class Referred(types.Type):
@@ -48,11 +47,13 @@ class Reference:
     records: Any
 
     def __init__(self, records: tuple[Any, ...]) -> None:
-        kind: Any = numba.typeof(records)  # type: ignore[no-untyped-call]
-        self._memory = np.zeros(_extent(kind)[0], np.uint8)
-        self._numba_type_ = Referred(kind)
+        likeness = _likeness(records)
+        if likeness not in _LAYOUTS:
+            kind: Any = numba.typeof(records)  # type: ignore[no-untyped-call]
+            _LAYOUTS[likeness] = Referred(kind), Struct("=" + _format(kind))
+        self._numba_type_, layout = _LAYOUTS[likeness]
+        self._memory = np.frombuffer(layout.pack(*_parts(records)), np.uint8)
         self.address = self._memory.ctypes.data
-        _write(kind, records, self._memory)
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,6 @@ class Handed:
         return self if same else self.over(*records)
 
 
-@cache
 def _offsets(kind: Any) -> list[int]:
     """Where each part of a tuple begins (bytes), and where the tuple ends: as in C."""
     begins, end, widest = list[int](), 0, 1
@@ -99,18 +99,39 @@ def _tuple(kinds: tuple[Any, ...]) -> Any:
     return types.BaseTuple.from_types(kinds)  # type: ignore[no-untyped-call]
 
 
-def _write(kind: Any, value: Any, memory: NDArray[np.uint8]) -> None:
-    """Write a value of one of numba's types to where `memory` begins; an array as an address that nobody owns."""
+_LAYOUTS: dict[Any, tuple[Referred, Struct]] = {}
+"""The type of the reference to records, and how they lie in memory, by their likeness: numba needs some ms to tell."""
+
+
+def _likeness(value: Any) -> Any:
+    """What is the same for records that have the same type."""
+    if isinstance(value, tuple):
+        return type(value), *map(_likeness, value)
+    return (value.dtype, value.ndim, value.flags.num) if isinstance(value, np.ndarray) else type(value)
+
+
+def _format(kind: Any) -> str:
+    """How a value of one of numba's types lies in memory, as `struct` has it."""
     if isinstance(kind, types.BaseTuple):
         parts: Any = kind
-        for begin, part, one in zip(_offsets(kind), parts, value, strict=False):
-            _write(part, one, memory[begin:])
-    elif isinstance(kind, types.Array):
-        numbers = (0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
-        memory[: 8 * len(numbers)].view(np.int64)[:] = numbers
-    elif not isinstance(kind, types.NoneType):
-        dtype = np.dtype(str(kind))
-        memory[: dtype.itemsize].view(dtype)[0] = value
+        begins, texts, end = _offsets(kind), list[str](), 0
+        for begin, part in zip(begins, parts, strict=False):
+            texts += [f"{begin - end}x", _format(part)]
+            end = begin + _extent(part)[0]
+        return "".join([*texts, f"{begins[-1] - end}x"])
+    size = _extent(kind)[0]
+    if isinstance(kind, types.Array):
+        return f"{size // 8}q"
+    return f"{size}x" if isinstance(kind, types.NoneType) else f"{size}s"
+
+
+def _parts(value: Any) -> list[Any]:
+    """What `struct` writes of records; of an array an address that nobody owns."""
+    if isinstance(value, tuple):
+        return [part for one in value for part in _parts(one)]
+    if isinstance(value, np.ndarray):
+        return [0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides]
+    return [] if value is None else [np.asarray(value).tobytes()]
 
 
 @infer_getattr

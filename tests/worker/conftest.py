@@ -21,7 +21,7 @@ def case() -> dict[str, Any]:
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path: Path, tables: None) -> Settings:
     made = Settings(tmp_path, lease=1000.0)
     made.make_directories()
     return made

@@ -26,7 +26,7 @@ END = {"preset": "free", "switches": [{"at": 0.55, "omega3": 1.0}]}
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path: Path, tables: None) -> Settings:
     settings = Settings(data=tmp_path)
     settings.make_directories()
     return settings

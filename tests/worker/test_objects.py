@@ -28,7 +28,7 @@ run.run_next(Database(settings.database_url), settings)
 
 
 @pytest.fixture
-def settings(tmp_path: Path, objects: str) -> Settings:
+def settings(tmp_path: Path, tables: None, objects: str) -> Settings:
     made = Settings(data=tmp_path, objects=objects, lease=1000.0)
     made.make_directories()
     return made

@@ -27,7 +27,7 @@ def clock():
 
 
 @pytest.fixture
-def database(tmp_path, clock):
+def database(tmp_path, tables, clock):
     database = Database(f"sqlite:///{tmp_path}/registry.db", clock)
     yield database
     database.close()

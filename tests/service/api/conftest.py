@@ -19,7 +19,7 @@ SMALL = {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8}
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path: Path, tables: None) -> Settings:
     return Settings(data=tmp_path)
 
 

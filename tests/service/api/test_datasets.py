@@ -14,7 +14,7 @@ from service.settings import Settings
 
 
 @pytest.fixture(params=["files", "objects"])
-def settings(tmp_path: Path, request: pytest.FixtureRequest) -> Settings:
+def settings(tmp_path: Path, tables: None, request: pytest.FixtureRequest) -> Settings:
     """Where datasets lie makes no difference to who reads them."""
     return Settings(data=tmp_path, objects=request.getfixturevalue("objects") if request.param == "objects" else "")
 

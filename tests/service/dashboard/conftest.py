@@ -20,7 +20,7 @@ CASE = parse_case(load_case("elastica")).document()
 
 
 @pytest.fixture
-def settings(tmp_path: Path) -> Settings:
+def settings(tmp_path: Path, tables: None) -> Settings:
     return replace(Settings(data=tmp_path), rate=1e6, quota=20_000)
 
 

@@ -35,7 +35,7 @@ def clock():
 
 
 @pytest.fixture
-def settings(tmp_path):
+def settings(tmp_path, tables):
     settings = Settings(data=tmp_path)
     settings.make_directories()
     return settings

@@ -51,10 +51,10 @@ SHOWN = """() => new Promise(done => {
 
 def main() -> None:
     """Measure, print and keep; then take the pictures."""
-    with tempfile.TemporaryDirectory() as data, tempfile.TemporaryDirectory() as profile:
+    with tempfile.TemporaryDirectory() as data:
         settings = replace(Settings(data=Path(data)), rate=1e6, quota=2 * JOBS)
-        with serving(settings) as server, browsing(profile) as browser:
-            registry, page = server.app.state.parts.registry, browser.pages[0]
+        with serving(settings) as server, browsing() as opened:
+            registry, page = server.app.state.parts.registry, opened()
 
             def run(name: str, **values: Any) -> str:
                 spec = parse_case(apply_settings(load_case(name), values))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from shutil import which
 from types import SimpleNamespace
@@ -41,13 +41,17 @@ def serving(settings: Settings, keyed: bool = False) -> Iterator[SimpleNamespace
 
 
 @contextmanager
-def browsing(profile: str, **options: Any) -> Iterator[Any]:
-    """A browser with a profile of its own, with an empty page."""
+def browsing() -> Iterator[Callable[[], Any]]:
+    """Gives what opens an empty page, with cookies and storage of its own."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        context = playwright.chromium.launch_persistent_context(
-            profile, executable_path=CHROMIUM, args=ARGUMENTS, viewport={"width": 1200, "height": 800}, **options)
-        context.set_default_timeout(60_000)
-        yield context
-        context.close()
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+
+        def opened() -> Any:
+            page = browser.new_page(viewport={"width": 1200, "height": 800})
+            page.set_default_timeout(60_000)
+            return page
+
+        yield opened
+        browser.close()

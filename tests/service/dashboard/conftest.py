@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -71,23 +72,24 @@ def run(registry: Registry, settings: Settings) -> Callable[..., str]:
     return job
 
 
-@pytest.fixture
-def context(tmp_path: Path) -> Iterator[object]:
-    """A browser with a profile of its own, without any page but an empty one."""
+@pytest.fixture(scope="module")
+def opened() -> Iterator[Callable[[], Any]]:
+    """A browser that the tests of a module share: gives what opens a page, with cookies and storage of its own."""
     if CHROMIUM is None:
         pytest.skip("there is no Chromium: apt-get install chromium")
     pytest.importorskip("playwright.sync_api", reason="Playwright's Python package is not installed")
-    with browsing(str(tmp_path / "profile")) as browser:
-        yield browser
+    with browsing() as opened:
+        yield opened
 
 
 @pytest.fixture
-def page(context):
-    """Its page; no fault may be told on its console, and nothing asked for elsewhere."""
-    page, faults = context.pages[0], []
+def page(opened):
+    """An empty page; no fault may be told on its console, and nothing asked for elsewhere."""
+    page, faults = opened(), []
     page.on("pageerror", lambda error: faults.append(str(error)))
     page.on("console", lambda line: faults.append(line.text) if "Content Security Policy" in line.text else None)
     page.on("request", lambda request: None if request.url.startswith(("http://127.0.0.1:", "data:", "blob:", "about:"))
             else faults.append(f"asked for {request.url}"))  # fmt: skip
     yield page
+    page.context.close()
     assert faults == []

@@ -30,6 +30,7 @@ export class JobsTable {
     this.body = /** @type {HTMLElement} */ (document.querySelector("#jobs tbody"));
     this.body.replaceChildren();
     this.offer([]);
+    byId("filters").elements.ensemble.value = chosen.get("ensemble") ?? "";
   }
 
   /** @param {number} limit @param {Record<string, string>} [more] */
@@ -57,7 +58,6 @@ export class JobsTable {
       const option = known.get(id) ?? field.appendChild(new Option("", id));
       option.textContent = title || id;
     }
-    field.value = chosen;
   }
 
   /** Read older pages until as many jobs are shown as are wanted, or there are no more. */

@@ -54,6 +54,19 @@ def test_the_table_of_jobs_shows_those_of_one_ensemble(server, add, ensemble, pa
     page.wait_for_function("() => document.querySelectorAll('#jobs tbody tr').length === 6")
 
 
+def test_a_filter_that_is_chosen_while_the_ensembles_are_read_stays_chosen(server, add, ensemble, page):
+    add(2)
+    held = []
+    page.route("**/v1/ensembles", lambda route: held.append(route))
+    with page.expect_request("**/v1/ensembles"):
+        page.goto(f"{server.address}/#/?ensemble={ensemble}")
+    page.wait_for_function("() => document.querySelectorAll('#jobs tbody tr').length === 6")
+    page.select_option("#filters [name=ensemble]", "")
+    held[0].continue_()
+    page.wait_for_function("() => document.querySelectorAll('#jobs tbody tr').length === 8")
+    page.unroute_all(behavior="ignoreErrors")
+
+
 def test_any_scalar_is_drawn_against_any_parameter(server, ensemble, page):
     page.goto(f"{server.address}/#/ensembles/{ensemble}")
     page.wait_for_selector("#page circle")

@@ -28,8 +28,8 @@ def silent(server) -> set[str]:
     return {name.split()[0] for name in readiness(server).get("standing_still", ())}
 
 
-def test_a_stopped_api_process_worker_and_broker_are_replaced_and_their_job_ends(start, slow, until, tmp_path):
-    with start(tmp_path) as server, Client(server.address, patience=120.0) as client:
+def test_a_stopped_api_process_worker_and_broker_are_replaced_and_their_job_ends(server, slow, until):
+    with Client(server.address, patience=120.0) as client:
         until(lambda: readiness(server).get("status") == "ok", "all parts are there")
         job = client.submit(slow)
         until(lambda: client.job(job.id).progress > 0.02, "the job runs")
@@ -42,8 +42,8 @@ def test_a_stopped_api_process_worker_and_broker_are_replaced_and_their_job_ends
         assert client.job(job.id).wait().status == "successful"
 
 
-def test_a_stopped_child_of_the_pool_is_replaced_and_its_job_ends(start, slow, until, tmp_path):
-    with start(tmp_path) as server, Client(server.address, patience=120.0) as client:
+def test_a_stopped_child_of_the_pool_is_replaced_and_its_job_ends(server, slow, until):
+    with Client(server.address, patience=120.0) as client:
         job = client.submit(slow)
         until(lambda: client.job(job.id).progress > 0.02, "the job runs")
         child, *_ = server.below(server.service(WORKER))

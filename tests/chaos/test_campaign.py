@@ -17,6 +17,7 @@ from chaos.postgres import binaries
 from hockle.broker import redis_binary
 
 JOBS = FAULTS = 4
+KNOWN = with_halves({name: case for name, case in cases().items() if name in ("short-loop", "free-flight")})
 QUICK = (kill_child, stop_child_past_its_lease, wipe_broker, double_messages, lose_message, tear_checkpoint,
          kill_at_rename)  # fmt: skip
 
@@ -26,15 +27,19 @@ pytestmark = [
 ]
 
 
+@pytest.fixture(scope="module")
+def expected() -> dict[str, str]:
+    """The digests of undisturbed runs."""
+    return {name: undisturbed(case) for name, case in KNOWN.items()}
+
+
 @pytest.mark.parametrize("kind", [
     "sqlite",
     pytest.param("postgresql", marks=pytest.mark.skipif(binaries() is None, reason="no PostgreSQL on this machine")),
 ])  # fmt: skip
-def test_every_job_ends_exactly_once_whatever_is_killed_lost_or_stopped(kind, tmp_path: Path):
-    known = with_halves({name: case for name, case in cases().items() if name in ("short-loop", "free-flight")})
-    expected = {name: undisturbed(case) for name, case in known.items()}
+def test_every_job_ends_exactly_once_whatever_is_killed_lost_or_stopped(kind, expected, tmp_path: Path):
     with environment(kind, tmp_path / "data") as (settings, server, small):
-        record, watch = run_seed(1, settings, server, small, known, JOBS, FAULTS, QUICK)
+        record, watch = run_seed(1, settings, server, small, KNOWN, JOBS, FAULTS, QUICK)
         verdict = judge(record, watch, settings, expected)
     assert record.all_ended
     assert verdict.jobs >= JOBS and verdict.published > 0

@@ -9,7 +9,11 @@ from pathlib import Path
 import pytest
 
 from hockle.cli import main, parser
+from service.cases import load_case, parse_case
+from service.jobs import Database, NewJob, Registry
+from service.settings import Settings
 from tests.hockle.conftest import serving
+from worker.run import run_next
 
 DOCS = Path(__file__).parents[2] / "docs"
 SHOWN = re.compile(r"^    \$ (hockle [^\n]*)$|^```(json|python)\n(.*?)^```", re.M | re.S)
@@ -67,8 +71,12 @@ def test_accuracy(tmp_path, monkeypatch, capsys):
 def test_a_backup_is_restored_and_whole(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOCKLE_DATA", str(tmp_path / "served"))
-    with serving(tmp_path / "served") as server:
-        assert server.address
+    settings = Settings(data=tmp_path / "served")
+    settings.make_directories()
+    database = Database(settings.database_url)
+    Registry(database).submit(NewJob(parse_case(load_case("free-flight")).document()))
+    assert run_next(database, settings)
+    database.close()
     for kind, line in shown("deploy/backup.md"):
         assert kind == "command"
         command(line.replace("/backups/hockle", str(tmp_path / "backup")))

@@ -65,6 +65,7 @@ def test_a_job_that_has_not_ended_cannot_be_fetched_yet(capsys, slow, tmp_path):
     job_id = capsys.readouterr().out.strip()
     assert "its dataset comes at its end" in refusal(capsys, "fetch", job_id, "-o", str(tmp_path / "x.nc"))
     assert not (tmp_path / "x.nc").exists()
+    assert main(["cancel", job_id]) == 0
 
 
 def test_a_faulty_case_is_refused_by_field_value_and_rule(capsys, case_file):

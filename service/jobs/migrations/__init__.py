@@ -6,6 +6,7 @@ import logging
 
 from alembic import command
 from alembic.config import Config
+from alembic.script.revision import RevisionError
 from alembic.util import CommandError
 from sqlalchemy import Connection, inspect, text
 
@@ -17,13 +18,13 @@ logging.getLogger("alembic").setLevel(logging.WARNING)  # it tells of every open
 
 
 class WrongSchema(Exception):
-    """The database was written by another version of hockle."""
+    """The tables cannot be brought to the version of this hockle."""
 
 
 def migrate(connection: Connection, version: str = "head") -> None:
     """Bring the tables to the newest version, or another one, within the transaction of `connection`.
 
-    Raises WrongSchema if they are of a version that this hockle does not know.
+    Raises WrongSchema if they are of a version that this hockle does not know, or its own steps cannot be read.
     """
     if connection.dialect.name == "postgresql":
         connection.execute(text(f"SELECT pg_advisory_xact_lock({ONE_AT_A_TIME})"))
@@ -36,4 +37,6 @@ def migrate(connection: Connection, version: str = "head") -> None:
     try:
         command.upgrade(config, version)
     except CommandError as error:
-        raise WrongSchema(f"the registry was written by a newer hockle than this one: {error}") from None
+        newer = isinstance(error.__cause__, RevisionError)
+        rule = "was written by a newer hockle than this one" if newer else "cannot be made: its migrations cannot be read"
+        raise WrongSchema(f"the registry {rule}: {error}") from None

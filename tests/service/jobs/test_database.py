@@ -73,6 +73,12 @@ def test_a_registry_of_a_newer_version_is_refused(database, url):
         Database(url)
 
 
+def test_an_installation_without_its_migrations_is_not_told_as_a_newer_registry(url, monkeypatch):
+    monkeypatch.setattr("alembic.script.base.os.access", lambda *_: False)
+    with pytest.raises(WrongSchema, match="cannot be read: .*migrations"):
+        Database(url)
+
+
 def test_a_registry_from_before_the_migrations_is_refused(url):
     engine = create_engine(url)
     with engine.begin() as connection:

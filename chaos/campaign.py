@@ -17,7 +17,7 @@ from sqlalchemy import func, select
 from chaos.disk import small_disk
 from chaos.faults import WEIGHTS, Fault, Target
 from chaos.postgres import postgres
-from chaos.reader import Reader
+from chaos.reader import reading
 from chaos.record import Record
 from chaos.served import Served, send, wait_for
 from chaos.submitter import Submitter
@@ -52,7 +52,7 @@ def environment(kind: str, data: Path) -> Iterator[tuple[Settings, Any, bool]]:
 def run_seed(seed: int, settings: Settings, server: Any, small: bool, cases: Mapping[str, Any],
              count: int, faults: int, only: Sequence[Fault] = ()) -> tuple[Record, Watch]:
     """Run one seed; the database and the datasets are left for the judge."""
-    record = Record(seed)
+    record, watch = Record(seed), Watch(settings)
     served = Served(settings, free_port())
     served.clock.write_text("0")
     database = Database(settings.database_url)
@@ -60,7 +60,7 @@ def run_seed(seed: int, settings: Settings, server: Any, small: bool, cases: Map
     target = Target(served, database, random.Random(seed), server, small, submitter.submit)  # no secret
     served.start()
     try:
-        with Watch(settings) as watch, Reader(served.address, record.reads):
+        with watch.looking(), reading(served.address, record.reads):
             _make_trouble(target, record, count, faults, only or tuple(WEIGHTS))
             for thread in target.later:
                 thread.join()

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 import httpx
 import numpy as np
 
+from chaos.repeated import repeated
 from service.results import open_dataset
 
 EVERY, STRIDE = 0.2, 20
@@ -34,33 +34,25 @@ class Read:
             return all(np.array_equal(values, self.values[name], equal_nan=True) for name, values in same.items())
 
 
-class Reader:
-    """Reads one running job after the other. A context: it has a thread."""
+@contextmanager
+def reading(address: str, reads: list[Read]) -> Iterator[None]:
+    """Within it, jobs that run are read, one after the other; what was read is added to `reads`."""
+    with httpx.Client(base_url=address, timeout=10.0, trust_env=False) as client:
 
-    def __init__(self, address: str, reads: list[Read]) -> None:
-        self._address, self._reads = address, reads
-        self._stopped = threading.Event()
-        self._thread = threading.Thread(target=self._run)
+        def read_all() -> None:
+            with suppress(httpx.HTTPError):  # whoever would answer may have just been killed
+                for job in client.get("/v1/jobs?status=running").raise_for_status().json()["jobs"]:
+                    reads.extend(_read(client, job["id"]))
 
-    def __enter__(self) -> Reader:
-        self._thread.start()
-        return self
+        with repeated(EVERY, read_all):
+            yield
 
-    def __exit__(self, *_: object) -> None:
-        self._stopped.set()
-        self._thread.join()
 
-    def _run(self) -> None:
-        with httpx.Client(base_url=self._address, timeout=10.0, trust_env=False) as client:
-            while not self._stopped.wait(EVERY):
-                with suppress(httpx.HTTPError):  # whoever would answer may have just been killed
-                    for job in client.get("/v1/jobs?status=running").raise_for_status().json()["jobs"]:
-                        self._read(client, job["id"])
-
-    def _read(self, client: httpx.Client, job: str) -> None:
-        answer = client.get(f"/v1/jobs/{job}/data?variables=Tw,r&s_stride={STRIDE}")
-        if answer.status_code != 200 or answer.headers["job-status"] != "running":
-            return
-        told = answer.json()
-        arrays = {"time": told["coordinates"]["time"], **told["variables"]}
-        self._reads.append(Read(job, {name: np.array(arrays[name]["values"], float) for name in ("time", "Tw", "r")}))
+def _read(client: httpx.Client, job: str) -> list[Read]:
+    """What a job has so far, if it still runs."""
+    answer = client.get(f"/v1/jobs/{job}/data?variables=Tw,r&s_stride={STRIDE}")
+    if answer.status_code != 200 or answer.headers["job-status"] != "running":
+        return []
+    told = answer.json()
+    arrays = {"time": told["coordinates"]["time"], **told["variables"]}
+    return [Read(job, {name: np.array(arrays[name]["values"], float) for name in ("time", "Tw", "r")})]

@@ -70,13 +70,13 @@ def main() -> int:
         settings = Settings(data=Path(directory) / "data", lease=LEASE, checkpoint=CHECKPOINT, keep_bytes=KEEP,
                             log_bytes=LOG)  # fmt: skip
         settings.make_directories()
-        record, served = Record(told.seed), Served(settings, free_port())
+        record, watch, served = Record(told.seed), Watch(settings), Served(settings, free_port())
         database, known = Database(settings.database_url), cases()
         submitter = Submitter(served, record, known)
         target = Target(served, database, random.Random(told.seed), None, False, submitter.submit)  # no secret
         served.start()
         try:
-            with Watch(settings) as watch:
+            with watch.looking():
                 growth = _soak(target, record, 60.0 * told.minutes)
                 record.all_ended = come_to_an_end(target)
                 wait_for(lambda: not _left(settings))

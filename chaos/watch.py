@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import threading
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 
+from chaos.repeated import repeated
 from service.settings import Settings
 
 EVERY = 0.05
@@ -18,22 +18,15 @@ class Watch:
     def __init__(self, settings: Settings) -> None:
         self._locks = str(settings.locks.absolute())
         self.looks, self.overlaps = 0, 0
-        self._stopped = threading.Event()
-        self._thread = threading.Thread(target=self._run)
 
-    def __enter__(self) -> Watch:
-        self._thread.start()
-        return self
+    def looking(self) -> AbstractContextManager[None]:
+        """Within it, looks are taken."""
+        return repeated(EVERY, self._look)
 
-    def __exit__(self, *_: object) -> None:
-        self._stopped.set()
-        self._thread.join()
-
-    def _run(self) -> None:
-        while not self._stopped.wait(EVERY):
-            holders = [job for pid in _holders() for job in self._held(pid)]
-            self.looks += 1
-            self.overlaps += len(holders) - len(set(holders))
+    def _look(self) -> None:
+        holders = [job for pid in _holders() for job in self._held(pid)]
+        self.looks += 1
+        self.overlaps += len(holders) - len(set(holders))
 
     def _held(self, pid: int) -> set[str]:
         """The jobs whose lock a process holds."""

@@ -49,14 +49,14 @@ def disturbed(seed: int, count: int) -> list[Row]:
         tempfile.TemporaryDirectory(prefix="hockle-attack-", ignore_cleanup_errors=True) as directory,
         environment("sqlite", Path(directory) / "data") as (settings, server, small),
     ):
-        record, served = Record(seed), Served(settings, free_port())
+        record, watch, served = Record(seed), Watch(settings), Served(settings, free_port())
         served.clock.write_text("0")
         database = Database(settings.database_url)
         submitter = Submitter(served, record, known)
         target = Target(served, database, random.Random(seed), server, small, submitter.submit)  # no secret
         served.start()
         try:
-            with Watch(settings) as watch:
+            with watch.looking():
                 _disturb(target, record, count)
                 began = time.monotonic()
                 record.all_ended = come_to_an_end(target)

@@ -1,4 +1,5 @@
-"""`make client`: write hockle_client/schema.py from the schema of cases, synchronous.py from asynchronous.py."""
+"""`make client`: write hockle_client/schema.py from the schema of cases, synchronous.py, jobs.py and
+ensembles.py from those with await."""
 
 from __future__ import annotations
 
@@ -19,6 +20,7 @@ def _synchronous(source: str) -> str:
 WRITTEN: dict[str, Callable[[], str]] = {
     "schema.py": lambda: types_of(case_schema()),
     "synchronous.py": lambda: _synchronous("asynchronous.py"),
+    "jobs.py": lambda: _synchronous("async_jobs.py"),
     "ensembles.py": lambda: _synchronous("async_ensembles.py"),
 }
 

@@ -14,7 +14,7 @@ WORDS = {
     r"\baread\b": "read", r"\baiter_": "iter_", r"\bAsyncIterator\b": "Iterator",
     r"\bAsync(Client|Job|Ensemble)\b": r"\1",
     r"\basyncio\.sleep\b": "time.sleep", r"^import asyncio\n": "",
-    r"\basync_ensembles\b": "ensembles", r"\bhockle_client\.asynchronous\b": "hockle_client.synchronous",
+    r"\basync_(ensembles|jobs)\b": r"\1", r"\bhockle_client\.asynchronous\b": "hockle_client.synchronous",
 }  # fmt: skip
 
 

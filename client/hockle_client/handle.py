@@ -1,8 +1,9 @@
-"""What a job's handle tells, without asking the server."""
+"""What a job's handle tells without asking the server, and its id as a part of an address."""
 
 from __future__ import annotations
 
 from hockle_client.documents import JobState
+from hockle_client.problems import HockleError
 
 
 class JobFacts:
@@ -47,3 +48,10 @@ class JobFacts:
 
     def __repr__(self) -> str:
         return f"<job {self.id}: {self.status}, {self.progress:.0%}>"
+
+
+def safe(name: str) -> str:
+    """A name as a part of an address. Raises HockleError for what is none."""
+    if not name.replace("-", "").replace("_", "").isalnum():
+        raise HockleError(f"an id has letters and digits only, got {name!r}")
+    return name

@@ -179,6 +179,12 @@ def test_a_link_is_read_by_xarray_where_it_is(client, done):
         xr.open_dataset(f"{link.url}#mode=bytes")
 
 
+def test_a_server_that_tells_no_address_of_a_zarr_store_is_understood(done):
+    told = {"id": "a", "href": "/v1/shared/x.nc", "created": "2026-01-01T00:00:00Z", "expires": "2026-01-02T00:00:00Z"}
+    link = getattr(done, "inner", done)._linked({**told, "revoked": None})
+    assert link.url.endswith("/v1/shared/x.nc") and link.zarr is None
+
+
 def test_a_job_goes_on_beyond_its_end_and_is_forked(client, quick):
     job = client.submit(quick.set("numerics.method", "staggered")).wait()
     longer, fork = job.again(set={"t_end": 0.5}, label="longer"), job.fork(0.25, end={"omega3": 0.0})

@@ -6,7 +6,6 @@ import json
 import logging
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from difflib import get_close_matches
 from http import HTTPStatus
 from typing import Any, cast
 
@@ -20,6 +19,7 @@ from starlette.routing import Match
 
 from service.cases import MOST_TOLD, CaseError, FieldError
 from service.cases.errors import field_error
+from service.cases.suggestions import meant
 from service.jobs import DeletedJob, Pinned, UnknownJob
 from service.jobs.sqlite import FilesReplaced
 from service.jobs.submission import KeyReused, QuotaReached
@@ -99,17 +99,16 @@ def _allowed(request: Request) -> str:
 
 async def _parameters(request: Request, error: RequestValidationError) -> JSONResponse:
     faults = [field_error(fault | {"loc": fault["loc"][1:]}) for fault in error.errors()[:MOST_TOLD]]
-    errors = [{"parameter": fault.pointer[1:].replace("/", "."), "value": shown(fault.value),
-               "rule": fault.rule + (_meant(request, fault) if fault.unknown else "")} for fault in faults]
+    faults = [meant(fault, fault.pointer[1:], _parameters_of(request)) if fault.unknown else fault for fault in faults]
+    errors = [{"parameter": fault.pointer[1:].replace("/", "."), "value": shown(fault.value), "rule": fault.rule}
+              for fault in faults]
     return Problem(422, "invalid_parameters", _told("parameter", errors), errors=errors).response()
 
 
-def _meant(request: Request, fault: FieldError) -> str:
-    """The parameter that is most like one which the route does not have."""
-    parameters = request.scope["route"].dependant.query_params
-    models = [one.field_info.annotation for one in parameters]
-    names = [name for model in models for name in getattr(model, "model_fields", ())]
-    return "".join(f": did you mean {name}?" for name in get_close_matches(fault.pointer[1:80], names, n=1))
+def _parameters_of(request: Request) -> list[str]:
+    """The names of the parameters that the query of this route may have."""
+    models = [one.field_info.annotation for one in request.scope["route"].dependant.query_params]
+    return [name for model in models for name in getattr(model, "model_fields", ())]
 
 
 async def _case(_: Request, error: CaseError) -> JSONResponse:

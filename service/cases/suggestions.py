@@ -20,7 +20,12 @@ def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
     if not fault.unknown or not fault.pointer:  # a field that is named as what tells kinds apart has no pointer
         return fault
     *path, name = (part.replace("~1", "/").replace("~0", "~") for part in fault.pointer.split("/")[1:])
-    near = get_close_matches(name[:80].lower(), fields_at(whole, path), n=1)
+    return meant(fault, name, fields_at(whole, path))
+
+
+def meant(fault: FieldError, name: str, names: Sequence[str]) -> FieldError:
+    """The same fault, with the one of the known `names` that is most like the unknown `name`, if one is."""
+    near = get_close_matches(name[:80].lower(), names, n=1)
     return FieldError(fault.pointer, fault.value, f"{fault.rule}: did you mean {near[0]}?") if near else fault
 
 

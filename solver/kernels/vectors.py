@@ -16,6 +16,9 @@ import numba
 from solver.arrays import Array
 from solver.kernels.kernel import by_type, inner
 
+Vector = tuple[float, float, float]
+"""In space."""
+
 
 @by_type
 def vector(a: Any, j: int) -> Any:

@@ -28,10 +28,8 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.kernel import allocating, inner
-from solver.kernels.vectors import dot, minus, norm, times, vector
+from solver.kernels.vectors import Vector, dot, minus, norm, times, vector
 from solver.measures.spherical import half_area
-
-Vector = tuple[float, float, float]
 
 BLOCK = 8
 RIGHT_ANGLE = sqrt(2.0)

@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike
 from solver.arrays import Array
 from solver.kernels.kernel import allocating, inlined, inner, kernel
 from solver.kernels.rotation import rotate
-from solver.kernels.vectors import minus, norm, vector
-from solver.measures.shortening import Vector, shorten
+from solver.kernels.vectors import Vector, minus, norm, vector
+from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
 
 SMALL_TANGENT = 0.1

@@ -9,7 +9,17 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.physics.elasticity import elasticity_of, principal
-from solver.run.recording import ADDED_MASS, BENDING, KINETIC, TORSION, TWIST, WRITHE, Columns
+from solver.run.recording import (
+    ADDED_MASS,
+    BENDING,
+    JUDGED_KAPPA,
+    JUDGED_R,
+    KINETIC,
+    TORSION,
+    TWIST,
+    WRITHE,
+    Columns,
+)
 from solver.scene.scene import Scene
 
 QUANTITIES = ("r", "kappa", "energies", "Tw_Wr")
@@ -71,7 +81,7 @@ def sizes(scene: Scene, pieces: Iterable[Columns]) -> Array:
     stiffness = float(principal(elasticity_of(scene.rod, np.array([0.5 * length])))[0, 0])
     kappa, energy = bend, 0.0
     for columns in pieces:
-        kappa = max(kappa, float(_rms(columns.along[..., 3:]).max()))
+        kappa = max(kappa, float(_rms(columns.along[..., JUDGED_KAPPA]).max()))
         energy = max(energy, float(np.sum(_energies(columns), axis=-1).max()))
     # an error of kappa by the tolerance is worth this times the tolerance, where the rod has no stress
     worth = 0.5 * stiffness * length * max(bend**2, (scene.numerics.tolerance or 0.0) * kappa**2)
@@ -81,8 +91,8 @@ def sizes(scene: Scene, pieces: Iterable[Columns]) -> Array:
 def errors_of(error: Columns, size: Array) -> Array:
     """The errors of `QUANTITIES` (frames, 4), from those of the `JUDGED` columns, relative to `sizes`."""
     topology = np.nan_to_num(error.numbers[:, 0, [TWIST, WRITHE]])  # NaN where the output has none
-    place = np.linalg.norm(error.along[..., :3], axis=-1).max(axis=-1)
-    kappa, energies = _rms(error.along[..., 3:]), _energies(error).max(axis=-1)
+    place = np.linalg.norm(error.along[..., JUDGED_R], axis=-1).max(axis=-1)
+    kappa, energies = _rms(error.along[..., JUDGED_KAPPA]), _energies(error).max(axis=-1)
     return np.asarray(np.column_stack([place, kappa, energies, topology.max(axis=-1)]) / size)
 
 

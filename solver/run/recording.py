@@ -38,6 +38,8 @@ def _number(name: str) -> int:
 R, KAPPA, ORIENTATION = column("r"), column("kappa"), column("orientation")
 JUDGED = [*range(R.start, R.stop), *range(KAPPA.start, KAPPA.stop)]
 """The components along the rod that a tolerance is for: of r, then of kappa."""
+JUDGED_R, JUDGED_KAPPA = slice(0, 3), slice(3, 6)
+"""Where they stand among these."""
 OMEGA, FORCE = column("omega"), column("f")
 TWIST, WRITHE, BALANCE = _number("Tw"), _number("Wr"), _number("energy_balance")
 CURVATURE = _number("max_curvature")

@@ -113,7 +113,7 @@ class Together:
     def errors(self) -> Array:
         """The errors of the quantities of a tolerance (frames, 4), relative; see `accuracy`."""
         size = self._sizes()
-        return np.concatenate([errors_of(self._of_frames(here, True)[1], size) for here in self._pieces()])
+        return np.concatenate([errors_of(self._of_frames(here, judged=True)[1], size) for here in self._pieces()])
 
     def excesses(self, before: Sequence[Excess]) -> list[Excess]:
         """Of each quantity the errors of the finest mesh and of its steps, over the tolerance; `before`: those before
@@ -123,8 +123,8 @@ class Together:
         size, target = self._sizes(), self._scene.numerics.tolerance or 1.0
         mesh, steps = [], []
         for here in self._pieces():
-            mesh.append(errors_of(self._of_mesh(here, True)[1], size))
-            steps.append(errors_of(self._of_steps(here, True), size))
+            mesh.append(errors_of(self._of_mesh(here, judged=True)[1], size))
+            steps.append(errors_of(self._of_steps(here, judged=True), size))
         unknown = np.full(len(QUANTITIES), np.inf)
         of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else unknown
         of_steps = excess(target, np.concatenate(steps)) if self._chosen.series else unknown
@@ -149,7 +149,7 @@ class Together:
             yield slice(i, min(i + self._many, self.frames))
 
     def _sizes(self) -> Array:
-        return sizes(self._scene, (self._columns(self._chosen.finest, here, True) for here in self._pieces()))
+        return sizes(self._scene, (self._columns(self._chosen.finest, here, judged=True) for here in self._pieces()))
 
     def _columns(self, i: int, here: slice, judged: bool) -> Columns:
         return columns_of(self._recorded[i][here], judged)

@@ -36,6 +36,13 @@ def test_a_kernel_reads_and_writes_the_arrays_that_python_has():
     assert others.tolist() == [0.0, 0.0, 2.0]
 
 
+def test_records_of_one_class_are_told_apart_by_what_they_hold():
+    whole = np.arange(6.0)
+    for values in (whole, whole[::2], np.arange(3), whole[:3]):
+        handed = Handed.over(Record(values, 2.0), np.zeros(6))
+        assert scaled(handed.reference, 2) == 2.0 * values[2]
+
+
 def test_arrays_outlive_those_who_made_them():
     def made() -> Handed:
         return Handed.over(Record(np.full(1000, 3.0), 1.0), np.zeros(1000))

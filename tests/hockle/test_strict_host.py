@@ -22,7 +22,7 @@ NOBODY = 54321
 AS_NOBODY = ["setpriv", f"--reuid={NOBODY}", f"--regid={NOBODY}", "--clear-groups", "--no-new-privs",
              "--inh-caps=+dac_read_search", "--ambient-caps=+dac_read_search",
              "--securebits=+no_setuid_fixup"]  # fmt: skip
-"""He may read where Python is installed, wherever that is, and write nowhere. (By securebits os.access knows it too.)"""
+"""He may read where Python is installed, wherever that is, and write nowhere; securebits let os.access know it."""
 READ_ONLY = ["unshare", "--mount", "sh", "-c",
              'mount --bind "$ROOM" "$ROOM" && mount -o remount,ro,bind / && cd "$ROOM" && exec "$@"', "sh"]
 SMALL = ["--set", "t_end=0.05", "--set", "output.interval=0.05", "--set", "numerics.intervals=8"]

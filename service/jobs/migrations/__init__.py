@@ -37,6 +37,6 @@ def migrate(connection: Connection, version: str = "head") -> None:
     try:
         command.upgrade(config, version)
     except CommandError as error:
-        newer = isinstance(error.__cause__, RevisionError)
-        rule = "was written by a newer hockle than this one" if newer else "cannot be made: its migrations cannot be read"
+        rule = ("was written by a newer hockle than this one" if isinstance(error.__cause__, RevisionError)
+                else "cannot be made: its migrations cannot be read")  # fmt: skip
         raise WrongSchema(f"the registry {rule}: {error}") from None

@@ -75,7 +75,7 @@ def test_a_registry_of_a_newer_version_is_refused(database, url):
 
 def test_an_installation_without_its_migrations_is_not_told_as_a_newer_registry(url, monkeypatch):
     monkeypatch.setattr("alembic.script.base.os.access", lambda *_: False)
-    with pytest.raises(WrongSchema, match="cannot be read: .*migrations"):
+    with pytest.raises(WrongSchema, match=r"cannot be read: .*migrations"):
         Database(url)
 
 

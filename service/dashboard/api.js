@@ -15,6 +15,11 @@ export class Refusal extends Error {
     this.status = status;
     this.problem = problem;
   }
+
+  /** Whether the same request may be answered a little later. */
+  get passes() {
+    return this.status >= 500 || this.status === 429;
+  }
 }
 
 /** @param {string} key */

@@ -1,6 +1,6 @@
 // @ts-check
 /** The page of a job: its state, the film and the curves of its run, its case, downloads. */
-import { follow, read, save, send } from "./api.js";
+import { follow, read, Refusal, save, send } from "./api.js";
 import { Player } from "./cable/player.js";
 import { Curves, series } from "./curves.js";
 import { brief, differences, written } from "./difference.js";
@@ -45,7 +45,10 @@ export class JobPage {
 
   /** Draw what there is of the run by now. */
   async draw() {
-    const film = this.player?.more().catch((error) => void this.film.replaceChildren(element("p", "faint", error.message)));
+    const film = this.player?.more().catch((error) => {
+      if (!(error instanceof Refusal) || error.passes) throw error;
+      this.film.replaceChildren(element("p", "faint", error.message));
+    });
     const run = await series(this.address, this.shape);
     if (run && !this.closing.signal.aborted) this.curves.draw(run);
     await film;
@@ -103,8 +106,7 @@ export class JobPage {
   /** @param {Job} job */
   more(job) {
     const shared = job.dataset ? [button("Share link", () => this.share(job))] : [];
-    return [button("Rerun with changes", () => location.assign(`#/new?from=${job.id}`)), button("Case file", () => save(`${this.address}/case`, `${job.id}.json`)), ...shared,
-      button("Copy address", () => navigator.clipboard.writeText(location.href))];
+    return [button("Rerun with changes", () => location.assign(`#/new?from=${job.id}`)), button("Case file", () => save(`${this.address}/case`, `${job.id}.json`)), ...shared];
   }
 
   /** Make a link that opens the dataset for whoever has it, for a day. @param {Job} job */

@@ -31,7 +31,6 @@ const filters = () => [...byId("filters").elements].filter((field) => field.name
 /** Leave the page that is shown, and show the one that the address names. */
 function open() {
   view?.close();
-  notice("");
   const [path, query] = location.hash.replace(/^#/, "").split("?");
   const [where, page] = PAGES.find(([one]) => one.test(path)) ?? [];
   byId("jobs").hidden = Boolean(page);
@@ -42,13 +41,18 @@ function open() {
   for (const field of filters()) field.value = chosen.get(field.name) ?? "";
   view = where && page ? page(where.exec(path)?.[1] ?? "", chosen) : new JobsTable(chosen);
   const shown = view;
-  guarded(() => shown.fill());
+  guarded(() => shown.fill(), open); // what was not filled is opened anew
 }
 
-/** Do it, tell of a fault, and look again a little later. @param {() => Promise<void>} work */
-async function guarded(work) {
+/** Look again at what is shown. */
+const look = () => guarded(async () => view?.refresh());
+
+/** Do it, tell of a fault, and look again a little later, unless it was refused for good.
+ * @param {() => Promise<void>} work @param {() => void} [after] what is done instead of a look where the work failed */
+async function guarded(work, after = look) {
   clearTimeout(timer);
   const shown = view;
+  let next = look;
   try {
     await work();
     if (shown === view) notice("");
@@ -58,10 +62,12 @@ async function guarded(work) {
     if (shown !== view) return;
     if (error instanceof Refusal && error.status === 401) return askForKey(error.message);
     notice(error instanceof Refusal ? error.message : "the server does not answer; it is asked again");
+    if (error instanceof Refusal && !error.passes) return;
     if (!(error instanceof Refusal)) tellHealth(false, "away");
+    next = after;
   }
   clearTimeout(timer);
-  if (shown === view) timer = setTimeout(() => guarded(async () => view?.refresh()), EVERY);
+  if (shown === view) timer = setTimeout(next, EVERY);
 }
 
 /** @param {string} told */
@@ -137,5 +143,8 @@ addEventListener("keydown", (event) => {
   /** @type {HTMLElement | undefined} */ (links[Math.max(at, 0)])?.focus();
 });
 
-addEventListener("hashchange", open);
+addEventListener("hashchange", () => {
+  notice("");
+  open();
+});
 open();

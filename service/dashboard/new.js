@@ -14,6 +14,7 @@ export class NewPage {
     this.closing = new AbortController();
     this.timer = 0;
     this.asked = 0;
+    this.unseen = false;
     this.start = document.createElement("select");
     this.start.name = "start";
     this.label = document.createElement("input");
@@ -57,7 +58,8 @@ export class NewPage {
   soon() {
     clearTimeout(this.timer);
     this.submit.toggleAttribute("disabled", true);
-    this.timer = setTimeout(() => this.check(), PAUSE);
+    this.unseen = true;
+    this.timer = setTimeout(() => this.check().catch(() => {}), PAUSE); // refresh() asks again, and its fault is told
   }
 
   /** Have the server look at the case, and show what it says. */
@@ -65,6 +67,7 @@ export class NewPage {
     const question = this.asked += 1;
     const { faults, verdict } = await this.ask();
     if (question !== this.asked || this.closing.signal.aborted) return; // typed on meanwhile
+    this.unseen = false;
     const warnings = verdict?.warnings ?? [];
     const lost = this.form?.tell(faults, warnings) ?? [];
     this.submit.toggleAttribute("disabled", !verdict);
@@ -93,7 +96,10 @@ export class NewPage {
     }
   }
 
-  async refresh() {}
+  /** Have the server look at what it has not seen. */
+  async refresh() {
+    if (this.unseen) await this.check();
+  }
 
   close() {
     clearTimeout(this.timer);

@@ -1,6 +1,6 @@
 // @ts-check
 /** Parts of a page, and how numbers are told. */
-import { call, save } from "./api.js";
+import { call, Refusal, save } from "./api.js";
 
 /** @typedef {import("./api.js").Job} Job */
 
@@ -15,11 +15,12 @@ export function element(name, className, ...inside) {
   return made;
 }
 
-/** A new button. @param {string} text @param {() => void} act */
+/** A new button, which tells of a fault of what it does. @param {string} text @param {() => any} act */
 export function button(text, act) {
   const made = element("button", "", text);
   made.setAttribute("type", "button");
-  made.onclick = act;
+  made.onclick = () => Promise.resolve(act()).catch((error) =>
+    notice(error instanceof Refusal ? error.message : "the server does not answer"));
   return made;
 }
 

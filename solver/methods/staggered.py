@@ -19,6 +19,7 @@ from solver.methods.space.segments import motion, stages
 from solver.methods.space.segments.balances import Driven, Motion, Tangents
 from solver.methods.space.segments.chain import Chain, Residuals, Stages, State
 from solver.methods.space.segments.energies import energies, stage_powers, twist
+from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
 from solver.methods.space.segments.motion import extrapolate, follow_segments
 from solver.methods.time.radau import tableau
@@ -109,10 +110,10 @@ class StaggeredMethod(RadauMethod):
         omega = self._R @ self.state.omega[:, :, None]
         between = 0.5 * (omega[1:-2] + omega[2:-1])
         omega_lab = np.concatenate([omega[:1], between, omega[-1:]])[:, :, 0]
-        bend, q = self._bend(self.state.quaternion)
+        kappa, q = bending_at_nodes(self.chain, *self._bend(self.state.quaternion))
         return Fields(
             v=rotate_back(orientation, self._nodes[1]), omega=rotate_back(orientation, omega_lab),
-            f=rotate_back(orientation, self.state.F), kappa=bend / self.chain.span[:, None] - self._offset, q=q,
+            f=rotate_back(orientation, self.state.F), kappa=kappa - self._offset, q=q,
             r=self._nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
 
@@ -159,11 +160,11 @@ class StaggeredMethod(RadauMethod):
         """Write places and velocities of the nodes of the state."""
         place_nodes(self.chain, self._R, self.state.omega, self.state.base, *self._centres[:2], *self._nodes)
 
-    def _bend(self, quaternion: Array) -> tuple[Array, Array]:
-        """Rotation vectors of the joints and moments q, (N + 1, 3) each."""
-        bend, q, left, right = (np.zeros((len(self.s), 3)) for _ in range(4))
-        bend_joints(self.chain, quaternion, bend, q, left, right)
-        return bend, q
+    def _bend(self, quaternion: Array) -> list[Array]:
+        """What `bend_joints` writes, (N + 1, 3) each."""
+        written = [np.zeros((len(self.s), 3)) for _ in range(4)]
+        bend_joints(self.chain, quaternion, *written)
+        return written
 
     def _end_velocities(self) -> Array:
         """V (3, 2, 3) of the first and the last node at the stages, lab."""
@@ -222,11 +223,3 @@ class StaggeredMethod(RadauMethod):
     def _drive_end(self, i: int, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
         self.driven.values[i, side], self.driven.dead[i, side] = values, dead
         self.driven.kinds[side] = end.kinds
-
-
-def orientations_at_nodes(quaternion: Array) -> Array:
-    """Orientations (N + 1, 4) at the nodes: half way between the segments, and those of the ends."""
-    left, right = quaternion[1:-2], quaternion[2:-1]
-    middle = left + np.sign(np.sum(left * right, axis=1))[:, None] * right
-    middle /= np.linalg.norm(middle, axis=1)[:, None]
-    return np.concatenate([quaternion[:1], middle, quaternion[-1:]])

@@ -73,6 +73,14 @@ def moments(elastic: Elasticity, kappa: Array) -> Array:
     return np.asarray(np.einsum("nij,nj->ni", elastic.K, kappa - elastic.kappa0))
 
 
+def strains(K: Array, q: Array) -> Array:
+    """kappa - kappa0 = K^-1 q (n, 3) of moments q (n, 3). By cofactors: LAPACK rounds as the host's CPU has it."""
+    a, b, c = K[:, 0], K[:, 1], K[:, 2]
+    cofactors = np.cross(b, c), np.cross(c, a), np.cross(a, b)
+    scaled = sum(q[:, i : i + 1] * each for i, each in enumerate(cofactors))
+    return np.asarray(scaled / np.sum(a * cofactors[0], axis=1)[:, None])
+
+
 @inner
 def moment(elastic: Elasticity, j: int, kappa: Any) -> Any:
     """q = K (kappa - kappa0)."""

@@ -13,7 +13,7 @@ from solver.measures.frame import Fields, Frame, Statistics, complete
 from solver.measures.topology import writhe_of_rod
 from solver.methods.space.segments.balances import Motion
 from solver.methods.space.segments.energies import energies_at, twist
-from solver.methods.staggered import orientations_at_nodes
+from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import LARGEST_STRAIN, axial_stiffness
 from solver.run.run import Run
@@ -126,11 +126,12 @@ class Equilibria(Run):
         """The state along the rod, at the nodes, of the point that was linearised last."""
         equations, rest = self._equations, np.zeros_like(point.F)
         stages, orientation = equations.stages, orientations_at_nodes(point.quaternion)
+        joints = stages.bend[0], stages.moment[0], stages.left[0], stages.right[0]
+        kappa, q = bending_at_nodes(equations.chain, *joints)
         tips = stages.r[0] + 0.5 * equations.chain.h * stages.R[0, 1:-1, :, 2]
         return Fields(
             v=rest, omega=rest, f=rotate_back(orientation, point.F),
-            kappa=stages.bend[0] / equations.chain.span[:, None] - equations.offset, q=stages.moment[0].copy(),
-            r=np.vstack([point.base, tips]), orientation=orientation,
+            kappa=kappa - equations.offset, q=q, r=np.vstack([point.base, tips]), orientation=orientation,
         )  # fmt: skip
 
 

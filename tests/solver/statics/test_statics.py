@@ -281,3 +281,15 @@ def test_free_spin_and_free_swing_are_neutral_and_not_unstable(weight: float, mo
     gravity = weight * EJ / LENGTH**3 / mass * down / np.linalg.norm(down)
     rest = last(static(initial=ARC, start=End.pin(), end=End.pin(), gravity=tuple(gravity)))
     assert (rest.negative_modes, rest.neutral_modes) == modes
+
+
+@pytest.mark.parametrize("clamped", ["start", "end"])
+def test_at_a_clamp_the_moment_is_the_one_that_acts_there_and_curvature_goes_with_it(clamped: str) -> None:
+    force, torque = np.array([0.3, 0.1, 0.0]) * EJ, np.array([0.0, 0.0, GJ])
+    at, ends = (LENGTH, (End.clamp(), End.free())) if clamped == "start" else (0.0, (End.free(), End.clamp()))
+    pull = PointLoad(at, *(tuple(ramp(float(value)) for value in vector) for vector in (force, torque)))
+    frame = last(static(points=(pull,), start=ends[0], end=ends[1]))
+    here, there, sign = (0, -1, 1.0) if clamped == "start" else (-1, 0, -1.0)
+    acting = sign * (torque + np.cross(frame.r[there] - frame.r[here], force))
+    assert rotate(frame.orientation[[here]], frame.q[[here]])[0] == pytest.approx(acting, abs=1e-9 * EJ)
+    assert frame.kappa[here] == pytest.approx(frame.q[here] / [EJ, EJ, GJ], abs=1e-9)

@@ -161,10 +161,10 @@ class EndsSpec(TypedDict):
     """The two ends: `start` at s = 0 and `end` at s = L."""
 
     start: Union[Literal["clamp", "pin", "slider", "free"], EndObject]
-    """at s = 0"""
+    """at s = 0: `clamp`, `pin`, `slider`, `free`, or an object with what holds"""
 
     end: Union[Literal["clamp", "pin", "slider", "free"], EndObject]
-    """at s = L"""
+    """at s = L, likewise"""
 
 
 class FloorSpec(TypedDict):
@@ -214,13 +214,13 @@ class LoadsSpec(TypedDict):
     """vector, lab; in m/s²; default [0.0, 0.0, 0.0]"""
 
     distributed: NotRequired[Sequence[DistributedSpec]]
-    """loads along the rod, each with the fields of the table below; default []"""
+    """loads along the rod: a list of objects with `force`, `moment`, `frame`, `schedule`; default []"""
 
     point: NotRequired[Sequence[PointSpec]]
-    """loads at one place, each with the fields of the second table below; default []"""
+    """loads at one place: a list of objects with `s`, `force`, `moment`, `frame`; default []"""
 
     floor: NotRequired[Union[FloorSpec, None]]
-    """an elastic floor, with the fields of the third table below"""
+    """an elastic floor"""
 
     damping: NotRequired[float]
     """c: force −c ρ_c A v and moment −c I ω per length; in 1/s; default 0.0"""
@@ -322,7 +322,7 @@ class RodSpec(TypedDict):
     """
 
     length: float
-    """L; in m"""
+    """L, along the centreline; in m"""
 
     diameter: Union[float, ProfileTable]
     """profile; what fluid and contact see; in m"""

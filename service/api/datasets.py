@@ -50,7 +50,7 @@ class DatasetFile(FileResponse):
 @router.get("/dataset", response_class=FileResponse, responses={**FILE, **NOT_MODIFIED, **problems(404, 409, 416, 503)})
 def dataset(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Response:
     """The NetCDF file, whole or by byte ranges; its ETag is its sha256. xarray opens it by this address with
-    #mode=bytes."""
+    `#mode=bytes`."""
     return whole(jobs.get(job_id), request, parts)
 
 

@@ -185,8 +185,8 @@ EndSpec = Annotated[
 class EndsSpec(Spec):
     """The two ends: `start` at s = 0 and `end` at s = L."""
 
-    start: Annotated[EndSpec, means("at s = 0")]
-    end: Annotated[EndSpec, means("at s = L")]
+    start: Annotated[EndSpec, means("at s = 0: `clamp`, `pin`, `slider`, `free`, or an object with what holds")]
+    end: Annotated[EndSpec, means("at s = L, likewise")]
 
 
 def build_end(end: PresetName | EndObject) -> End:

@@ -44,7 +44,7 @@ class RodSpec(Spec):
     A property given directly takes the place of the modulus or density that it would follow from.
     """
 
-    length: Annotated[Positive, means("L", "m")]
+    length: Annotated[Positive, means("L, along the centreline", "m")]
     diameter: Annotated[PositiveProfile, means("profile; what fluid and contact see", "m")]
     youngs_modulus: Annotated[Positive | None, means("E; this or `bending_stiffness`, not both", "Pa")] = None
     shear_modulus: Annotated[Positive | None, means("G; this or `torsional_stiffness`, not both", "Pa")] = None

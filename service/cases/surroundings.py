@@ -89,14 +89,14 @@ class LoadsSpec(Spec):
     distributed: Annotated[
         tuple[DistributedSpec, ...],
         Field(max_length=MOST_LOADS),
-        means("loads along the rod, each with the fields of the table below"),
+        means("loads along the rod: a list of objects with `force`, `moment`, `frame`, `schedule`"),
     ] = ()
     point: Annotated[
         tuple[PointSpec, ...],
         Field(max_length=MOST_LOADS),
-        means("loads at one place, each with the fields of the second table below"),
+        means("loads at one place: a list of objects with `s`, `force`, `moment`, `frame`"),
     ] = ()
-    floor: Annotated[FloorSpec | None, means("an elastic floor, with the fields of the third table below")] = None
+    floor: Annotated[FloorSpec | None, means("an elastic floor")] = None
     damping: Annotated[NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length", "1/s")] = 0.0
 
 

@@ -39,7 +39,7 @@ export class Chart {
     const seen = widened(range(this.curves.flatMap(([, , values]) => [range(values) ?? []].flat())));
     const [factor, name] = prefixed(Math.max(Math.abs(seen[0]), Math.abs(seen[1])), this.unit);
     [this.factor, this.low, this.high] = [factor, seen[0] / factor, seen[1] / factor];
-    this.heading.textContent = `${this.title} (${name})`;
+    this.heading.textContent = name ? `${this.title} (${name})` : this.title;
     this.picture.setAttribute("aria-label", `${this.title}: ${this.curves.map(([one]) => one).join(", ")} over time`);
     this.picture.replaceChildren(...this.axes(), ...this.curves.map(([, time, values], place) =>
       drawn("path", { class: `line${place}`, d: this.path(time, values) })));
@@ -59,7 +59,8 @@ export class Chart {
   }
 
   axes() {
-    const lines = ticks(this.low, this.high, 4).flatMap((value) => [
+    const whole = !this.unit; // a number of things
+    const lines = ticks(this.low, this.high, 4).filter((value) => !whole || Number.isInteger(value)).flatMap((value) => [
       drawn("line", { class: "axis", x1: LEFT, x2: WIDTH - RIGHT, y1: this.y(value), y2: this.y(value) }),
       drawn("text", { x: LEFT - 6, y: this.y(value) + 4, "text-anchor": "end" }, told(value))]);
     const times = ticks(this.from, this.to, 5).map((t) =>

@@ -9,21 +9,23 @@ import { Chart } from "./chart.js";
 const SCALARS = ["Tw", "Wr", "Lk", "energy_bending", "energy_torsion", "energy_kinetic", "energy_added_mass",
   "energy_potential", "energy_contact", "energy_balance", "dt", "newton_iterations", "max_curvature", "min_gap"];
 const TENSIONS = ["tension at start", "tension at end"];
-const MOST_FRAMES = 2000, NOISE = 1e-4;
+const MOST_FRAMES = 2000;
+/** A curve that never is this part of the largest beside it is left out; so are turns that never are this many. */
+const NOISE = 1e-4, LEAST_TURNS = 1e-3;
 
-/** The figures of a run: title, unit, curves by the name that the legend shows, and whether the values are steps.
+/** The figures of a run: title, unit ("" for numbers), curves by the name that the legend shows, and whether the values are steps.
  * @type {[string, string, Record<string, string>, boolean][]} */
 export const FIGURES = [
   ["Twist, writhe, link", "turns", { Tw: "Tw", Wr: "Wr", Lk: "Lk" }, false],
   ["Defect Tw + Wr - Lk", "turns", { defect: "defect" }, false],
   ["Energies", "J", { bending: "energy_bending", torsion: "energy_torsion", kinetic: "energy_kinetic",
-    "added mass": "energy_added_mass", potential: "energy_potential", contact: "energy_contact" }, false],
+    "added mass": "energy_added_mass", "potential, from its start": "energy_potential", contact: "energy_contact" }, false],
   ["Energy balance, 0 if exact", "J", { balance: "energy_balance" }, false],
   ["Tension at the ends", "N", { "s = 0": TENSIONS[0], "s = L": TENSIONS[1] }, false],
   ["Largest curvature", "rad/m", { curvature: "max_curvature" }, false],
   ["Smallest gap", "m", { gap: "min_gap" }, false],
   ["Step dt", "s", { dt: "dt" }, true],
-  ["Newton iterations of the step", "1", { iterations: "newton_iterations" }, true],
+  ["Newton iterations of the step", "", { iterations: "newton_iterations" }, true],
 ];
 
 /** Figures of several runs: title, unit, and the curve of each run.
@@ -42,7 +44,9 @@ export async function series(job, shape) {
     const time = coordinates.time.values;
     /** @type {Record<string, Curve>} */
     const curves = Object.fromEntries(SCALARS.map((name) => [name, variables[name].values]));
-    curves.defect = time.map((/** @type {number} */ _, /** @type {number} */ k) => defect(curves.Tw[k], curves.Wr[k], curves.Lk[k]));
+    const from = curves.energy_potential[0] ?? 0; // its zero is where the lab's is
+    curves.energy_potential = curves.energy_potential.map((value) => value === null ? null : value - from);
+    if (turns(curves) > LEAST_TURNS) curves.defect = time.map((/** @type {number} */ _, /** @type {number} */ k) => defect(curves.Tw[k], curves.Wr[k], curves.Lk[k]));
     if (shape.output.fields.includes("f")) {
       const ends = await Promise.all([`f&s_max=0`, `f&s_min=${shape.rod.length}`].map((end) => read(part + end)));
       ends.forEach((end, k) => curves[TENSIONS[k]] = end.variables.f.values.map((/** @type {any} */ at) => at[0]?.[2] ?? null));
@@ -53,6 +57,12 @@ export async function series(job, shape) {
     throw error;
   }
 }
+
+/** The most turns of twist, writhe or link. @param {Record<string, Curve>} curves */
+const turns = ({ Tw, Wr, Lk }) => Math.max(0, ...[Tw, Wr, Lk].map(largest));
+
+/** @param {Curve} values */
+const largest = (values) => values.reduce((/** @type {number} */ most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
 
 /** @param {number | null} Tw @param {number | null} Wr @param {number | null} Lk */
 const defect = (Tw, Wr, Lk) => Tw === null || Wr === null || Lk === null ? null : Tw + Wr - Lk;
@@ -70,7 +80,7 @@ export class Curves {
     for (const [title, unit, name] of COMPARED) {
       const told = Object.entries(runs).filter(([, run]) => run.curves[name]?.some((value) => value));
       if (!told.length) continue;
-      this.chart(title, unit, false).draw(Object.fromEntries(
+      this.chart(title, unit, name === "dt").draw(Object.fromEntries(
         Object.entries(runs).map(([label, run]) => [label, [run.time, run.curves[name] ?? []]])));
     }
   }
@@ -88,10 +98,10 @@ export class Curves {
   /** Draw the figures that say something of this run. @param {Series} run */
   draw(run) {
     for (const [title, unit, chosen, steps] of FIGURES) {
+      if (unit === "turns" && turns(run.curves) <= LEAST_TURNS) continue;
       const curves = Object.entries(chosen).filter(([, name]) => run.curves[name]?.some((value) => value !== null));
-      const sizes = curves.map(([, name]) => Math.max(...run.curves[name].map((value) => Math.abs(value ?? 0))));
-      const largest = Math.max(...sizes);
-      const shown = curves.filter((_, k) => curves.length === 1 || sizes[k] > NOISE * largest || unit === "turns");
+      const sizes = curves.map(([, name]) => largest(run.curves[name]));
+      const shown = curves.filter((_, k) => curves.length === 1 || sizes[k] > NOISE * Math.max(...sizes) || unit === "turns");
       if (!shown.length) continue;
       this.chart(title, unit, steps).draw(Object.fromEntries(shown.map(([name, from]) => [name, [run.time, run.curves[from]]])));
     }

@@ -5,12 +5,17 @@ import { choice, labelled } from "./cable/player.js";
 import { progress } from "./ensembles.js";
 import { ask, button, byId, element, notice } from "./page.js";
 import { told } from "./scale.js";
-import { parallel, scatter } from "./scatter.js";
+import { headed, parallel, scatter } from "./scatter.js";
 import { table } from "./table.js";
 
-/** What may be asked of a run's end. */
-const SCALARS = ["max_curvature", "energy_bending", "energy_torsion", "energy_kinetic", "Tw", "Wr", "Lk", "min_gap", "contacts"];
+/** What may be asked of a run's end, with its unit. */
+const UNITS = /** @type {Record<string, string>} */ ({ max_curvature: "rad/m", energy_bending: "J", energy_torsion: "J", energy_kinetic: "J",
+  Tw: "turns", Wr: "turns", Lk: "turns", min_gap: "m", contacts: "" });
+const SCALARS = Object.keys(UNITS);
 const FIRST = 2;
+
+/** A value as it is told in a table. @param {any} value */
+const short = (value) => typeof value === "number" ? told(value) : JSON.stringify(value);
 
 export class EnsemblePage {
   /** @param {string} id */
@@ -68,7 +73,13 @@ export class EnsemblePage {
   draw(parameters) {
     const { found = [] } = this, [across, up] = [this.across?.value ?? "", this.up?.value ?? ""];
     const columns = [...parameters, ...[...new Set([across, up])].filter((name) => !parameters.includes(name))];
-    this.pictures.replaceChildren(scatter(across, up, found), parallel(columns, found));
+    const told = columns.map((name) => this.column(name));
+    this.pictures.replaceChildren(scatter(this.column(across), this.column(up), found), parallel(told, found));
+  }
+
+  /** @param {string} name @returns {import("./scatter.js").Column} */
+  column(name) {
+    return { name, unit: UNITS[name] ?? "", log: this.one.design?.parameters?.[name]?.scale === "log" };
   }
 
   /** @param {string[]} parameters @param {string[]} scalars @param {any[]} members */
@@ -77,10 +88,10 @@ export class EnsemblePage {
       const link = /** @type {HTMLAnchorElement} */ (element("a", "", String(member.number)));
       link.href = `#/jobs/${member.job}`;
       const values = scalars.map((name) => member.values[name] === null ? "" : told(member.values[name]));
-      return [link, ...parameters.map((name) => JSON.stringify(member.parameters[name])), element("span", `status ${member.status}`,
+      return [link, ...parameters.map((name) => short(member.parameters[name])), element("span", `status ${member.status}`,
         member.status), member.outcome, ...values];
     });
-    this.members.replaceChildren(element("h2", "", "Members"), table(["Member", ...parameters, "Status", "Outcome", ...scalars], rows));
+    this.members.replaceChildren(element("h2", "", "Members"), table(["Member", ...parameters, "Status", "Outcome", ...scalars.map((name) => headed(this.column(name)))], rows));
   }
 
   async cancel() {

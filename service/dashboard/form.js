@@ -29,27 +29,21 @@ export class Form {
     this.whole.set(value);
   }
 
-  /** Show faults and warnings at their fields; gives those that have none.
-   * @param {Fault[]} faults @param {Fault[]} warnings */
+  /** Show faults and warnings at their fields. @param {Fault[]} faults @param {Fault[]} warnings */
   tell(faults, warnings) {
     for (const [, { control, told }] of this.fields) {
       told.replaceChildren();
       control.removeAttribute("aria-invalid");
     }
-    const lost = [];
     for (const [kind, list] of /** @type {[string, Fault[]][]} */ ([["fault", faults], ["warning", warnings]])) {
       for (const one of list) {
         const field = this.field(one.pointer);
-        if (!field) {
-          lost.push(one);
-          continue;
-        }
+        if (!field) continue;
         field.told.append(element("p", kind, one.rule));
         if (kind === "fault") field.control.setAttribute("aria-invalid", "true");
         field.control.closest("details")?.setAttribute("open", "");
       }
     }
-    return lost;
   }
 
   /** The field that a pointer leads to, or into. @param {string} pointer */

@@ -167,7 +167,7 @@ export class JobsTable {
     const ended = job.outcome || job.message;
     const progress = element("td", "", ...(job.status === "running" ? [bar(job)] : []), element("small", "", standing(job)));
     if (ended && !isOpen(job)) progress.append(element("small", "", job.message || job.outcome));
-    const row = element("tr", "", element("td", "choose", chosen), what, state, progress, element("td", "", new Date(job.created).toLocaleString()),
+    const row = element("tr", "", element("td", "choose", chosen), what, state, progress, element("td", "when", new Date(job.created).toLocaleString()),
       element("td", "", job.owner), element("td", "row", ...actions(job, (deleted) => deleted ? this.remove(job.id) : this.refresh())));
     row.id = job.id;
     row.append(...this.columns.cells(job.id));

@@ -6,6 +6,8 @@ import { Form } from "./form.js";
 import { button, byId, clock, element, notice } from "./page.js";
 
 const PAUSE = 300; // ms without a key
+const FILLING = "Values are in SI units. A vector is [x, y, z]. A profile (a function of s) or a schedule (of t) is a number or a table: " +
+  '{"s": [0, 0.5, 1], "value": [1, 2, 1], "interpolation": "linear"}, with t for s where it is a schedule.';
 
 export class NewPage {
   /** @param {URLSearchParams} chosen `case`: a shipped one, or `from`: the id of a job to start from */
@@ -50,7 +52,7 @@ export class NewPage {
     }
     this.submit.setAttribute("id", "submit");
     this.side.append(this.verdict, element("label", "", "Label ", this.label), this.submit);
-    byId("page").replaceChildren(element("h2", "", "New case"), element("label", "", "Start from ", this.start),
+    byId("page").replaceChildren(element("h2", "", "New case"), element("label", "", "Start from ", this.start), element("p", "faint", FILLING),
       element("div", "columns", /** @type {Form} */ (this.form).place, this.side));
   }
 
@@ -69,11 +71,16 @@ export class NewPage {
     if (question !== this.asked || this.closing.signal.aborted) return; // typed on meanwhile
     this.unseen = false;
     const warnings = verdict?.warnings ?? [];
-    const lost = this.form?.tell(faults, warnings) ?? [];
+    this.form?.tell(faults, warnings);
     this.submit.toggleAttribute("disabled", !verdict);
-    this.verdict.replaceChildren(element("p", verdict ? "cost" : "fault", verdict ? cost(verdict.cost)
-      : faults.length === 1 ? "a field is refused" : `${faults.length} fields are refused`), ...lost.map(({ pointer, rule }) => element("p", "fault", `${pointer} ${rule}`)));
+    this.verdict.replaceChildren(...(verdict ? [element("p", "cost", cost(verdict.cost))] : faults.map((one) => this.refused(one))));
     if (verdict) this.preview?.show(verdict.case);
+  }
+
+  /** What is refused and why; the name leads to the field. @param {import("./form.js").Fault} fault */
+  refused({ pointer, rule }) {
+    const name = pointer.slice(1).replaceAll("/", "."), field = this.form?.field(pointer);
+    return element("p", "fault", field ? button(name, () => field.control.focus()) : name, ` ${rule}`);
   }
 
   /** @returns {Promise<{faults: import("./form.js").Fault[], verdict: any}>} */

@@ -29,6 +29,7 @@ export const isOpen = (job) => job.status === "accepted" || job.status === "runn
 
 /** @param {number} seconds */
 export function clock(seconds) {
+  if (seconds < 9.95) return `${Number(seconds.toFixed(1))} s`;
   const whole = Math.round(seconds);
   if (whole < 60) return `${whole} s`;
   return whole < 3600 ? `${Math.floor(whole / 60)} min ${whole % 60} s` : `${(whole / 3600).toFixed(1)} h`;

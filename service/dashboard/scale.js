@@ -44,5 +44,5 @@ export function prefixed(largest, unit) {
 /** A number for people: so many digits that count. @param {number} value @param {number} [digits] */
 export function told(value, digits = 4) {
   const short = Number(value.toPrecision(digits));
-  return Math.abs(short) >= 1e6 ? short.toExponential() : String(short);
+  return Math.abs(short) >= 1e6 || (short && Math.abs(short) < 1e-4) ? short.toExponential().replace("e+", "e") : String(short);
 }

@@ -5,6 +5,7 @@ import { add, cross, dot, size, times, unit } from "./vectors.js";
 /** @typedef {import("./vectors.js").Vector} Vector */
 const HALF_HEIGHT = Math.tan(14 * Math.PI / 180);
 const YAW = 0.5, PITCH = 0.3;
+const ROOM = 1.08, CLOSER = 4; // around what is fitted; and how often the eye is put in front of its middle
 
 export class Camera {
   /** @param {Vector} up the vertical @param {Vector} right what lies to the right in the first view, normal to it */
@@ -44,13 +45,26 @@ export class Camera {
   /** Bring a box into the picture. @param {[Vector, Vector]} box @param {number} aspect width by height */
   fit([low, high], aspect) {
     this.target = times(add(low, high), 0.5);
-    const [right, up, towards] = this.axes();
-    this.distance = size(add(high, low, -1)) * 0.05 + 1e-9;
-    for (let corner = 0; corner < 8; corner += 1) {
-      const at = [0, 1, 2].map((i) => (corner >> i & 1 ? high[i] : low[i]) - this.target[i]);
-      const wide = Math.abs(dot(at, right)) / (HALF_HEIGHT * aspect), tall = Math.abs(dot(at, up)) / HALF_HEIGHT;
-      this.distance = Math.max(this.distance, 1.08 * Math.max(wide, tall) + dot(at, towards));
+    const corners = Array.from({ length: 8 }, (_, corner) => [0, 1, 2].map((i) => corner >> i & 1 ? high[i] : low[i]));
+    this.distance = this.distanceTo(corners, aspect);
+    for (let k = 0; k < CLOSER; k += 1) {
+      const [right, up, towards] = this.axes();
+      for (const axis of [right, up]) { // what is near looks larger, so the middle of the box is not that of the picture
+        const seen = corners.map((at) => dot(add(at, this.target, -1), axis) / (this.distance - dot(add(at, this.target, -1), towards)));
+        this.target = add(this.target, axis, (Math.min(...seen) + Math.max(...seen)) / 2 * this.distance);
+      }
+      this.distance = this.distanceTo(corners, aspect);
     }
+  }
+
+  /** How far from the target the eye sees all these points. @param {Vector[]} corners @param {number} aspect */
+  distanceTo(corners, aspect) {
+    const [right, up, towards] = this.axes();
+    return Math.max(1e-9, ...corners.map((corner) => {
+      const at = add(corner, this.target, -1);
+      const wide = Math.abs(dot(at, right)) / (HALF_HEIGHT * aspect), tall = Math.abs(dot(at, up)) / HALF_HEIGHT;
+      return ROOM * Math.max(wide, tall) + dot(at, towards);
+    }));
   }
 
   /** Move the target by parts of the picture's height. @param {number} x @param {number} y */

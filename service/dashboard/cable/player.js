@@ -26,7 +26,7 @@ export class Player {
       tell(t);
     });
     this.legend = element("span", "scale");
-    this.place = element("section", "player", this.stage.canvas, this.clock.place, this.controls());
+    this.place = element("section", "player", this.stage.canvas, this.stage.legend, this.clock.place, this.controls());
     this.place.hidden = true;
     this.place.setAttribute("aria-label", "The cable in three dimensions");
     this.stage.canvas.addEventListener("keydown", (event) => this.clock.key(event));

@@ -17,7 +17,7 @@ export class Preview {
   constructor() {
     this.stage = new Stage("preview of the rod at the start, with its ends and loads");
     this.caption = element("p", "faint");
-    this.place = element("div", "preview", this.stage.canvas, this.caption);
+    this.place = element("div", "preview", this.stage.canvas, this.stage.legend, this.caption);
   }
 
   /** Show a case as the server understood it. @param {any} shape */

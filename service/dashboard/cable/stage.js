@@ -19,6 +19,8 @@ export class Stage {
     this.canvas.tabIndex = 0;
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", label);
+    /** What is drawn around the rods. */
+    this.legend = element("div", "key");
     this.picture = new Picture(this.canvas);
     this.camera = new Camera([0, 0, 1], [1, 0, 0]);
     /** What is drawn at each frame. @type {() => {rods: Rod[], lines: number[], points: number[]}} */
@@ -38,6 +40,7 @@ export class Stage {
     this.camera = new Camera(up, right);
     this.surroundings = new Surroundings(shape, box, up);
     this.box = box;
+    this.legend.replaceChildren(...this.surroundings.told.map(([text, colour]) => element("span", colour && `key-${colour}`, text)));
     this.fit();
   }
 

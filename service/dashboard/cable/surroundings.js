@@ -1,7 +1,7 @@
 // @ts-check
 /** What is around a rod in its picture: the ground with its shadow, a floor, weight, current, the lab axes, contacts. */
 import { NODE } from "./film.js";
-import { ticks } from "../scale.js";
+import { ticks, told } from "../scale.js";
 import { across, add, dot, size, times, unit } from "./vectors.js";
 
 /** @typedef {import("./vectors.js").Vector} Vector */
@@ -64,6 +64,14 @@ export class Surroundings {
     this.step = ticks(0, extent, 8)[1];
     this.ground(floor ? FLOOR : GRID, low, high);
     this.arrows(low);
+  }
+
+  /** What is drawn around the rod, in words, each with the class of its colour. @returns {[string, string][]} */
+  get told() {
+    const { loads, fluid } = this.shape;
+    return [[`squares of ${told(this.step)} m`, ""], ["e1", "e1"], ["e2", "e2"], ["e3", "e3"],
+      ...(loads?.floor ? [["floor", "floor"]] : []), ...(size(loads?.gravity ?? [0, 0, 0]) > 0 ? [["weight", "weight"]] : []),
+      ...(size(fluid?.current ?? [0, 0, 0]) > 0 ? [["current", "current"]] : [])];
   }
 
   /** @param {Vector} at */

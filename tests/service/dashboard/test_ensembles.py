@@ -72,12 +72,26 @@ def test_any_scalar_is_drawn_against_any_parameter(server, ensemble, page):
     page.wait_for_selector("#page circle")
     page.select_option("[name=across]", "damping")
     page.select_option("[name=up]", "energy_bending")
-    assert page.locator("#page figcaption").first.inner_text() == "energy_bending over damping"
+    assert page.locator("#page figcaption").first.inner_text() == "energy_bending (J) over damping"
     places = {circle.get_attribute("cx") for circle in page.locator("#page circle").all()}
     heights = {circle.get_attribute("cy") for circle in page.locator("#page circle").all()}
     assert len(places) == len(DAMPINGS) and len(heights) > len(DENSITIES) - 1
     axes = page.locator("#page figure").nth(1).locator(".name").all_text_contents()
-    assert axes == ["density", "damping", "energy_bending"]
+    assert axes == ["density", "damping", "energy_bending (J)"]
+
+
+def test_what_was_sampled_by_its_logarithm_is_drawn_so(server, registry, settings, page):
+    body = {"case": "cantilever-vibration", "set": {"t_end": 0.2, "numerics.intervals": 10, "output.interval": 0.1},
+            "parameters": {"stiffness": {"path": "rod.youngs_modulus", "values": [1e7, 1e8, 1e9]}}}
+    one = httpx.post(f"{server.address}/v1/ensembles", json=body).json()["id"]
+    while run_next(registry.database, settings):
+        pass
+    page.goto(f"{server.address}/#/ensembles/{one}")
+    page.wait_for_selector("#page circle")
+    first, second, third = sorted(float(point.get_attribute("cx")) for point in page.locator("#page circle").all())
+    assert second - first == pytest.approx(third - second)  # 1e7, 1e8 and 1e9
+    assert page.locator("#page td[data-head=stiffness]").all_inner_texts() == ["1e7", "1e8", "1e9"]
+    assert page.inner_text("#page figcaption >> nth=0") == "max_curvature (rad/m) over stiffness"
 
 
 def test_members_that_wait_are_cancelled_after_a_question(server, page):

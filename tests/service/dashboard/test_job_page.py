@@ -17,14 +17,23 @@ def legend(page, title):
 
 
 def test_the_curves_of_a_run_are_drawn_with_their_last_values(server, run, page):
-    shown(page, server, run("cantilever-vibration", **QUICK))
+    shown(page, server, run("goyal-2003", **QUICK))
+    page.wait_for_selector("#page .chart")
+    titles = [one.partition(" (")[0] for one in page.locator("#page figcaption").all_inner_texts()]
+    assert titles == ["Twist, writhe, link", "Defect Tw + Wr - Lk", "Energies", "Energy balance, 0 if exact",
+                      "Tension at the ends", "Largest curvature", "Step dt", "Newton iterations of the step"]
+    assert "torsion" in legend(page, "Energies") and "potential" not in legend(page, "Energies")  # it has no weight
+    assert "s = 0" in legend(page, "Tension") and "s = L" not in legend(page, "Tension")  # that end slides freely
+
+
+def test_what_is_noise_is_not_drawn_and_potential_energy_counts_from_the_start(server, run, page):
+    shown(page, server, run("hanging-cable", **QUICK))
     page.wait_for_selector("#page .chart")
     titles = page.locator("#page figcaption").all_inner_texts()
-    for title in ("Twist, writhe, link", "Defect Tw + Wr - Lk", "Energies", "Energy balance", "Tension at the ends",
-                  "Step dt", "Newton iterations"):
-        assert any(one.startswith(title) for one in titles), title
+    assert not [one for one in titles if "turns" in one]  # it lies in a plane
+    assert "Energies (mJ)" in titles  # but from the lab's zero its potential energy is -50 J
+    assert "potential, from its start" in legend(page, "Energies")
     assert "s = 0" in legend(page, "Tension") and "s = L" in legend(page, "Tension")
-    assert "bending" in legend(page, "Energies") and "torsion" not in legend(page, "Energies")  # it is noise here
 
 
 def test_a_running_job_is_drawn_as_its_frames_come(server, add, page):

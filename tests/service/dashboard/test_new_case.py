@@ -42,6 +42,17 @@ def test_the_server_s_messages_stand_at_their_fields_as_one_types(form, page):
     assert page.is_enabled("#submit")
 
 
+def test_what_is_refused_is_named_beside_the_submission_and_its_name_leads_to_the_field(form, page):
+    form("case=elastica")
+    page.fill("#case-rod-length", "-1")
+    page.fill("#case-output-interval", "0")
+    page.wait_for_function("() => document.querySelectorAll('.verdict .fault').length === 2")
+    told = page.locator(".verdict .fault").all_inner_texts()
+    assert told == ["rod.length must be > 0", "output.interval must be > 0"]
+    page.click(".verdict .fault button >> nth=1")
+    assert page.evaluate("document.activeElement.id") == "case-output-interval"
+
+
 def test_likely_slips_are_told_and_do_not_hinder(form, page):
     form("case=hanging-cable")
     page.fill("#case-loads-gravity", "[0, 0, 9.81]")

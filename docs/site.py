@@ -47,6 +47,12 @@ def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
     return LINK.sub(lambda match: _link(match, place.parent), text)
 
 
+def on_post_page(output: str, **_: Any) -> str:
+    """What the theme leaves without a name."""
+    dialog = 'data-md-component="search" role="dialog"'
+    return output.replace(dialog, f'{dialog} aria-label="Search"')
+
+
 def decisions() -> str:
     """Each decision by its title."""
     lines = [f"- [{path.read_text().splitlines()[0].lstrip('# ')}](decisions/{path.name})"

@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
+from benchmarks.dashboard.accessibility import SCHEMES, axe
+from benchmarks.dashboard.browser import CHROMIUM, browsing, serving
 from service.api import documentation
 from service.api.app import create_app
 from service.settings import Settings
@@ -43,6 +45,21 @@ def test_it_asks_nothing_of_others(site):
     assert [path for path, text in pages.items() if LOADED.search(text)] == []
     styles = {path: path.read_text(encoding="utf-8") for path in site.rglob("*.css")}
     assert styles and [path for path, text in styles.items() if FETCHED.search(text)] == []
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium: apt-get install chromium")
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_axe_finds_nothing_on_any_page(site, tmp_path, monkeypatch, scheme):
+    pytest.importorskip("playwright.sync_api", reason="Playwright's Python package is not installed")
+    monkeypatch.setattr(documentation, "SITE", site)
+    found = {}
+    with serving(Settings(tmp_path)) as server, browsing() as opened:
+        page = opened()
+        page.emulate_media(color_scheme=scheme)
+        for path in sorted(site.rglob("index.html")):
+            page.goto(f"{server.address}/docs/{path.parent.relative_to(site).as_posix()}/".replace("/./", "/"))
+            found[path] = axe(page, contrast=path.parent.name != "http").violations
+    assert len(found) > 30 and {path: told for path, told in found.items() if told} == {}
 
 
 def test_formulas_need_no_program(site):

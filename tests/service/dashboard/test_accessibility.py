@@ -5,6 +5,8 @@ from __future__ import annotations
 import httpx
 import pytest
 
+from benchmarks.dashboard.accessibility import axe
+
 QUICK = {"t_end": 1.0, "output__interval": 0.25, "numerics__intervals": 20}
 PAGES = {"jobs": "#jobs tbody tr", "job": "#page .chart", "compare": "#page .chart",
          "new": ".verdict .cost", "ensembles": "#page tbody tr", "ensemble": "#page circle"}
@@ -21,27 +23,19 @@ def addresses(server, run) -> dict[str, str]:
     return {name: f"{server.address}/#/{path}" for name, path in paths.items()}
 
 
-def violations(page) -> list[str]:
-    """What axe finds, with the element."""
-    from axe_playwright_python.sync_playwright import Axe
-
-    found = Axe().run(page).response["violations"]
-    return [f"{rule['id']}: {node['target']}" for rule in found for node in rule["nodes"]]
-
-
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_axe_finds_nothing_on_any_page(addresses, page, scheme):
     page.emulate_media(color_scheme=scheme)
     for name, address in addresses.items():
         page.goto(address)
         page.wait_for_selector(PAGES[name], state="attached")
-        assert violations(page) == [], name
+        assert axe(page).violations == [], name
 
 
 def test_axe_finds_nothing_on_the_login_page(keyed_server, page):
     page.goto(keyed_server.address)
     page.wait_for_selector("#login:not([hidden])")
-    assert violations(page) == []
+    assert axe(page).violations == []
 
 
 def test_no_page_is_wider_than_a_phone(addresses, page):

@@ -1,0 +1,50 @@
+"""What axe's rules find on pages, in light and in dark."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from service.api.documentation import SITE
+
+SCHEMES = ("light", "dark")
+
+
+@dataclass(frozen=True)
+class Found:
+    """How many rules held, and which did not, each with its element."""
+
+    held: int
+    violations: list[str]
+
+
+def axe(page: Any, contrast: bool = True) -> Found:
+    """Of the page as it is shown; without the rule of contrast, which takes minutes on a very long one, if so told."""
+    from axe_playwright_python.sync_playwright import Axe
+
+    told = Axe().run(page, options={"rules": {"color-contrast": {"enabled": contrast}}}).response
+    broken = [f"{rule['id']}: {node['target']}" for rule in told["violations"] for node in rule["nodes"]]
+    return Found(len(told["passes"]), broken)
+
+
+def documentation() -> list[str]:
+    """The addresses of the pages of the site that has been built."""
+    folders = sorted(path.parent.relative_to(SITE).as_posix() for path in SITE.rglob("index.html"))
+    return ["/docs/" if name == "." else f"/docs/{name}/" for name in folders]
+
+
+def rows(page: Any, address: str, ready: Mapping[str, str]) -> list[str]:
+    """A row of a table for each page of `ready`, which names what is on it when it is filled."""
+    made = []
+    for path, there in ready.items():
+        found = []
+        for scheme in SCHEMES:
+            page.emulate_media(color_scheme=scheme)
+            page.goto(address + path)
+            page.wait_for_selector(there, state="attached")
+            found.append(axe(page))
+        shown = path.split("?")[0].split("/01")[0]
+        made.append(f"| `{shown}` | {found[0].held} | " + " | ".join(str(len(one.violations)) for one in found) + " |")
+    page.emulate_media(color_scheme="light")
+    return made

@@ -43,7 +43,7 @@ rehearse: .venv/.deploy  ## the image built, docker-compose.yml with two workers
 	$(BIN)/python -m pytest tests/deploy
 	$(BIN)/python -m deploy.rehearse
 
-attack: .venv/.dev  ## what strangers would try, on loopback: slow connections, odd requests, odd texts, stopped processes (two hours)
+attack: .venv/.dev  ## what strangers would try, on loopback: slow connections, odd requests, odd texts, stopped processes (over an hour)
 	$(BIN)/python -m chaos.attack
 
 fuzz: .venv/.dev  ## schemathesis with all checks for long, and 10,000 malformed cases

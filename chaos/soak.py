@@ -1,6 +1,7 @@
 """`python -m chaos.soak`: an hour of mixed load with faults on one service; whether anything grows, leaks or is stuck.
 
 Only processes that run jobs are killed here: the others must live through it all, for their memory to show something.
+Ended early, by Ctrl-C or SIGTERM, it judges the time it had.
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ import argparse
 import itertools
 import os
 import random
+import signal
 import sys
 import tempfile
 import threading
@@ -66,6 +68,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     told = parser.parse_args()
     os.environ |= ENVIRONMENT
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with tempfile.TemporaryDirectory(prefix="hockle-soak-", ignore_cleanup_errors=True) as directory:
         settings = Settings(data=Path(directory) / "data", lease=LEASE, checkpoint=CHECKPOINT, keep_bytes=KEEP,
                             log_bytes=LOG)  # fmt: skip
@@ -75,9 +78,11 @@ def main() -> int:
         submitter = Submitter(served, record, known)
         target = Target(served, database, random.Random(told.seed), None, False, submitter.submit)  # no secret
         served.start()
+        began = time.monotonic()
         try:
             with watch.looking():
                 growth = _soak(target, record, 60.0 * told.minutes)
+                minutes = (time.monotonic() - began) / 60.0
                 record.all_ended = come_to_an_end(target)
                 wait_for(lambda: not _left(settings))
                 left = _left(settings)
@@ -86,7 +91,7 @@ def main() -> int:
             database.close()
         verdict = judge(record, watch, settings, {name: undisturbed(case) for name, case in known.items()})
     good = verdict.good and growth.flat and record.all_ended and not left
-    made_with = [*provenance(), f"seed {told.seed}, {told.minutes:g} min"]
+    made_with = [*provenance(), f"seed {told.seed}, {minutes:.0f} min"]
     text = "\n".join(["# Soak", "", *(f"- {line}" for line in made_with), "", _told(record, verdict, growth, left), "",
                       *growth.lines(), "", "good" if good else "BAD", ""])  # fmt: skip
     print(text)
@@ -131,6 +136,8 @@ def _soak(target: Target, record: Record, seconds: float) -> Growth:
                 record.faults[fault.__name__] += fault(target)
             time.sleep(target.random.expovariate(1 / BETWEEN))
         growth.sample()
+    except KeyboardInterrupt:
+        print("ended early", flush=True)
     finally:
         stopped.set()
         for thread in (*others, *target.later):

@@ -67,6 +67,7 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
     told = parser.parse_args()
+    code = provenance()
     os.environ |= ENVIRONMENT
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with tempfile.TemporaryDirectory(prefix="hockle-soak-", ignore_cleanup_errors=True) as directory:
@@ -91,7 +92,7 @@ def main() -> int:
             database.close()
         verdict = judge(record, watch, settings, {name: undisturbed(case) for name, case in known.items()})
     good = verdict.good and growth.flat and record.all_ended and not left
-    made_with = [*provenance(), f"seed {told.seed}, {minutes:.0f} min"]
+    made_with = [*code, f"seed {told.seed}, {minutes:.0f} min"]
     text = "\n".join(["# Soak", "", *(f"- {line}" for line in made_with), "", _told(record, verdict, growth, left), "",
                       *growth.lines(), "", "good" if good else "BAD", ""])  # fmt: skip
     print(text)

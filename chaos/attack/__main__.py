@@ -25,6 +25,7 @@ from chaos.served import Served
 from hockle.supervisor import ENVIRONMENT, stop_on_signals
 from service.cases import apply_settings, load_case
 from service.settings import Settings
+from validation.provenance import provenance
 
 SMALL = {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8}
 
@@ -43,6 +44,7 @@ def main() -> int:
     command = f"seed {told.seed}: `python -m chaos.attack " + " ".join(
         f"--{name} {value:g}" for name, value in vars(told).items()) + "`"  # fmt: skip
     print(command, flush=True)
+    made_with = [*provenance(), command]
     rows: list[Row] = []
     with serving() as (port, job_id):
         rows += slowloris(port, job_id, told.slow, told.clients, 30.0)
@@ -51,8 +53,8 @@ def main() -> int:
         tried = beside.submit(patient_parsers, told.seed, told.seconds)
         rows += disturbed(told.seed, told.jobs)
         rows += tried.result()
-    print(text([command], rows))
-    keep([command], rows)
+    print(text(made_with, rows))
+    keep(made_with, rows)
     return 0 if all(row.good for row in rows) else 1
 
 

@@ -25,6 +25,10 @@ def _posted(body: bytes) -> bytes:
     return told.encode() + b"\r\n\r\n" + body
 
 
+def _chunked(rest: bytes) -> bytes:
+    return _posted(b"").replace(b"Content-Length: 0", b"Transfer-Encoding: chunked") + rest
+
+
 def _doubled(many: int) -> bytes:
     keys = [f'"{number:x}":0' for number in range(many)]
     return ("{" + ",".join([*keys, keys[-1]]) + "}").encode()
@@ -38,6 +42,10 @@ ODD: dict[str, tuple[bytes, tuple[int, ...]]] = {
     "no Host header": (b"GET /v1/jobs HTTP/1.1\r\n\r\n", (400, 421)),
     "two lengths of a body": (_posted(b"{}").replace(b"\r\n\r\n", b"\r\nContent-Length: 7\r\n\r\n", 1), (400,)),
     "a length and chunks": (_posted(b"{}").replace(b"\r\n\r\n", b"\r\nTransfer-Encoding: chunked\r\n\r\n", 1), (400,)),
+    "a trailer of 100 MB": (_chunked(b"0\r\nX-Large: " + b"x" * (100 * MB)), (431,)),
+    "a trailer of 1,000,000 lines": (_chunked(b"0\r\n" + b"X: y\r\n" * MB), (431,)),
+    "a chunk with a head of 100 MB": (_chunked(b"2;" + b"x" * (100 * MB)), (431,)),
+    "100,000 requests on one connection, no answer awaited": ((HEAD + b"\r\n") * 100_000, (200,)),
     "no HTTP at all": (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" * 50, (400,)),
     "a body of 830 kB with its last key doubled": (_posted(_doubled(80_000)), (400,)),
     "a body nested 100,000 deep": (_posted(b"[" * 100_000), (400,)),

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from validation.provenance import provenance
-
 RESULT = Path(__file__).parents[1] / "results" / "attack.md"
 
 
@@ -23,7 +21,7 @@ class Row:
 
 def text(told: Sequence[str], rows: Sequence[Row]) -> str:
     """The table, in Markdown, with what it was made with."""
-    lines = ["# Attacks", "", *(f"- {line}" for line in (*provenance(), *told)), "",
+    lines = ["# Attacks", "", *(f"- {line}" for line in told), "",
              "| attack | seen | must be |  |", "| :--- | :--- | :--- | :--- |"]
     lines += [f"| {row.what} | {row.seen} | {row.must} | {'good' if row.good else 'BAD'} |" for row in rows]
     return "\n".join([*lines, ""])

@@ -1,7 +1,9 @@
-"""What a client may do to a connection before its request is whole: so long, so many bytes, so many connections.
+"""What a client may do to a connection: so long for a request to be whole and for its answer to be read, so many bytes
+beside bodies, so many requests that wait, so many connections.
 
 Uvicorn bounds none of these with httptools, its faster parser: a half-sent request is kept for ever, with as many bytes
-of headers as come. So its protocol is given deadlines and bounds here; the parsing stays uvicorn's.
+of headers as come, and so is an answer that nobody reads. So its protocol is given deadlines and bounds here; the
+parsing stays uvicorn's.
 """
 
 from __future__ import annotations
@@ -22,24 +24,28 @@ MOST_CONNECTIONS = 8192
 
 @dataclass(frozen=True)
 class Bounds:
-    """Seconds within which a request's head and its body must be here, bytes and number of its headers, and connections
-    in all and from one address."""
+    """Seconds within which a request's head and its body must be here, and within which some of an answer must be read;
+    bytes and number of its headers; requests of a connection that wait for the answer to the one before; and
+    connections in all and from one address."""
 
     head_within: float = 10.0
     body_within: float = 60.0
+    read_within: float = 60.0
     header_bytes: int = 65_536
     headers: int = 100
+    waiting: int = 16
     connections: int = MOST_CONNECTIONS
     per_address: int = MOST_CONNECTIONS // 2
 
 
 def bounds_here() -> Bounds:
-    """The bounds by the descriptors that this process may have, of which it takes as many as are useful."""
+    """The bounds by the descriptors that this process may have, of which it takes as many as are useful: two for each
+    connection, whose answer may be a file."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = MOST_CONNECTIONS + KEPT_BACK
+    wanted = 2 * MOST_CONNECTIONS + KEPT_BACK
     soft = max(soft, wanted if hard == resource.RLIM_INFINITY else min(hard, wanted))
     resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
-    connections = max(min(soft - KEPT_BACK, MOST_CONNECTIONS), soft // 4)
+    connections = max(min((soft - KEPT_BACK) // 2, MOST_CONNECTIONS), soft // 4)
     return Bounds(connections=connections, per_address=max(connections // 2, 1))
 
 
@@ -55,10 +61,12 @@ class _Bounded(HttpToolsProtocol):
     def __init__(self, *parameters: Any, **named: Any) -> None:
         super().__init__(*parameters, **named)
         self._deadline: asyncio.TimerHandle | None = None
+        self._reader: asyncio.TimerHandle | None = None
         self._address = ""
         self._refused = False
-        self._head = 0
-        """Bytes of the head that is being read; -1 while none is."""
+        self._in_head = True
+        self._beside = 0
+        """Bytes since a request, or a part of its body, began: of a head, of a chunk's head, of a trailer."""
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Let a connection in, or close it."""
@@ -70,6 +78,7 @@ class _Bounded(HttpToolsProtocol):
             self._refused = True
             transport.abort()
             return
+        transport.set_write_buffer_limits(0)  # be told of whatever is not read at once
         super().connection_made(transport)
         self._by(self.bounds.head_within)
 
@@ -79,6 +88,8 @@ class _Bounded(HttpToolsProtocol):
         if not self.addresses[self._address]:
             del self.addresses[self._address]
         self._by(None)
+        if self._reader is not None:
+            self._reader.cancel()
         if self.transport is not None:  # it was let in
             super().connection_lost(exc)
 
@@ -86,39 +97,77 @@ class _Bounded(HttpToolsProtocol):
         """Read on, as far as the bounds let it."""
         if self._refused:
             return
-        if self._head >= 0:
-            self._head += len(data)
+        self._beside += len(data)
+        if self._deadline is None and (self.cycle is None or self.cycle.response_complete):
+            self._by(self.bounds.head_within)  # else what is no request would be waited for
         super().data_received(data)
-        if self._head > self.bounds.header_bytes:
+        if self._beside > self.bounds.header_bytes:
             self._refuse(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
 
     def on_message_begin(self) -> None:
         """A request begins."""
         super().on_message_begin()
-        if self._head < 0:
-            self._head = 0
+        if not self._in_head:
+            self._in_head, self._beside = True, 0
         self._by(self.bounds.head_within)
+
+    def on_header(self, name: bytes, value: bytes) -> None:
+        """A header is here; what comes after the body is none."""
+        if self._in_head:
+            super().on_header(name, value)
 
     def on_headers_complete(self) -> None:
         """Its head is here."""
         size = len(self.url) + sum(len(name) + len(value) for name, value in self.headers)
-        self._head = -1
+        self._in_head, self._beside = False, 0
+        if self._refused:
+            return
         if len(self.headers) > self.bounds.headers or size > self.bounds.header_bytes:
             self._refuse(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
-            return
-        self._by(self.bounds.body_within)
-        super().on_headers_complete()
+        elif len(self.pipeline) >= self.bounds.waiting:
+            self._hang_up()
+        else:
+            self._by(self.bounds.body_within)
+            super().on_headers_complete()
+
+    def on_chunk_header(self) -> None:
+        """A part of its body begins, or its end."""
+        self._beside = 0
 
     def on_body(self, body: bytes) -> None:
         """A part of its body is here."""
+        self._beside = 0
         if not self._refused:
             super().on_body(body)
 
     def on_message_complete(self) -> None:
         """All of it is here."""
-        self._by(None)
+        self._beside = 0
         if not self._refused:
+            self._by(None)
             super().on_message_complete()
+
+    def pause_writing(self) -> None:
+        """An answer is not read as fast as it is made."""
+        super().pause_writing()
+        self._be_read(self.transport.get_write_buffer_size())
+
+    def resume_writing(self) -> None:
+        """It was read."""
+        super().resume_writing()
+        if self._reader is not None:
+            self._reader.cancel()
+
+    def _be_read(self, left: int) -> None:
+        """Some of the bytes that are left must have been read in a while."""
+        self._reader = self.loop.call_later(self.bounds.read_within, self._was_read, left)
+
+    def _was_read(self, before: int) -> None:
+        left = self.transport.get_write_buffer_size()
+        if left < before:
+            self._be_read(left)
+        else:
+            self._hang_up()
 
     def _by(self, seconds: float | None) -> None:
         """Set the time by which the request must have come farther, or none."""
@@ -127,15 +176,17 @@ class _Bounded(HttpToolsProtocol):
         self._deadline = None if seconds is None else self.loop.call_later(seconds, self._late)
 
     def _late(self) -> None:
-        if self._head >= 0:
+        if self._in_head:
             self._refuse(HTTPStatus.REQUEST_TIMEOUT)
         else:
-            self._refused = True
-            self.transport.abort()
+            self._hang_up()
 
     def _refuse(self, status: HTTPStatus) -> None:
-        """Answer, and close."""
+        """Answer, and close; amid another answer only close."""
         if self._refused:
+            return
+        if self.cycle is not None and self.cycle.response_started and not self.cycle.response_complete:
+            self._hang_up()
             return
         self._refused = True
         self._by(None)
@@ -143,3 +194,8 @@ class _Bounded(HttpToolsProtocol):
         if not self.transport.is_closing():
             self.transport.write(head.encode())
             self.transport.close()
+
+    def _hang_up(self) -> None:
+        self._refused = True
+        self._by(None)
+        self.transport.abort()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import Any
 
 from hockle.connection import add_server, connected, follow, sentence
@@ -36,6 +37,8 @@ def again(told: argparse.Namespace) -> int:
         else:
             job = before.fork(told.at, start=start, end=end, set=change, label=told.label)
         print(job.id, flush=True)
+        if job.state.message:  # why it is computed from its start
+            print(job.state.message, file=sys.stderr)
         if not told.wait:
             return 0
         ended = follow(client, job.id)

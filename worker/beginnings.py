@@ -8,6 +8,7 @@ from __future__ import annotations
 import logging
 import re
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -129,17 +130,19 @@ def begun_with(held: HeldJob, spec: CaseSpec, datasets: Datasets, directory: Pat
         return _begun(held, held.job.begins_with, spec, datasets, directory, tag)
     except (AnotherBeginning, CaseError, LookupError, OSError, ValueError, DBAPIError) as error:
         log.warning("job %s does not begin with %s: %s", held.job.id, held.job.begins_with, error)
+        with suppress(DBAPIError):
+            held.begins_by_itself(f"computed from its start: of job {held.job.begins_with} nothing can be taken over")
         return None
 
 
 def _begun(held: HeldJob, other_id: str, spec: CaseSpec, datasets: Datasets, directory: Path,
-           tag: str) -> Begun | None:  # fmt: skip
+           tag: str) -> Begun:  # fmt: skip
     registry = Registry(held.database)
     other, first = registry.get(other_id), parse_case(registry.case(other_id))
     most = min(held.job.begins_at, common_frame(first, spec))
     found = Beginnings(datasets.states(other_id), code_digest(), first.frames).last(most)
     if found is None or other.dataset is None:
-        return None
+        raise LookupError("no state or no dataset of it is kept")
     frame, reached = found
     run = simulate(build_scene(spec))
     run.restore(begun(run.checkpoint(), simulate(build_scene(first)).checkpoint(), reached))

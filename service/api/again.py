@@ -9,9 +9,11 @@ from pydantic import ValidationError
 
 from service.api.requests import JobRequest
 from service.cases import CaseError, CaseSpec, FieldError, parse_case
-from service.cases.beginning import common_frame
+from service.cases.beginning import common_frame, hindrance
 from service.cases.suggestions import suggested
 from service.jobs import Registry
+
+FROM_ITS_START = "computed from its start: "
 
 
 @dataclass(frozen=True)
@@ -21,6 +23,7 @@ class Again:
     body: dict[str, Any]
     job_id: str
     case: dict[str, Any]
+    forked_at: float | None
 
     @classmethod
     def of(cls, body: dict[str, Any], jobs: Registry) -> Again:
@@ -33,12 +36,21 @@ class Again:
             raise CaseError([FieldError("/job", asked.job, "must name a job, and stand instead of case")])
         case = jobs.case(jobs.get(asked.job).id)
         told = {**body, "case": case if asked.fork is None else asked.fork.applied(case)}
-        return cls({name: value for name, value in told.items() if name not in ("job", "fork")}, asked.job, case)
+        return cls({name: value for name, value in told.items() if name not in ("job", "fork")}, asked.job, case,
+                   None if asked.fork is None else asked.fork.at)
+
+    def check(self, spec: CaseSpec) -> None:
+        """Raises CaseError for a fork that comes after the end."""
+        at = self.forked_at
+        if at is not None and at >= spec.t_end:
+            raise CaseError([FieldError("/fork/at", at, f"must be < t_end, which is {spec.t_end:g}")])
 
     def beginning(self, spec: CaseSpec) -> dict[str, Any]:
-        """What a new job is told of it."""
+        """What a new job is told of it: where it begins, or why it is computed from its start."""
         try:
-            frame = common_frame(parse_case(self.case), spec)
+            first = parse_case(self.case)
         except CaseError:  # of an older version, to which it was one
-            frame = 0
-        return {"begins_with": self.job_id, "begins_at": frame} if frame else {}
+            return {"message": FROM_ITS_START + "the other's case is one no more"}
+        if frame := common_frame(first, spec):
+            return {"begins_with": self.job_id, "begins_at": frame}
+        return {"message": FROM_ITS_START + (hindrance(first, spec) or "no two frames of the cases are alike")}

@@ -63,6 +63,8 @@ def requested(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> S
     other = Again.of(body, parts.registry.of(caller.sees)) if "job" in body else None
     understood = wanted(other.body if other else body)
     spec, request = understood.spec, understood.request
+    if other is not None:
+        other.check(spec)
     check_cost(spec, parts.settings.longest_run)
     if request.webhook is not None and not caller.key:
         raise Problem(422, "webhook_needs_key", "a webhook is signed with the API key that asks for it: send one")

@@ -71,7 +71,7 @@ def common_frame(first: CaseSpec, then: CaseSpec) -> int:
 
     Neither's last frame counts: a run judges itself there.
     """
-    if not _can_begin(first, then):
+    if hindrance(first, then):
         return 0
     until = _same_until(_of_run(first), _of_run(then))
     if until == 0.0:
@@ -81,15 +81,22 @@ def common_frame(first: CaseSpec, then: CaseSpec) -> int:
     return max(0, last if until == inf else min(last, ceil(until / interval * (1 - 1e-12)) - 1))
 
 
-def _can_begin(first: CaseSpec, then: CaseSpec) -> bool:
-    """Whether a run by `then` says nothing of its beginning that depends on its end."""
-    if then.analysis == "static" or then.numerics.tolerance is not None:
-        return False
+def hindrance(first: CaseSpec, then: CaseSpec) -> str:
+    """Why a run by `then` cannot begin with one by `first`, however alike they begin; empty where it can."""
+    if then.analysis == "static":
+        return "of a static analysis no states are kept"
+    if then.numerics.tolerance is not None:
+        return "with numerics.tolerance the meshes are chosen by whole runs; with intervals and dt_max it could go on"
+    if then.numerics.method == "box" and first.t_end != then.t_end:
+        return "all steps of the box method depend on t_end; those of numerics.method staggered do not"
     if then.contact is not None and then.contact.k1 is None and (first.ends, first.loads, first.t_end) != (
             then.ends, then.loads, then.t_end):  # fmt: skip
-        return False  # the law of contact follows from what the ends will do
+        return "the law of contact follows from all that the ends will do; with contact.k1 it does not"
     stored = set(first.output.fields) >= set(then.output.fields)
-    return stored and first.output.interval == then.output.interval and first.output.topology == then.output.topology
+    if not (stored and first.output.interval == then.output.interval
+            and first.output.topology == then.output.topology):  # fmt: skip
+        return "its output has other frames, or variables that the other lacks"
+    return ""
 
 
 def _of_run(spec: CaseSpec) -> dict[str, Any]:

@@ -120,6 +120,11 @@ class HeldJob:
             if released:
                 serve_last(transaction, self.job.owner)
 
+    def begins_by_itself(self, message: str) -> None:
+        """Tell that it does not begin with another job, and why."""
+        with self.database.writing() as transaction:
+            transaction.change(*self._mine, begins_with=None, message=message)
+
     def followers(self) -> list[int]:
         """The frames from which other jobs will begin."""
         query = select(jobs.c.begins_at).distinct().where(jobs.c.begins_with == self.job.id, jobs.c.waits)

@@ -82,6 +82,7 @@ class NewJob:
 
     Among the jobs of one owner the higher `priority` goes first; it takes nothing from other owners. `begins_with`: a
     job whose run is also that of this one, up to its frame `begins_at`; `waits`: for its end.
+    `message` is shown until it ends.
     """
 
     case: InitVar[dict[str, Any]]
@@ -94,6 +95,7 @@ class NewJob:
     begins_with: str | None = None
     begins_at: int = 0
     waits: bool = False
+    message: str = ""
     case_json: str = field(init=False)
     """The case as canonical JSON: equal cases give equal text. A thousand texts are held with less ado than as data."""
 

@@ -211,6 +211,7 @@ def insert_jobs(transaction: Transaction, new: Sequence[NewJob]) -> list[Job]:
         "priority": job.priority, "case_json": job.case_json, "case_sha256": job.case_sha256,
         "created": transaction.now, "limit_wall": job.limits.wall, "limit_memory": job.limits.memory,
         "limit_disk": job.limits.disk, "begins_with": job.begins_with, "begins_at": job.begins_at, "waits": job.waits,
+        "message": job.message,
     } for job in new]  # fmt: skip
     connection.execute(insert(jobs), rows)
     first = json.dumps({"status": Status.ACCEPTED.value})

@@ -9,7 +9,8 @@ import pytest
 
 PAGE = (Path(__file__).parents[2] / "docs" / "client.md").read_text()
 BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE, re.M | re.S)
-SHORTER = {"30.0": "0.3", "40.0": "0.4", "(10.0, 20.0)": "(0.1, 0.2)", "t_min=10.0": "t_min=0.1", "200)": "4)",
+SHORTER = {"fork(5.0": "fork(0.15", "30.0": "0.3", "40.0": "0.4", "(10.0, 20.0)": "(0.1, 0.2)",
+           "t_min=10.0": "t_min=0.1", "200)": "4)",
            '"numerics.intervals", 100': '"numerics.intervals", 20).set("output.interval", 0.1',
            'label="sweep").wait': 'label="sweep", set={"t_end": 0.3}).wait',
            "size=8, seed=1": 'size=2, seed=1, set={"t_end": 0.3}'}  # fmt: skip

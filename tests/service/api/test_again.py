@@ -59,6 +59,18 @@ def test_a_finished_job_goes_on_beyond_its_end_as_if_asked_for_at_once(client, r
     assert same(values, expected) and len(values["time"]) == 17
 
 
+@pytest.mark.parametrize(("change", "why"), [
+    ({"numerics": {"method": "box", "intervals": 10}}, "box method depend on t_end"),
+    ({"numerics": {"tolerance": 0.01}}, "numerics.tolerance"), ({"contact": {}}, "law of contact"),
+    ({"t_end": 1.6}, ""),
+])  # fmt: skip
+def test_what_cannot_go_on_says_so_when_it_is_handed_in(client, case, change, why):
+    first = client.post("/v1/jobs", json={"case": {**case, **change}}).json()
+    longer = client.post("/v1/jobs", json={"job": first["id"], "set": {"t_end": 1.7}}).json()
+    assert longer["begins_with"] == (None if why else first["id"])
+    assert longer["message"].startswith("computed from its start: " if why else "") and why in longer["message"]
+
+
 def test_a_fork_moves_the_ends_otherwise_from_its_time_on(client, run, case, done):
     fork, values = run({"job": done, "fork": {"at": 0.75, "end": {"omega3": -1.0}}})
     told = client.get(fork["links"]["case"]).json()["ends"]["end"]["switches"]
@@ -74,6 +86,7 @@ def test_a_fork_moves_the_ends_otherwise_from_its_time_on(client, run, case, don
     ({"fork": {"at": -1, "end": {"omega3": 0}}}, (422, "invalid_case")),
     ({"fork": {"at": 0.5, "end": {"omega9": 0}}}, (422, "invalid_case")),
     ({"set": {"t_end": -1}}, (422, "invalid_case")),
+    ({"fork": {"at": 1.0, "end": {"omega3": 0}}}, (422, "invalid_case")),  # its end
 ])  # fmt: skip
 def test_what_cannot_be_done_is_refused(client, done, change, expected):
     assert problem(client.post("/v1/jobs", json={"job": done} | change)) == expected

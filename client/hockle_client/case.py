@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -54,14 +54,34 @@ CaseLike = Case | CaseSpec | Mapping[str, Any] | str
 def request_of(case: CaseLike, settings: Mapping[Any, Any], **more: Any) -> bytes:
     """The body that asks for a case to be run or looked at. Raises ValueError for what is no finite JSON."""
     asked = whole(case, settings)
-    body = {"case": asked.base, "set": dict(asked.settings), **more}
-    return json.dumps(body, default=plain, allow_nan=False).encode()
+    return written({"case": asked.base, "set": dict(asked.settings), **more})
 
 
 def whole(case: CaseLike, settings: Mapping[Any, Any]) -> Case:
     """A case with some values changed, however it was given."""
     made = case if isinstance(case, Case) else Case(case if isinstance(case, str) else {**case})
     return made.with_settings(settings)
+
+
+def written(body: Mapping[str, Any]) -> bytes:
+    """A body as JSON. Raises ValueError for a number that is not finite, with where it stands; TypeError."""
+    try:
+        return json.dumps(body, default=plain, allow_nan=False).encode()
+    except ValueError:
+        lost = json.loads(json.dumps(body, default=plain), parse_constant=_Lost)
+        raise next(_faults(lost, ""), ValueError("a case must have no circle in it")) from None
+
+
+class _Lost(str):
+    """NaN, Infinity or -Infinity."""
+
+
+def _faults(told: Any, place: str) -> Iterator[ValueError]:
+    if isinstance(told, _Lost):
+        yield ValueError(f"{place} must be a finite number, got {told}")
+    inside = told.items() if isinstance(told, dict) else enumerate(told) if isinstance(told, list) else ()
+    for name, value in inside:
+        yield from _faults(value, f"{place}/{name}")
 
 
 def plain(value: Any) -> Any:

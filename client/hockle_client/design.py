@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-from hockle_client.case import CaseLike, plain, whole
+from hockle_client.case import CaseLike, whole, written
 
 Method = Literal["latin_hypercube", "sobol", "saltelli"]
 Scale = Literal["linear", "log"]
@@ -37,4 +36,4 @@ def sweep_request(case: CaseLike, settings: Mapping[Any, Any], parameters: Param
         body["members"] = [dict(member) for member in members]
     if sample is not None:
         body["sample"] = {"method": sample, "size": size, "seed": seed}
-    return json.dumps(body, default=plain, allow_nan=False).encode()
+    return written(body)

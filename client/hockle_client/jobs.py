@@ -5,21 +5,20 @@ Written by `make client` from async_jobs.py: change that one.
 
 from __future__ import annotations
 
-import io
-import json
 import time
 import uuid
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from typing_extensions import Self
 
-from hockle_client.case import plain
+from hockle_client.case import written
 from hockle_client.documents import Event, JobState, Link
 from hockle_client.handle import JobFacts, safe
 from hockle_client.problems import HockleError
-from hockle_client.reading import opened, part_query
+from hockle_client.reading import opened, opened_file, part_query
 from hockle_client.schema import Setting
 from hockle_client.showing import Line
 
@@ -129,7 +128,7 @@ class Job(JobFacts):
 
     def _again(self, told: dict[str, Any], **more: Any) -> Job:
         headers = {"Idempotency-Key": str(uuid.uuid4())}
-        body = json.dumps({"job": self.id, **told, **more}, default=plain, allow_nan=False).encode()
+        body = written({"job": self.id, **told, **more})
         response = self._client._ask("POST", "/v1/jobs", body=body, headers=headers)
         return Job(self._client, JobState.model_validate_json(response.content))
 
@@ -161,10 +160,14 @@ class Job(JobFacts):
         return len(content)
 
     def dataset(self) -> xr.Dataset:
-        """The whole dataset in xarray, its file held in memory. Raises Problem."""
-        file = io.BytesIO()
-        self._client._download(self.id, file)
-        return opened(file.getvalue(), f"{self.id}.nc")
+        """The whole dataset in xarray, its file a temporary one: values are in memory once they are looked at.
+
+        Raises Problem, OSError.
+        """
+        with TemporaryDirectory(prefix="hockle-", ignore_cleanup_errors=True) as directory:
+            path = Path(directory, f"{self.id}.nc")
+            self.fetch(path)
+            return opened_file(path)  # which its name may leave
 
     def values(self, *variables: str, t_min: float | None = None, t_max: float | None = None,
                s_min: float | None = None, s_max: float | None = None, time_stride: int = 1,
@@ -201,5 +204,5 @@ class Job(JobFacts):
         self._client._ask("DELETE", f"/v1/jobs/{self.id}/links/{safe(link_id)}")
 
     def _linked(self, told: dict[str, Any]) -> Link:
-        addresses = {"url": told.pop("href", None), "zarr": told.pop("zarr", None)}
+        addresses = {"url": told.pop("href", None)} | {name: told.pop(name, None) for name in ("zarr", "opendap")}
         return Link(**{name: one and f"{self._client.url}{one}" for name, one in addresses.items()}, **told)

@@ -16,9 +16,20 @@ if TYPE_CHECKING:
 def opened(content: bytes, name: str) -> xr.Dataset:
     """The dataset whose file is `content`; its values are unpacked when they are looked at."""
     import netCDF4
+
+    return _opened(netCDF4.Dataset(name, mode="r", memory=content))
+
+
+def opened_file(path: Path) -> xr.Dataset:
+    """The dataset in a file, which may be removed as soon as it is open."""
+    import netCDF4
+
+    return _opened(netCDF4.Dataset(path))
+
+
+def _opened(file: Any) -> xr.Dataset:
     import xarray as xr
 
-    file = netCDF4.Dataset(name, mode="r", memory=content)
     store = xr.backends.NetCDF4DataStore(file)  # type: ignore[no-untyped-call]
     return xr.open_dataset(store, decode_times=False)
 

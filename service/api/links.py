@@ -18,13 +18,14 @@ from service.api.description import NOT_MODIFIED, problems
 from service.api.gate import SHARED
 from service.api.parts import InParts, Jobs, OwnJobs, Parts, Submitter
 from service.api.problems import Problem
-from service.api.stores import BYTES, zarr_of
+from service.api.stores import BYTES, Dap, dap_of, zarr_of
 from service.cases import CaseError
 from service.jobs import Job
 from service.meaning import means
 
 DAY = 86400.0
 LONGEST = 366 * DAY
+ENDS = {"href": ".nc", "zarr": "/zarr", "opendap": "/opendap"}
 router = APIRouter(tags=["results"])
 
 
@@ -38,12 +39,13 @@ class LinkRequest(BaseModel):
 
 
 class LinkDocument(BaseModel):
-    """A link to a dataset. `href` and `zarr` are told once, when the link is made: with them anybody reads the dataset,
-    the file itself or a Zarr store."""
+    """A link to a dataset. `href`, `zarr` and `opendap` are told once, when the link is made: with them anybody reads
+    the dataset, the file itself, a Zarr store or by OPeNDAP."""
 
     id: str
     href: str | None
     zarr: str | None
+    opendap: str | None
     created: datetime
     expires: datetime
     revoked: datetime | None
@@ -106,6 +108,14 @@ def shared_zarr(token: Annotated[str, Path(max_length=100)], key: Annotated[str,
     return zarr_of(_job(token, parts), key, parts)
 
 
+@router.get(SHARED + "{token}/opendap.{what}", response_class=Response,
+            responses={**BYTES, **problems(404, 422, 429, 503)})
+def shared_opendap(token: Annotated[str, Path(max_length=100)], what: Dap, request: Request,
+                   parts: InParts) -> Response:
+    """The same as `/v1/jobs/{id}/opendap` gives it, for whoever sends no key: ncdump, R and Octave."""
+    return dap_of(_job(token, parts), what, request.url.query, parts)
+
+
 def _job(token: str, parts: Parts) -> Job:
     """The job whose dataset a link opens. Raises Problem."""
     link = LinkStore(parts.registry.database).opened(token, time.time())
@@ -119,9 +129,8 @@ def _job(token: str, parts: Parts) -> Job:
 
 
 def _document(link: Link, address: str | None = None) -> LinkDocument:
-    href, zarr = (None, None) if address is None else (f"{address}.nc", f"{address}/zarr")
-    return LinkDocument(id=link.id, href=href, zarr=zarr, created=_instant(link.created),
-                        expires=_instant(link.expires),
+    told = {name: None if address is None else address + end for name, end in ENDS.items()}
+    return LinkDocument(id=link.id, **told, created=_instant(link.created), expires=_instant(link.expires),
                         revoked=None if link.revoked is None else _instant(link.revoked))
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Request, Response
 
@@ -18,6 +18,7 @@ from service.results.query import DatasetSource, opened
 from service.results.zarr import NoSuchKey, ZarrStore
 
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
+Dap = Literal["dds", "das", "dods"]
 DAP = {"XDAP": "2.0", "XDODS-Server": "hockle"}
 BINARY = {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}}
 BYTES: dict[int | str, dict[str, Any]] = {200: {"description": "The value", "content": BINARY}}
@@ -46,25 +47,30 @@ def zarr_of(job: Job, key: str, parts: Parts) -> Response:
 @router.get("/opendap.dds", response_class=Response, responses={**TEXT, **problems(404, 409, 422, 503)})
 def opendap_structure(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Response:
     """What the dataset holds, as OPeNDAP (DAP 2.0) has it: `xarray.open_dataset(address of /v1/jobs/ID/opendap)`."""
-    return _dap(jobs.get(job_id), parts, "dds", lambda dataset: dataset.dds(request.url.query))
+    return dap_of(jobs.get(job_id), "dds", request.url.query, parts)
 
 
 @router.get("/opendap.das", response_class=Response, responses={**TEXT, **problems(404, 409, 503)})
 def opendap_attributes(job_id: str, parts: InParts, jobs: Jobs) -> Response:
     """The attributes of the dataset, as OPeNDAP has them."""
-    return _dap(jobs.get(job_id), parts, "das", lambda dataset: dataset.das())
+    return dap_of(jobs.get(job_id), "das", "", parts)
 
 
 @router.get("/opendap.dods", response_class=Response, responses={**BYTES, **problems(404, 409, 422, 503)})
 def opendap_values(job_id: str, request: Request, parts: InParts, jobs: Jobs) -> Response:
     """The values that a constraint in the query asks for, as `r[0:1:9][0:10:100][0:1:2]`: at most ten million."""
-    return _dap(jobs.get(job_id), parts, "dods", lambda dataset: dataset.dods(request.url.query))
+    return dap_of(jobs.get(job_id), "dods", request.url.query, parts)
 
 
-def _dap(job: Job, parts: Parts, what: str, make: Callable[[DapDataset], bytes]) -> Response:
+def dap_of(job: Job, what: Dap, constraint: str, parts: Parts) -> Response:
+    """A job's dataset by OPeNDAP: its structure, its attributes or its values. Raises Problem."""
+    make: dict[Dap, Callable[[DapDataset], bytes]] = {
+        "dds": lambda dataset: dataset.dds(constraint), "das": lambda dataset: dataset.das(),
+        "dods": lambda dataset: dataset.dods(constraint),
+    }  # fmt: skip
     try:
         with readable():
-            content = _read(job, parts, lambda source: make(DapDataset(job.id, source)))
+            content = _read(job, parts, lambda source: make[what](DapDataset(job.id, source)))
     except BadConstraint as error:
         raise Problem(422, "bad_constraint", str(error)) from None
     kind = "application/octet-stream" if what == "dods" else "text/plain"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -44,6 +45,15 @@ def test_numbers_of_numpy_are_numbers(client, quick):
     verdict = client.validate(changed.set("loads.gravity", np.array([0.0, 0.0, -9.81])))
     assert verdict.case["numerics"]["intervals"] == 21
     assert verdict.case["loads"]["gravity"] == [0.0, 0.0, -9.81]
+
+
+@pytest.mark.parametrize(("value", "told"), [
+    (float("nan"), "/set/loads.gravity/2 must be a finite number, got NaN"),
+    (np.float64("inf"), "/set/loads.gravity/2 must be a finite number, got Infinity"),
+])  # fmt: skip
+def test_a_number_that_is_not_finite_is_told_where_it_stands(client, value, told):
+    with pytest.raises(ValueError, match=told):
+        client.submit("elastica", set={"loads.gravity": [0.0, 0.0, value]})
 
 
 def test_a_whole_case_may_be_data_or_a_file(client, tmp_path):
@@ -158,6 +168,12 @@ def test_parts_are_read_without_the_file(client, done, tmp_path):
     assert list(tmp_path.iterdir()) == [tmp_path / "whole.nc"]
 
 
+def test_an_opened_dataset_leaves_no_file(done, tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with done.dataset() as dataset:
+        assert list(tmp_path.iterdir()) == [] and dataset.r.values.shape[-1] == 3
+
+
 def test_a_dataset_that_cannot_be_written_leaves_nothing(client, done, tmp_path):
     with pytest.raises(OSError, match="nowhere"):
         done.fetch(tmp_path / "nowhere" / "x.nc")
@@ -182,7 +198,7 @@ def test_a_link_is_read_by_xarray_where_it_is(client, done):
 def test_a_server_that_tells_no_address_of_a_zarr_store_is_understood(done):
     told = {"id": "a", "href": "/v1/shared/x.nc", "created": "2026-01-01T00:00:00Z", "expires": "2026-01-02T00:00:00Z"}
     link = getattr(done, "inner", done)._linked({**told, "revoked": None})
-    assert link.url.endswith("/v1/shared/x.nc") and link.zarr is None
+    assert link.url.endswith("/v1/shared/x.nc") and (link.zarr, link.opendap) == (None, None)
 
 
 def test_a_job_goes_on_beyond_its_end_and_is_forked(client, quick):

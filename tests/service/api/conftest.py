@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import socket
+import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import pytest
+import uvicorn
+import xarray as xr
 from fastapi.testclient import TestClient
 
 from service.api.app import create_app
@@ -46,3 +52,26 @@ def done(client: TestClient, registry: Registry, settings: Settings, case: dict[
     job_id = client.post("/v1/jobs", json=case).json()["id"]
     run_next(registry.database, settings)
     return job_id
+
+
+@pytest.fixture
+def whole(client: TestClient, done: str) -> xr.Dataset:
+    """Its dataset."""
+    content = client.get(f"/v1/jobs/{done}/dataset").content
+    file = netCDF4.Dataset("whole.nc", memory=content)
+    return xr.open_dataset(xr.backends.NetCDF4DataStore(file)).load()
+
+
+@pytest.fixture
+def address(client: TestClient) -> Iterator[str]:
+    """The same application behind a socket: other programs talk to that."""
+    with socket.socket() as sock:
+        sock.bind(("127.0.0.1", 0))
+        server = uvicorn.Server(uvicorn.Config(client.app, lifespan="off", log_level="warning"))
+        thread = threading.Thread(target=lambda: server.run(sockets=[sock]))
+        thread.start()
+        while not server.started:
+            time.sleep(0.01)
+        yield f"http://127.0.0.1:{sock.getsockname()[1]}"
+        server.should_exit = True
+        thread.join()

@@ -16,13 +16,6 @@ from worker import shown, stopping
 from worker.run import run_next
 
 
-@pytest.fixture
-def whole(client, done) -> xr.Dataset:
-    content = client.get(f"/v1/jobs/{done}/dataset").content
-    file = netCDF4.Dataset("whole.nc", memory=content)
-    return xr.open_dataset(xr.backends.NetCDF4DataStore(file)).load()
-
-
 def part(client, job_id, format, variables="Tw,r,contacts", **query):
     answer = client.get(f"/v1/jobs/{job_id}/data", params={"variables": variables, "format": format, **query})
     assert answer.status_code == 200, answer.text

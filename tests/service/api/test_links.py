@@ -62,6 +62,7 @@ def test_a_link_needs_no_key_and_gives_the_same_bytes(keyed, alice, job):
     with_key = keyed.get(f"{job}/dataset", headers=alice)
     without = keyed.get(link["href"])
     assert keyed.get(f"{link['zarr']}/zarr.json").json()["node_type"] == "group"
+    assert keyed.get(f"{link['opendap']}.dds").text.startswith("Dataset {")
     assert (without.status_code, without.content) == (200, with_key.content)
     assert without.headers["etag"] == with_key.headers["etag"]
     part = keyed.get(link["href"], headers={"Range": "bytes=0-9"})
@@ -84,7 +85,8 @@ def test_an_expired_a_revoked_and_an_unknown_link_look_the_same(keyed, alice, jo
     assert keyed.delete(f"{job}/links/{revoked['id']}", headers=alice).status_code == 204
     assert keyed.delete(f"{job}/links/{revoked['id']}", headers=alice).status_code == 204
     time.sleep(0.02)
-    answers = [keyed.get(href) for href in (expired["href"], revoked["href"], "/v1/shared/" + "0" * 55 + ".nc")]
+    answers = [keyed.get(href) for href in (expired["href"], revoked["href"], "/v1/shared/" + "0" * 55 + ".nc",
+                                            f"{expired['zarr']}/zarr.json", f"{expired['opendap']}.das")]  # fmt: skip
     assert {(answer.status_code, answer.text) for answer in answers} == {(404, answers[0].text)}
     assert name_of(answers[0]) == "link_not_good"
 

@@ -2,39 +2,9 @@
 
 from __future__ import annotations
 
-import shutil
-import socket
-import subprocess
-import threading
-import time
-from collections.abc import Iterator
-
-import netCDF4
 import numpy as np
 import pytest
-import uvicorn
 import xarray as xr
-
-
-@pytest.fixture
-def address(client) -> Iterator[str]:
-    """The same application behind a socket: other programs talk to that."""
-    with socket.socket() as sock:
-        sock.bind(("127.0.0.1", 0))
-        server = uvicorn.Server(uvicorn.Config(client.app, lifespan="off", log_level="warning"))
-        thread = threading.Thread(target=lambda: server.run(sockets=[sock]))
-        thread.start()
-        while not server.started:
-            time.sleep(0.01)
-        yield f"http://127.0.0.1:{sock.getsockname()[1]}"
-        server.should_exit = True
-        thread.join()
-
-
-@pytest.fixture
-def whole(client, done) -> xr.Dataset:
-    content = client.get(f"/v1/jobs/{done}/dataset").content
-    return xr.open_dataset(xr.backends.NetCDF4DataStore(netCDF4.Dataset("whole.nc", memory=content))).load()
 
 
 def problem(answer):
@@ -123,30 +93,6 @@ def test_too_much_at_once_is_refused_before_it_is_read(client, done, monkeypatch
     monkeypatch.setattr(opendap, "LIMIT", 5)
     assert problem(client.get(f"/v1/jobs/{done}/opendap.dods?Tw")) == (422, "subset_too_large")
     assert client.get(f"/v1/jobs/{done}/opendap.dods?Tw[0:2:4]").status_code == 200
-
-
-@pytest.mark.skipif(shutil.which("ncdump") is None, reason="ncdump is not there")
-def test_ncdump_reads_it_by_opendap(address, done, whole):
-    told = subprocess.check_output(["ncdump", "-v", "Tw", f"{address}/v1/jobs/{done}/opendap"], text=True)
-    assert 'Tw:units = "turn"' in told and "double r(time, s, lab)" in told.replace("  ", " ")
-    values = told.partition(" Tw =")[2].partition(";")[0].split(",")
-    assert np.allclose([float(one) for one in values], whole.Tw)
-
-
-@pytest.mark.skipif(shutil.which("Rscript") is None, reason="R is not there")
-def test_r_reads_it_by_opendap(address, done, whole):
-    program = f"library(ncdf4); f <- nc_open('{address}/v1/jobs/{done}/opendap'); cat(ncvar_get(f, 'Tw'), sep=' ')"
-    told = subprocess.run(["Rscript", "-e", program], capture_output=True, text=True, check=False)
-    if "there is no package" in told.stderr:
-        pytest.skip("R has no ncdf4")
-    assert np.allclose([float(one) for one in told.stdout.split()], whole.Tw)
-
-
-@pytest.mark.skipif(shutil.which("curl") is None, reason="curl is not there")
-def test_curl_gets_a_table(address, done, tmp_path):
-    url = f"{address}/v1/jobs/{done}/data?variables=Tw"
-    subprocess.check_call(["curl", "-sSf", "-H", "Accept: text/csv", "-o", tmp_path / "t.csv", url])
-    assert (tmp_path / "t.csv").read_text().startswith("time,Tw\n0.0,")
 
 
 def test_h5py_reads_the_file(client, done, whole, tmp_path):

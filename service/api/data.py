@@ -8,7 +8,7 @@ from typing import Annotated, TypeVar
 
 from fastapi import APIRouter, Query, Response
 
-from service.api.datasets import dataset_of, there
+from service.api.datasets import dataset_of, not_finished, there
 from service.api.description import problems
 from service.api.formats import CONTENT, Accept, VariablesInRanges, format_of, given, readable
 from service.api.parts import InParts, Jobs, Parts
@@ -50,6 +50,8 @@ def part_of(job_id: str, jobs: Registry, parts: Parts, read: Callable[[Source], 
                 return job, read(LiveSource.of(parts.settings.work / job.id))
         except FileNotFoundError:  # there is none yet, or the job has just ended
             job = jobs.get(job_id)
+    if job.dataset is None and job.status not in ENDED:
+        raise not_finished(job, "its first frames are not there yet")
     published = dataset_of(job, parts)
     with there(job, parts):
         path = parts.datasets.file(published.file, published.bytes, published.sha256)

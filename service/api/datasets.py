@@ -98,8 +98,12 @@ def dataset_of(job: Job, parts: Parts) -> Dataset:
         return published
     if job.status in ENDED:
         raise Problem(404, "no_dataset", f"job {job.id} is {job.status} and has no dataset: {job.message}")
-    raise Problem(409, "not_finished", f"job {job.id} is {job.status}: its dataset comes at its end",
-                  {"Retry-After": "1"})
+    raise not_finished(job, "its dataset comes at its end")
+
+
+def not_finished(job: Job, what: str) -> Problem:
+    """What is told of a job that has not got so far."""
+    return Problem(409, "not_finished", f"job {job.id} is {job.status}: {what}", {"Retry-After": "1"})
 
 
 @contextmanager

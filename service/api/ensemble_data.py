@@ -93,7 +93,7 @@ def ensemble_scalars(ensemble_id: str, chosen: Annotated[Variables, Query()], pa
     return Response(EnsembleScalars(members=records).model_dump_json(), media_type=form.media_type)
 
 
-@router.get("/data", response_class=Response, responses={**CONTENT, **problems(404, 422, 503)})
+@router.get("/data", response_class=Response, responses={**CONTENT, **problems(404, 409, 422, 503)})
 def ensemble_data(ensemble_id: str, chosen: Annotated[VariablesInRanges, Query()], parts: InParts, jobs: Jobs,
                   ensembles: Seen, accept: Accept = None) -> Response:
     """Variables of all members as one dataset, with the dimension `member` and the parameters as its coordinates. Of
@@ -104,7 +104,11 @@ def ensemble_data(ensemble_id: str, chosen: Annotated[VariablesInRanges, Query()
     read = _Reader(chosen, form.limit, parts, jobs)
     own = parameter_columns(ensemble, members)
     with readable():
-        return given(combined([read(member) for member in members], own, form.limit), form)
+        told = [read(member) for member in members]
+        if not any(told):
+            raise Problem(409, "not_finished", f"of the members of ensemble {ensemble.id} none has frames (yet): "
+                          "see its status", {"Retry-After": "1"})  # fmt: skip
+        return given(combined(told, own, form.limit), form)
 
 
 @router.get("/sensitivity", responses=problems(404, 409, 422, 503))

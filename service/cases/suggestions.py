@@ -25,8 +25,14 @@ def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
 
 def meant(fault: FieldError, name: str, names: Sequence[str]) -> FieldError:
     """The same fault, with the one of the known `names` that is most like the unknown `name`, if one is."""
-    near = get_close_matches(name[:80].lower(), names, n=1)
-    return FieldError(fault.pointer, fault.value, f"{fault.rule}: did you mean {near[0]}?") if near else fault
+    return FieldError(fault.pointer, fault.value, fault.rule + likely(name, names))
+
+
+def likely(name: str, names: Sequence[str]) -> str:
+    """The known name that is most like an unknown one, in whatever letters, as the end of a message; if one is."""
+    known = {one.lower(): one for one in names}
+    near = get_close_matches(name[:80].lower(), known, n=1)
+    return f": did you mean {known[near[0]]}?" if near else ""
 
 
 def fields_at(whole: type[BaseModel], path: Sequence[str]) -> list[str]:

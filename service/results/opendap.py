@@ -12,7 +12,7 @@ from urllib.parse import unquote
 import numpy as np
 from numpy.typing import NDArray
 
-from service.results.query import DatasetSource, UnknownVariable, check_size
+from service.results.query import DatasetSource, check_size, unknown
 from service.results.schema import COORDINATES, LABELS
 
 LIMIT = 10_000_000
@@ -84,7 +84,7 @@ class DapDataset:
             variable = self._source.variables[name]
             dimensions, kind = variable.dimensions, variable.type[0]
         elif name not in ("time", "s"):
-            raise UnknownVariable(f"variable must be one of time, s, {', '.join(self._source.variables)}, got {name!r}")
+            raise unknown(name, ["time", "s", *self._source.variables])
         sizes = {"time": len(self._source.time), "s": len(self._source.s)}
         sizes |= {label: len(labels) for label, labels in LABELS.items()}
         return Wanted(name, dimensions, kind, tuple(slice(0, sizes[one], 1) for one in dimensions))

@@ -13,6 +13,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from service.cases.suggestions import likely
 from service.results.part import Column, Part
 from service.results.schema import COORDINATES, ERRORS, LABELS, VARIABLES, Variable
 
@@ -124,8 +125,13 @@ def subset(source: Source, names: Sequence[str], ranges: Ranges = Ranges(), limi
 def held(variables: Mapping[str, Variable], name: str) -> Variable:
     """The variable of this name. Raises UnknownVariable."""
     if name not in variables:
-        raise UnknownVariable(f"variable must be one of {', '.join(variables)}, got {name!r}")
+        raise unknown(name, list(variables))
     return variables[name]
+
+
+def unknown(name: str, names: Sequence[str]) -> UnknownVariable:
+    """What is told of a variable that is none of these."""
+    return UnknownVariable(f"variable must be one of {', '.join(names)}, got {name!r}{likely(name, names)}")
 
 
 def check_size(size: int, limit: int) -> None:

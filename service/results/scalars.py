@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.results.part import Column
-from service.results.query import UnknownVariable
+from service.results.query import unknown
 from service.results.schema import ERRORS, LABELS, VARIABLES, Variable
 
 Value = float | int | list[float | None] | None
@@ -23,7 +23,7 @@ def scalar_variables(names: Sequence[str]) -> list[str]:
     """The names, if they all are of such variables. Raises UnknownVariable."""
     for name in names:
         if name not in SCALARS:
-            raise UnknownVariable(f"variable must be one of {', '.join(SCALARS)}, got {name!r}")
+            raise unknown(name, SCALARS)
     return list(names)
 
 

@@ -97,6 +97,16 @@ def test_a_part_that_cannot_be_given_is_refused_by_name(client, done, query, nam
     assert answer.json()["type"].endswith(name)
 
 
+@pytest.mark.parametrize(("address", "wrong", "meant"), [
+    ("jobs/{}/data?variables=", "R", "r"), ("jobs/{}/data?variables=", "tw", "Tw"),
+    ("jobs/{}/opendap.dods?", "omga", "omega"), ("scalars?jobs={}&variables=", "energy_bend", "energy_bending"),
+])  # fmt: skip
+def test_an_unknown_variable_is_told_what_it_may_have_been_meant_to_be(client, done, address, wrong, meant):
+    answer = client.get("/v1/" + address.format(done) + wrong)
+    assert (answer.status_code, answer.json()["type"]) == (422, "urn:hockle:problem:unknown_variable")
+    assert answer.json()["detail"].endswith(f"got {wrong!r}: did you mean {meant}?")
+
+
 def test_a_part_too_large_is_refused_before_it_is_read(client, done, monkeypatch):
     monkeypatch.setitem(FORMATS, "json", replace(FORMATS["json"], limit=3))
     answer = client.get(f"/v1/jobs/{done}/data?variables=r")
@@ -110,6 +120,7 @@ def test_a_job_that_has_not_ended_has_no_results_yet(client, case, what):
     answer = client.get(f"{address}/{what}")
     assert (answer.status_code, answer.json()["type"]) == (409, "urn:hockle:problem:not_finished")
     assert "retry-after" in answer.headers
+    assert ("its dataset comes at its end" if what == "dataset" else "its first frames") in answer.json()["detail"]
 
 
 @pytest.mark.parametrize("what", ["dataset", "data?variables=Tw"])

@@ -198,6 +198,13 @@ def test_its_numbers_come_at_once_with_the_parameters(client, done, run_all):
     assert list(table["energy_bending"]) == [one["values"]["energy_bending"] for one in told]
 
 
+def test_members_of_which_none_has_frames_are_no_dataset(client, grid):
+    told = client.post("/v1/ensembles", json=grid).json()
+    answer = client.get(told["links"]["data"] + "?variables=Tw&format=netcdf")
+    assert (answer.status_code, answer.json()["type"]) == (409, "urn:hockle:problem:not_finished")
+    assert told["id"] in answer.json()["detail"] and answer.headers["retry-after"]
+
+
 def test_one_dataset_has_the_parameters_as_coordinates(client, done):
     together = dataset(client.get(f"{done}/data?variables=r,Tw&format=netcdf&time_stride=2").content)
     assert together.r.dims == ("member", "time", "s", "lab") and together.sizes["member"] == 6

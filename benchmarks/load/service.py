@@ -40,10 +40,11 @@ def cpu_time(called: str = "") -> float:
 
 
 @contextmanager
-def whole() -> Iterator[tuple[str, int, Settings]]:
-    """`hockle serve` with one worker; host and port, and its settings."""
+def whole(workers: int = 1) -> Iterator[tuple[str, int, Settings]]:
+    """`hockle serve` with so many workers; host and port, and its settings."""
     with tempfile.TemporaryDirectory(prefix="hockle-load-") as data:
-        command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", "1", "--data", data]
+        command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", str(workers)]
+        command += ["--data", data]
         process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | TOLD)
         try:
             assert process.stdout is not None

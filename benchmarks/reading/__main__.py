@@ -10,37 +10,38 @@ import httpx
 
 from benchmarks.load.service import whole, without_workers
 from benchmarks.load.table import Row, table
-from benchmarks.reading.scenes import of_a_dataset, of_an_ensemble, of_many_jobs, running
+from benchmarks.reading.large import lines, of_a_large_dataset
+from benchmarks.reading.members import WORKERS, of_members
+from benchmarks.reading.scenes import of_a_dataset, of_an_ensemble, of_many_jobs
 from validation.provenance import provenance
 
 RESULTS = Path(__file__).parents[1] / "results" / "reading.md"
 HOW = """\
 On loopback, one request after the other over one connection, SQLite. The dataset has 501 frames of 401 nodes with all
-fields. The list, and the ensembles, are asked of two API processes without workers."""
+fields. The list, the ensembles, and the dataset of 2 GB are asked of two API processes without workers."""
 
 
 def main() -> None:
     """Measure, print the table, and keep it."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--members", type=int, default=0, help="also run an ensemble of so many to its end")
+    parser.add_argument("--members", type=int, default=100, help="run an ensemble of so many to its end")
     told = parser.parse_args()
     before = os.getloadavg()
     rows: list[Row] = []
-    lines: list[str] = []
     with whole() as (host, port, settings), httpx.Client(base_url=f"http://{host}:{port}", timeout=600.0) as client:
         rows += of_a_dataset(client, settings)
-        if told.members:
-            wall, cpu = running(client, told.members, workers=1)
-            lines = ["", f"{told.members} members of goyal-2003 with 100 intervals took {wall:.1f} s with one worker; "
-                     f"the CPU time of their runs is {cpu:.1f} s: {wall / cpu:.2f} times that."]
     for scene in (of_many_jobs, of_an_ensemble):
         with without_workers() as (host, port, settings), httpx.Client(
             base_url=f"http://{host}:{port}", timeout=600.0
         ) as client:
             rows += scene(client, settings)
+    with without_workers() as (host, port, settings):
+        large = lines(*of_a_large_dataset(f"http://{host}:{port}", settings))
+    with whole(WORKERS) as (host, port, _), httpx.Client(base_url=f"http://{host}:{port}", timeout=600.0) as client:
+        members = of_members(client, told.members)
     text = [*(f"- {line}" for line in provenance()),
             f"- load average of the machine before {before[0]:.1f}, after {os.getloadavg()[0]:.1f}", "", HOW, "",
-            *table(rows), *lines]  # fmt: skip
+            *table(rows), *large, *members]  # fmt: skip
     print("\n".join(text))
     RESULTS.write_text("\n".join([*text, ""]), encoding="utf-8")
 

@@ -115,25 +115,3 @@ def timed_once(ask: Callable[[], Any]) -> list[float]:
     ask()
     return [time.perf_counter() - began]
 
-
-def running(client: httpx.Client, members: int, workers: int) -> tuple[float, float]:
-    """Seconds that an ensemble took to its end, and the CPU seconds of its runs by so many workers."""
-    values = (secrets.randbelow(10**9) * 1e-9 + np.linspace(0.0, 1.0, members)).tolist()
-    body = {"case": "goyal-2003", "set": {"numerics.intervals": 100}, "parameters": {"loads.damping": values}}
-    began = time.perf_counter()
-    ensemble = client.post("/v1/ensembles", json=body).raise_for_status().json()
-    while ensemble["finished"] is None:
-        time.sleep(0.5)
-        ensemble = client.get(ensemble["links"]["self"]).raise_for_status().json()
-    return time.perf_counter() - began, _cpu(client, ensemble) / workers
-
-
-def _cpu(client: httpx.Client, ensemble: dict[str, Any]) -> float:
-    import netCDF4
-
-    total = 0.0
-    for member in client.get(ensemble["links"]["members"] + "?limit=1000").json()["members"]:
-        content = client.get(member["links"]["job"] + "/dataset").content
-        with netCDF4.Dataset("run.nc", memory=content) as file:
-            total += float(file.cpu_time)
-    return total

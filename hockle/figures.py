@@ -42,7 +42,10 @@ NOISE = 1e-4
 """An energy that is never this part of the largest is left out."""
 
 LEAST_TURNS = 1e-3
-"""Twist, writhe and link below are noise of the computation, or nothing to be seen."""
+"""Twist and writhe below are noise of the computation, or nothing to be seen."""
+
+LEAST_CHANGE = 0.01
+"""Curves that change by less than this part of their size are drawn with their zero: what changes may be noise."""
 
 PREFIXES = ((1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
@@ -79,7 +82,7 @@ def topology(dataset: xr.Dataset) -> Figure:
     """Twist, writhe and linking number in time (figure 8)."""
     with mpl.rc_context(STYLE):
         figure, axes = panel("time (s)", "turns")
-        axes.plot(dataset.time, dataset.Lk, color="#374151", label="Lk = Tw + Wr")
+        axes.plot(dataset.time, dataset.Lk, color="#374151", label="Lk")
         axes.plot(dataset.time, dataset.Tw, color=TORSION, label="Tw")
         axes.plot(dataset.time, dataset.Wr, color=BENDING, label="Wr")
         finish(axes, dataset)
@@ -87,8 +90,8 @@ def topology(dataset: xr.Dataset) -> Figure:
 
 
 def is_twisted(dataset: xr.Dataset) -> bool:
-    """Whether there is any twist, writhe or link to be seen."""
-    return any(float(np.abs(dataset[name]).max()) > LEAST_TURNS for name in ("Tw", "Wr", "Lk"))
+    """Whether there is any twist or writhe to be seen. Lk alone says nothing: it is the turn of ends that may be free."""
+    return any(float(np.abs(dataset[name]).max()) > LEAST_TURNS for name in ("Tw", "Wr"))
 
 
 def snapshot_times(dataset: xr.Dataset) -> Sequence[float]:
@@ -128,7 +131,10 @@ def panel(x: str, y: str) -> tuple[Figure, Axes]:
 
 
 def finish(axes: Axes, dataset: xr.Dataset) -> None:
-    """Name the axes' curves and the run."""
+    """Name the axes' curves, below them, and the run; have the zero in sight where little changes."""
     axes.set_xlim(0.0, float(dataset.time[-1]))
+    low, high = axes.get_ylim()
+    if high - low < LEAST_CHANGE * max(abs(low), abs(high)):
+        axes.set_ylim(min(low, 0.0), max(high, 0.0))
     axes.set_title(dataset.attrs["title"], fontsize=10)
-    axes.legend()
+    axes.figure.legend(loc="outside lower center", ncols=len(axes.lines))

@@ -14,7 +14,7 @@ from service.cases.quantities import Positive, Spec
 from service.cases.rod import RodSpec
 from service.cases.size import MOST_NODE_FRAMES, refuse_large
 from service.cases.surroundings import ContactSpec, FluidSpec, LoadsSpec
-from service.meaning import NO_CONTROL, means
+from service.meaning import FILE_NAME, NO_CONTROL, means
 from solver import Numerics
 from solver.measures.frame import OUTPUTS
 from solver.methods.linear.registry import LINEAR_SOLVERS
@@ -153,7 +153,7 @@ class CaseSpec(Spec):
     analysis: Annotated[Literal["dynamic", "static"], means("`static`: equilibria instead of motion")] = "dynamic"
     name: Annotated[
         str,
-        Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=80),
+        Field(pattern=FILE_NAME, max_length=80),
         means("small letters, digits and hyphens, at most 80; names the output file"),
     ] = "unnamed"
     title: Annotated[str, Field(max_length=200, pattern=NO_CONTROL), means("for people: at most 200 characters")] = ""

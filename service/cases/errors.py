@@ -11,6 +11,8 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
+from service.meaning import IN_WORDS
+
 _RULES = {
     "missing": "is required",
     "extra_forbidden": "is not a known field",
@@ -95,6 +97,8 @@ def field_error(detail: ErrorDetails) -> FieldError:
         at = context["at"]
         there = value.get(at) if isinstance(value, dict) else value
         return FieldError(pointer + (f"/{at}" if at else ""), plain(context.get("value", there)), context["rule"])
+    if kind == "string_pattern_mismatch" and (words := IN_WORDS.get(context["pattern"])):
+        return FieldError(pointer, value, words)
     if kind in _RULES:
         return FieldError(pointer, None if kind == "missing" else plain(value), _RULES[kind].format(**context))
     return FieldError(pointer, plain(value), detail["msg"].replace("Input should", "must"))

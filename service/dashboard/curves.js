@@ -58,8 +58,8 @@ export async function series(job, shape) {
   }
 }
 
-/** The most turns of twist, writhe or link. @param {Record<string, Curve>} curves */
-const turns = ({ Tw, Wr, Lk }) => Math.max(0, ...[Tw, Wr, Lk].map(largest));
+/** The most turns of twist or writhe. @param {Record<string, Curve>} curves */
+const turns = ({ Tw, Wr }) => Math.max(largest(Tw), largest(Wr));
 
 /** @param {Curve} values */
 const largest = (values) => values.reduce((/** @type {number} */ most, value) => Math.max(most, Math.abs(value ?? 0)), 0);

@@ -89,7 +89,7 @@ export class JobPage {
     const waits = job.status === "accepted" ? (await read(`${this.address}/queue`)).before : null;
     this.head.replaceChildren(
       element("h2", "", job.title || job.id),
-      element("p", `status ${job.status}`, job.status, waits === null ? "" : `: ${waits} jobs of ${job.owner} go first`),
+      element("p", `status ${job.status}`, job.status, waits === null ? "" : waits === 0 ? `: the next of ${job.owner}` : `: ${waits} ${waits === 1 ? "job" : "jobs"} of ${job.owner} first`),
       ...(job.status === "running" ? [bar(job), element("p", "faint", standing(job))] : []),
       ...(job.outcome && job.status !== "running" ? [this.outcome(job)] : []),
       element("div", "actions", ...actions(job, (deleted) => deleted ? location.assign("#/") : this.refresh()), ...this.more(job)), this.facts(job));

@@ -50,6 +50,23 @@ def test_what_is_not_twisted_has_no_figure_of_its_twist(tmp_path: Path):
     assert (tmp_path / "out-snapshots.png").exists()
 
 
+def test_what_hardly_changes_is_drawn_with_its_zero(tmp_path: Path):
+    path = tmp_path / "out.nc"
+    assert main(["run", "greenhill", "-o", str(path), "--set", "t_end=2", "--set", "numerics.intervals=20"]) == 0
+    with open_dataset(path) as dataset:
+        [axes] = figures.energies(dataset).axes
+        [curve] = axes.lines
+        assert np.ptp(curve.get_ydata()) < 1e-3 * curve.get_ydata().max()
+        assert axes.get_ylim()[0] == 0.0
+
+
+def test_what_is_thrown_without_twist_has_no_figure_of_its_twist(tmp_path: Path):
+    path = tmp_path / "out.nc"
+    assert main(["run", "free-flight", "-o", str(path), "--set", "t_end=1"]) == 0
+    assert main(["plot", str(path)]) == 0
+    assert not (tmp_path / "out-topology.png").exists()
+
+
 def test_several_datasets_are_drawn_beside_each_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     first = dataset(tmp_path).rename(tmp_path / "first.nc")
     second = dataset(tmp_path, "t_end=0.3").rename(tmp_path / "second.nc")

@@ -171,6 +171,16 @@ def test_every_fault_is_told_at_once_with_its_value():
     assert str(refused.value) == "/rod/length must be > 0, got -1.0\n/t_end must be > 0, got 0.0"
 
 
+@pytest.mark.parametrize(("key", "value", "rule"), [
+    ("name", "My cable", "must be small letters, digits and hyphens, and not begin with a hyphen"),
+    ("title", "two\nlines", "must be one line, without control characters"),
+])  # fmt: skip
+def test_what_a_text_must_be_is_told_in_words(key: str, value: str, rule: str):
+    with pytest.raises(CaseError) as refused:
+        parse_case(small_case() | {key: value})
+    assert [(one.pointer, one.rule) for one in refused.value.errors] == [(f"/{key}", rule)]
+
+
 def test_a_case_is_the_same_after_a_round_through_its_document():
     spec = parse_case(small_case())
     assert parse_case(json.loads(json.dumps(spec.document()))) == spec

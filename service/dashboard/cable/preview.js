@@ -84,7 +84,7 @@ function quaternion(a, b, c) {
 function end(shape, name) {
   const given = shape.ends[name];
   if (typeof given === "string") return given;
-  const driven = Object.keys(given).filter((key) => !["preset", "switches"].includes(key));
+  const driven = Object.keys(given).filter((key) => !["preset", "frame", "switches"].includes(key));
   return [given.preset, ...driven, ...(given.switches?.length ? ["switches"] : [])].filter(Boolean).join(" with ");
 }
 
@@ -92,7 +92,7 @@ function end(shape, name) {
 function ends(shape, r) {
   return ["start", "end"].flatMap((name, k) => {
     const given = shape.ends[name], kind = typeof given === "string" ? given : given?.preset;
-    const driven = typeof given === "object" && Object.keys(given).some((key) => !["preset", "switches"].includes(key));
+    const driven = typeof given === "object" && Object.keys(given).some((key) => !["preset", "frame", "switches"].includes(key));
     return [...r[k ? r.length - 1 : 0], ...(driven ? DRIVEN : ENDS[kind] ?? DRIVEN)];
   });
 }

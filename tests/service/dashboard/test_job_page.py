@@ -78,7 +78,7 @@ def test_what_differs_from_the_shipped_case_is_listed(server, run, page):
 
 def test_a_waiting_job_tells_how_many_go_first(server, add, page):
     shown(page, server, max(add(3)))
-    assert page.inner_text("#page .status") == "accepted: 2 jobs of local go first"
+    assert page.inner_text("#page .status") == "accepted: 2 jobs of local first"
 
 
 def test_a_share_link_opens_the_dataset(server, run, page):

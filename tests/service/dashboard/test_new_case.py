@@ -101,3 +101,6 @@ def test_the_preview_shows_the_rod_its_ends_and_its_loads(form, page):
     assert page.inner_text(".preview p") == "start: clamp, end: free"
     page.fill("#case-ends-end", "pin")
     page.wait_for_function("() => document.querySelector('.preview p').innerText === 'start: clamp, end: pin'")
+    form("case=goyal-2003")
+    page.wait_for_function("told => document.querySelector('.preview p').innerText === told",
+                           arg="start: clamp with omega3, end: slider with switches")

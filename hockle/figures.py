@@ -90,7 +90,7 @@ def topology(dataset: xr.Dataset) -> Figure:
 
 
 def is_twisted(dataset: xr.Dataset) -> bool:
-    """Whether there is any twist or writhe to be seen. Lk alone says nothing: it is the turn of ends that may be free."""
+    """Whether there is any twist or writhe to be seen. Lk alone says nothing: ends may turn freely."""
     return any(float(np.abs(dataset[name]).max()) > LEAST_TURNS for name in ("Tw", "Wr"))
 
 

@@ -1,7 +1,7 @@
 """`python -m deploy.rehearse` (make rehearse): build the image, run docker-compose.yml with two workers, break things.
 
-Needs root, and buildah, debootstrap, PostgreSQL and Redis of the distribution. The first time takes an hour, most of
-it the compiler's. What it did and saw is kept in deploy/results/rehearsal.md.
+Needs root and what needed.py names. The first time takes ten minutes to an hour, most of it the compiler's. What it did
+and saw is kept in deploy/results/rehearsal.md.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import tempfile
 from contextlib import ExitStack
 from pathlib import Path
 
+from deploy.rehearse import needed
 from deploy.rehearse.image import Builder
 from deploy.rehearse.network import network
 from deploy.rehearse.record import Record
@@ -28,6 +29,8 @@ def main() -> None:
     parser.add_argument("--keep", type=Path, default=KEPT, help=f"where base and image lie (default {KEPT})")
     parser.add_argument("--built", action="store_true", help="take the image that is there")
     told = parser.parse_args()
+    if missing := needed.missing():
+        parser.exit(1, f"the rehearsal needs {', '.join(missing)}\n")
     record = Record()
     with ExitStack() as cleanup:
         folder = Path(tempfile.mkdtemp(prefix="hockle-rehearsal-"))

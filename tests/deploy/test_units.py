@@ -1,4 +1,4 @@
-"""The units of systemd and the proxy's configuration, as their own programs read them."""
+"""The units of systemd, as its own programs read them."""
 
 from __future__ import annotations
 
@@ -48,16 +48,3 @@ def test_a_stop_is_given_longer_than_a_checkpoint(path):
     parser.read(path)
     if "api" not in path.stem:
         assert float(parser["Service"]["TimeoutStopSec"]) > 2 * Settings().checkpoint
-
-
-@pytest.mark.skipif(shutil.which("nginx", path="/usr/sbin:/usr/bin") is None, reason="no nginx on this machine")
-def test_nginx_reads_the_proxy(tmp_path):
-    told = (DEPLOY / "proxy" / "nginx.conf").read_text().replace("/etc/ssl/hockle", str(tmp_path))
-    key = ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "2",
-           "-subj", "/CN=hockle.example", "-keyout", str(tmp_path / "privkey.pem"),
-           "-out", str(tmp_path / "fullchain.pem")]  # fmt: skip
-    subprocess.run(key, check=True, capture_output=True)
-    whole = tmp_path / "nginx.conf"
-    whole.write_text(f"pid {tmp_path}/nginx.pid;\nerror_log stderr;\nevents {{}}\nhttp {{\n{told}\n}}\n")
-    ended = subprocess.run(["/usr/sbin/nginx", "-t", "-c", str(whole)], capture_output=True, text=True)
-    assert ended.returncode == 0, ended.stderr

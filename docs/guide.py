@@ -12,7 +12,7 @@ from docs.fields import fields_table
 from docs.markers import markdown
 from outcomes import Outcome
 from service.api.app import create_app
-from service.cases import case_schema, cost
+from service.cases import case_schema, cost, outlook
 from service.results.schema import VARIABLES
 from service.settings import Settings, variable
 
@@ -55,6 +55,13 @@ def costs() -> str:
     def micro(rate: float) -> str:
         return f"{rate * 1e6:g}"
 
+    moves = {
+        "a motion that frames follow": outlook.FOLLOWED, "in water": outlook.IN_WATER,
+        "long and heavy there": outlook.DEEP, "let go, loaded at once or thrown, in a plane": outlook.LET_GO,
+        "in space": outlook.IN_SPACE, "held straight": outlook.HELD, "on a floor": outlook.ON_FLOOR,
+        "wound up": outlook.WOUND,
+    }  # fmt: skip
+    least = ", ".join(f"{kind} {seconds:g}" for kind, seconds in moves.items())
     rows = [
         ("a step", f"{micro(cost.STEP)} + {micro(cost.STEP_NODE)} nodes"),
         ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes"),
@@ -63,6 +70,7 @@ def costs() -> str:
         ("a frame with `output.topology`, besides", f"{micro(cost.WRITHE)} nodes²"),
         ("steps with an `increment_tolerance` below the usual one", "(usual / given)^(1/2) times, `staggered` ^(1/4)"),
         ("all of it with a `tolerance`", f"{cost.PILOTS} times; below 1e-3 times (1e-3 / given)^(1/2), up to 10 s"),
+        ("and no less, by what sets the rod moving, than so many seconds", least),
         ("all of it with `verify` and no tolerance", f"{cost.VERIFIED} times"),
     ]
     return markdown(("what", "CPU time, µs"), rows)

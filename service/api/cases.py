@@ -11,7 +11,7 @@ from service.api.description import CASE_BODY, problems
 from service.api.parts import InParts, Reader, Submitter
 from service.api.problems import Problem
 from service.api.requests import SHIPPED, InWanted
-from service.cases import build_scene, case_schema, check_cost, load_case, shipped_cases, warnings_of
+from service.cases import build_scene, case_schema, check_cost, estimate, load_case, shipped_cases, warnings_of
 
 router = APIRouter(prefix="/v1", tags=["cases"])
 
@@ -45,10 +45,10 @@ class Verdict(BaseModel):
 @router.post("/validate", openapi_extra=CASE_BODY, responses=problems(400, 413, 415, 422))
 def validate(_: Submitter, wanted: InWanted, parts: InParts) -> Verdict:
     """The case as understood, its `cost` (nodes, frames, steps, seconds, bytes) and `warnings`. Nothing is run."""
-    cost = check_cost(wanted.spec, parts.settings.longest_run)
+    check_cost(wanted.spec, parts.settings.longest_run)
     wanted.request.limits.within(parts.settings.limits)
     warnings = [WarningDocument(**vars(warning)) for warning in warnings_of(wanted.spec, build_scene(wanted.spec))]
-    return Verdict(case=wanted.spec.document(), cost=CostDocument(**vars(cost)), warnings=warnings)
+    return Verdict(case=wanted.spec.document(), cost=CostDocument(**vars(estimate(wanted.spec))), warnings=warnings)
 
 
 @router.get("/cases")

@@ -8,8 +8,9 @@
     bytes   = 8 frames n (components of the stored fields), before compression
 
 With `verify` five times the seconds (the second run has twice the intervals and steps) and twice the bytes. With a
-`tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the seconds and the bytes; a
-tolerance below the usual one makes it (usual/tolerance)^(1/2) times as much, up to the WORK after which it ends.
+`tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the seconds and the bytes, or
+the seconds that such scenes take (`outlook`) if these are more; a tolerance below the usual one makes it
+(usual/tolerance)^(1/2) times as much, up to the WORK after which it ends.
 
 The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
 a step from goyal-2003 to 32 s (about two Newton iterations a step, contact included), WRITHE of a rod whose strands lie
@@ -19,11 +20,13 @@ faster core: it is an estimate, and what is refused by it is far beyond what one
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil
 
+from service.cases.build import build_scene
 from service.cases.case import TOLERANCE, CaseSpec
 from service.cases.errors import CaseError, FieldError
+from service.cases.outlook import likely_seconds
 from service.cases.quantities import ScheduleTable
 from service.cases.size import contact_points, tables_in
 from solver.measures.frame import OUTPUTS
@@ -54,7 +57,16 @@ class Cost:
 
 
 def estimate(spec: CaseSpec) -> Cost:
-    """The cost of a case, by the model above."""
+    """The cost of a case, by the model above. Raises CaseError where its parts do not fit each other."""
+    cost, tolerance = by_size(spec), spec.numerics.tolerance
+    if tolerance is None:
+        return cost
+    likely = likely_seconds(build_scene(spec))
+    return replace(cost, seconds=max(cost.seconds, min(likely * _finer(tolerance), max(likely, WORK))))
+
+
+def by_size(spec: CaseSpec) -> Cost:
+    """The least that a case of its nodes, frames and steps costs, whatever its motion."""
     numerics = spec.numerics
     nodes, frames = numerics.expected_intervals + 1, spec.frames
     points, pairs = contact_points(spec)
@@ -66,11 +78,16 @@ def estimate(spec: CaseSpec) -> Cost:
     seconds = steps * step + frames * frame
     if numerics.tolerance:
         seconds *= PILOTS
-        seconds = max(seconds, min(seconds * max(TOLERANCE / numerics.tolerance, 1.0) ** 0.5, WORK + frames * frame))
+        seconds = max(seconds, min(seconds * _finer(numerics.tolerance), WORK + frames * frame))
     elif numerics.verify:
         seconds *= VERIFIED
     components = sum(COMPONENTS[name] for name in spec.output.fields) * (2 if numerics.has_errors else 1)
     return Cost(nodes, frames, steps, seconds, 8 * frames * nodes * components)
+
+
+def _finer(tolerance: float) -> float:
+    """How many times more a tolerance below the usual one costs."""
+    return float(max(TOLERANCE / tolerance, 1.0) ** 0.5)
 
 
 def _steps(spec: CaseSpec) -> int:
@@ -86,12 +103,11 @@ def _steps(spec: CaseSpec) -> int:
     return ceil(steps)
 
 
-def check_cost(spec: CaseSpec, most: float) -> Cost:
-    """The cost of a case. Raises CaseError if it is more than `most` seconds."""
-    cost = estimate(spec)
+def check_cost(spec: CaseSpec, most: float) -> None:
+    """Raises CaseError for a case that by its size alone costs more than `most` seconds."""
+    cost = by_size(spec)
     if cost.seconds > most:
         rule = (f"must leave at most {most:,.0f} s of computing, not about {cost.seconds:,.0f} s "
                 f"({cost.steps:,} steps of {cost.nodes:,} nodes, {cost.frames:,} frames): end earlier, "
                 "or use fewer intervals, longer steps or a longer output.interval")
         raise CaseError([FieldError("/t_end", spec.t_end, rule)])
-    return cost

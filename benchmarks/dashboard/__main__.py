@@ -1,16 +1,19 @@
-"""`python -m benchmarks.dashboard`: what the pages take (results/dashboard.md), their pictures (docs/pictures)."""
+"""`python -m benchmarks.dashboard`: what the pages take (results/dashboard.md), what axe finds on them
+(results/accessibility.md), their pictures (docs/pictures)."""
 
 from __future__ import annotations
 
+import argparse
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from statistics import median
 from typing import Any
 
-from benchmarks.dashboard import pictures
+from benchmarks.dashboard import accessibility, pictures
 from benchmarks.dashboard.browser import browsing, serving
 from benchmarks.load.service import cpu_time
 from service.cases import apply_settings, load_case, parse_case
@@ -20,7 +23,7 @@ from service.settings import Settings
 from validation.provenance import provenance
 from worker.run import run_next
 
-RESULT = Path(__file__).parent.parent / "results" / "dashboard.md"
+RESULTS = Path(__file__).parent.parent / "results"
 JOBS, SCRUBS = 10_000, 60
 FILM = {"numerics.intervals": 400, "output.interval": 34.0 / 499}
 LONG = {"numerics.intervals": 1000, "output.interval": 0.1}
@@ -50,11 +53,56 @@ SHOWN = """() => new Promise(done => {
 
 
 def main() -> None:
-    """Measure, print and keep; then take the pictures."""
+    """Measure, print and keep; look at each page with axe; take the pictures."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("parts", nargs="*", choices=[*PARTS, []], default=[], help="default all")
+    for part in parser.parse_args().parts or PARTS:
+        PARTS[part]()
+
+
+def _times() -> None:
+    with service() as (server, page, run):
+        rows = [*_films(page, server.address, run), *_table(page, server.address, server.app.state.parts.registry)]
+    load = f"{os.cpu_count()} cores, on which {os.getloadavg()[0]:.1f} processes wanted to run, WebGL by software"
+    table = ["| what | measured | aim |", "|---|---:|---:|", *rows]
+    _write(RESULTS / "dashboard.md", "What the dashboard takes", load, table)
+
+
+def _accessibility() -> None:
+    with service() as (server, page, run):
+        rows = accessibility.rows(page, server.address, _pages(page, server.address, run))
+    table = ["| page | rules that hold, in light | broken in light | in dark |", "|---|---:|---:|---:|", *rows]
+    _write(RESULTS / "accessibility.md", "What axe finds on each page", f"axe-core {accessibility.version()}", table)
+
+
+def _pages(page: Any, address: str, run: Callable[..., str]) -> dict[str, str]:
+    """Every page of dashboard and documentation, with what is on it when it is filled."""
+    ids = [run("short-loop"), run("short-loop", t_end=1.0)]
+    body = {"case": "elastica", "set": {"t_end": 0.5}, "parameters": {"loads.damping": [0.5, 1.0]}}
+    ensemble = page.request.post(f"{address}/v1/ensembles", data=body).json()["id"]
+    run("elastica", t_end=0.5)
+    return {"/": "#jobs tbody tr", f"/#/jobs/{ids[0]}": "#page .chart",
+            f"/#/compare?jobs={','.join(ids)}": "#page .chart",
+            "/#/new?case=elastica": ".verdict .cost", "/#/ensembles": "#page tbody tr",
+            f"/#/ensembles/{ensemble}": "#page circle", **dict.fromkeys(accessibility.documentation(), "main")}
+
+
+def _write(path: Path, title: str, fact: str, table: list[str]) -> None:
+    lines = [f"# {title}", "", *(f"- {one}" for one in (*provenance(), fact)), "", *table, ""]
+    path.write_text("\n".join(lines), encoding="utf-8")
+    print("\n".join(lines))
+
+
+PARTS = {"times": _times, "accessibility": _accessibility, "pictures": pictures.take}
+
+
+@contextmanager
+def service() -> Iterator[tuple[Any, Any, Callable[..., str]]]:
+    """The API without a worker, a page, and what runs a shipped case."""
     with tempfile.TemporaryDirectory() as data:
         settings = replace(Settings(data=Path(data)), rate=1e6, quota=2 * JOBS)
         with serving(settings) as server, browsing() as opened:
-            registry, page = server.app.state.parts.registry, opened()
+            registry = server.app.state.parts.registry
 
             def run(name: str, **values: Any) -> str:
                 spec = parse_case(apply_settings(load_case(name), values))
@@ -63,13 +111,7 @@ def main() -> None:
                     pass
                 return str(job.id)
 
-            pictures.take(page, server.address, run, registry, settings)
-            rows = [*_films(page, server.address, run), *_table(page, server.address, registry)]
-    load = f"{os.cpu_count()} cores, on which {os.getloadavg()[0]:.1f} processes wanted to run, WebGL by software"
-    facts = [f"- {one}" for one in (*provenance(), load)]
-    lines = ["# What the dashboard takes", "", *facts, "", "| what | measured | aim |", "|---|---:|---:|", *rows, ""]
-    RESULT.write_text("\n".join(lines), encoding="utf-8")
-    print("\n".join(lines))
+            yield server, opened(), run
 
 
 def _films(page: Any, address: str, run: Callable[..., str]) -> list[str]:

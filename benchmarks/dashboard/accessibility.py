@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -28,8 +29,18 @@ def axe(page: Any) -> Found:
     return Found(len(told["passes"]), broken)
 
 
+def version() -> str:
+    """Of the rules."""
+    from axe_playwright_python.sync_playwright import Axe
+
+    found = re.search(r"axe v([\d.]+)", Axe().axe_script[:200])
+    return found[1] if found else "of unknown version"
+
+
 def documentation() -> list[str]:
-    """The addresses of the pages of the site that has been built."""
+    """The addresses of the pages of the site, which must have been built (make site)."""
+    if not SITE.is_dir():
+        raise SystemExit("the documentation has not been built here: make site")
     folders = sorted(path.parent.relative_to(SITE).as_posix() for path in SITE.rglob("index.html"))
     return ["/docs/" if name == "." else f"/docs/{name}/" for name in folders]
 

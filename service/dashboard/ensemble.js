@@ -40,7 +40,7 @@ export class EnsemblePage {
     }));
     const parameters = Object.keys(members[0]?.parameters ?? {});
     const scalars = SCALARS.filter((name) => members.some((/** @type {any} */ member) => member.values[name] !== null));
-    if (!this.across) this.choose([...parameters, ...scalars], parameters, scalars);
+    this.choose([...parameters, ...scalars], parameters, scalars);
     this.draw(parameters);
     this.list(parameters, scalars.slice(0, FIRST), members);
   }
@@ -63,9 +63,13 @@ export class EnsemblePage {
 
   /** @param {string[]} columns @param {string[]} parameters @param {string[]} scalars */
   choose(columns, parameters, scalars) {
+    if (this.offered === columns.join()) return;
+    this.offered = columns.join(); // results come as members end
+    const across = this.across?.value ?? columns[0], up = this.up?.value ?? "";
     this.across = choice("across", columns, () => this.draw(parameters));
     this.up = choice("up", columns, () => this.draw(parameters));
-    this.up.value = scalars[0] ?? parameters[parameters.length - 1];
+    this.across.value = across;
+    this.up.value = scalars.includes(up) ? up : scalars[0] ?? parameters[parameters.length - 1];
     this.choices.replaceChildren(labelled("Across", this.across), labelled("Up", this.up));
   }
 

@@ -143,6 +143,8 @@ addEventListener("keydown", (event) => {
   /** @type {HTMLElement | undefined} */ (links[Math.max(at, 0)])?.focus();
 });
 
+fetch("/docs/").then((answer) => byId("docs").hidden = !answer.ok, () => {}); // the site may not have been built
+
 addEventListener("hashchange", () => {
   notice("");
   open();

@@ -80,6 +80,19 @@ def test_any_scalar_is_drawn_against_any_parameter(server, ensemble, page):
     assert axes == ["density", "damping", "energy_bending (J)"]
 
 
+def test_results_can_be_chosen_as_soon_as_members_have_them(server, registry, settings, page):
+    body = {"case": "cantilever-vibration", "set": {"t_end": 0.2, "numerics.intervals": 10, "output.interval": 0.1},
+            "parameters": {"loads.damping": DAMPINGS}}
+    one = httpx.post(f"{server.address}/v1/ensembles", json=body).json()["id"]
+    page.goto(f"{server.address}/#/ensembles/{one}")
+    page.wait_for_selector("#page circle")
+    assert page.locator("[name=up] option").all_inner_texts() == ["loads.damping"]
+    while run_next(registry.database, settings):
+        pass
+    page.wait_for_selector("#page figcaption:has-text('max_curvature (rad/m) over loads.damping')")
+    page.select_option("[name=up]", "energy_bending")
+
+
 def test_what_was_sampled_by_its_logarithm_is_drawn_so(server, registry, settings, page):
     body = {"case": "cantilever-vibration", "set": {"t_end": 0.2, "numerics.intervals": 10, "output.interval": 0.1},
             "parameters": {"stiffness": {"path": "rod.youngs_modulus", "values": [1e7, 1e8, 1e9]}}}

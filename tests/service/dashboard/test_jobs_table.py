@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from service.access import Scope
+from service.api import documentation
 
 CONTRASTS = """() => {
   const channels = (colour) => colour.match(/[\\d.]+/g).map(Number);
@@ -154,6 +155,20 @@ def test_nothing_is_wider_than_a_phone(server, add, page):
     page.goto(server.address)
     rows(page, 2)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
+
+
+@pytest.mark.parametrize("built", [True, False])
+def test_the_documentation_is_a_click_away_where_it_is_built(server, page, tmp_path, monkeypatch, built):
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "index.html").write_text("<title>documentation</title>")
+    monkeypatch.setattr(documentation, "SITE", tmp_path / ("site" if built else "none"))
+    with page.expect_response("**/docs/") as asked:
+        page.goto(server.address)
+    asked.value.finished()
+    page.wait_for_function("built => document.querySelector('#docs').hidden !== built", arg=built)
+    if built:
+        page.click("#docs")
+        page.wait_for_function("() => document.title === 'documentation'")
 
 
 def test_the_page_tells_of_the_loss_of_its_server_and_of_its_return(server, add, page):

@@ -88,7 +88,7 @@ class Equilibria(Run):
     def _frame(self, t: float) -> Frame:
         """The frame of the point that the path has reached."""
         equations, path, point = self._equations, self._path, self._path.point
-        equations.linearise(point)
+        equations.look_at(point)
         if equations.strain() > LARGEST_STRAIN:
             told = f"stretched by {equations.strain():.2g} of its length"
             raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, told)
@@ -105,7 +105,7 @@ class Equilibria(Run):
             min_gap=nan, contacts=0,
             dt=path.last_dq * self._scene.t_end, newton_iterations=path.last_iterations,
             parameter=equations.time(point.q), negative_modes=path.modes,
-            neutral_modes=neutral_modes(equations),
+            neutral_modes=neutral_modes(equations, path.modes),
         )  # fmt: skip
         return complete(frame, self.s, self._scene)
 
@@ -123,7 +123,7 @@ class Equilibria(Run):
         return float(self._Lk + (turned[1] - turned[0]) / (2 * pi))
 
     def _fields(self, point: Point) -> Fields:
-        """The state along the rod, at the nodes, of the point that was linearised last."""
+        """The state along the rod, at the nodes, of the point that was looked at last."""
         equations, rest = self._equations, np.zeros_like(point.F)
         stages, orientation = equations.stages, orientations_at_nodes(point.quaternion)
         joints = stages.bend[0], stages.moment[0], stages.left[0], stages.right[0]

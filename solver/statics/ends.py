@@ -63,10 +63,6 @@ class StaticEnd:
         """(6,) at time t: displacement (m) or rotation (rad) where held, else internal force (N) or moment (N m)."""
         return np.array([travel(c, t) if c.kind != "load" else c.curve.value(t) for c in self._conditions])
 
-    def turned(self, t: float) -> Array:
-        """The rotation vector (3,) by which the end's frame is turned, material, where it is held about all axes."""
-        return np.where(self.held[3:], self.values(t)[3:], 0.0)
-
     def spin(self, t: float) -> float | None:
         """The rotation (rad) about a3, if it is prescribed."""
         return float(self.values(t)[5]) if self.held[3:].all() else None

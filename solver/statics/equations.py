@@ -143,10 +143,12 @@ class Equations:
         self._follower(side)[:] = follower[:3] + (loaded[:3] if end.follows else 0.0)
         force = dead[:3] + R @ self._follower(side) + (0.0 if end.follows else loaded[:3])
         across = end.axes.T @ (sign * (point.F[frame] - force)) / self._unit(X)
-        place = (point.base if side == 0 else self.tip()) + self._stretch(side, R) @ point.F[frame]
+        place = point.base if side == 0 else self.tip()
+        if self._compliance > 0.0:
+            place = place + self._stretch(side, R) @ point.F[frame]
         away = (end.axes.T @ (place - self._home[1][side]) - values[:3]) / self.units[3]
         moment = sign * (inner - R.T @ dead[3:] - follower[3:] - loaded[3:]) / self._unit(PSI)
-        turned = self._turned(side, t, point.quaternion[frame])
+        turned = self._turned(side, values[3:], point.quaternion[frame])
         left[frame, PSI] = np.where(end.held[3:], turned, moment) * self._unit(PSI)
         left[frame, X] = np.where(end.held[:3], away, across) * self._unit(X)
 
@@ -172,25 +174,30 @@ class Equations:
     def _unit(self, rows: slice) -> float:
         return float(1.0 / self._rows[rows.start])
 
-    def _turned(self, side: int, t: float, quaternion: Array) -> Array:
-        """By how much an end's frame is turned away from where it is held (3,)."""
+    def _turned(self, side: int, values: Array, quaternion: Array) -> Array:
+        """By how much an end's frame is turned away from where it is held (3,), by the rotations in `values` (3,)."""
         end, there, away = self.ends[side], np.empty(4), np.empty(3)
-        turn(self._home[0][side], end.turned(t), there)
+        if not end.held[3:].any():
+            return np.zeros(3)
+        turn(self._home[0][side], np.where(end.held[3:], values, 0.0), there)
         if end.held[3:].all():
             relative_rotation(there, quaternion, away)
             return away
-        if not end.held[3:].any():
-            return np.zeros(3)
         free = np.eye(3)[int(np.argmin(end.held[3:]))]
         R, R_there = np.empty((3, 3)), np.empty((3, 3))
         matrix_of(quaternion, R)
         matrix_of(there, R_there)
         return np.cross(R.T @ R_there @ free, free)
 
-    def linearise(self, point: Point) -> tuple[Array, Solver]:
-        """The residual (N + 2, 9) and the factored tangent at a point."""
+    def look_at(self, point: Point) -> Array:
+        """The residual (N + 2, 9) at a point, with `stages` and `tangents` there."""
         left = self.residual(point)
         segment_tangents(self.chain, self.loads, self._driven, self.stages, 0, self.tangents)
+        return left
+
+    def linearise(self, point: Point) -> tuple[Array, Solver]:
+        """The residual (N + 2, 9) and the factored tangent at a point."""
+        left = self.look_at(point)
         return left, Solver(*self.blocks(), _places(len(self.start.quaternion)), self.units)
 
     def blocks(self, softest: float = SOFTEST) -> tuple[Array, Array, Array]:
@@ -215,6 +222,8 @@ class Equations:
                 block[X][end.held[:3]] = 0.0
             D[a, PSI, PSI][end.held[3:]] = one[end.held[3:]] * self._unit(PSI)
             D[a, X, X][end.held[:3]] = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
+            if self._compliance == 0.0:
+                continue
             force = upper[0] if side == 0 else D[-1]
             rows = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
             force[X, FORCE][end.held[:3]] = rows @ self._stretch(side, R[a])

@@ -9,7 +9,8 @@ pivots of its factorisation, and those of W - G H^-1 G^t; each condition account
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import eigvalsh, solve_banded
+from scipy.linalg import eigvalsh
+from scipy.linalg.lapack import dgbsv
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
@@ -22,14 +23,13 @@ below it the energy stays the same, as where a rod spins about its own axis or a
 
 
 def negative_modes(equations: Equations) -> int:
-    """Directions of falling energy at the point that `equations` has linearised last; loads are held as they are."""
+    """Directions of falling energy at the point that `equations` looked at last; loads are held as they are."""
     return _count(equations, _least(equations))
 
 
-def neutral_modes(equations: Equations) -> int:
-    """Directions, besides those, in which the energy stays the same."""
-    least = _least(equations)
-    return _count(equations, -least) - _count(equations, least)
+def neutral_modes(equations: Equations, falling: int) -> int:
+    """Directions in which the energy stays the same, besides those in which it is `falling`."""
+    return _count(equations, -_least(equations)) - falling
 
 
 def _least(equations: Equations) -> float:
@@ -51,10 +51,12 @@ def _count(equations: Equations, softest: float) -> int:
     ties = np.hstack(held)
     W = np.zeros((G.shape[1], G.shape[1]))
     W[:3, 3:], W[3:, :3] = ties, ties.T
-    full = np.vstack([bands[:0:-1], [bands[0]], bands[1:]])
+    full = np.zeros((3 * BAND + 1, bands.shape[1]))
+    full[2 * BAND :] = bands
     for k in range(1, BAND + 1):
-        full[BAND - k] = np.roll(bands[k], k)
-    S = W - G.T @ solve_banded((BAND, BAND), full, G)
+        full[2 * BAND - k, k:] = bands[k, : -k]
+    _, _, solved, _ = dgbsv(BAND, BAND, full, G)
+    S = W - G.T @ solved
     falling = int(np.sum(eigvalsh(S) < 0.0))
     return int(_negative_pivots(bands.copy())) + falling - int(ties.shape[1])
 

@@ -52,7 +52,8 @@ class StaggeredMethod(RadauMethod):
         self.contact = SelfContact(scene.contact, scene.rod, self.s, 3, foreseen(scene))
         self._make_records(chain, state, (Stages, Driven, Residuals, Tangents, Factors),
                            Coupling.empty(N if scene.contact is not None else 0))  # fmt: skip
-        self.driven.compliance[:] = 0.5 * axial_compliance(scene)
+        compliance = axial_compliance(scene)
+        self.driven.compliance[:], self._stretches = 0.5 * compliance, compliance > 0.0
         self._joints = self._bend(self.state.quaternion)[0]
         R = np.zeros((N + 2, 3, 3))
         for quaternion, matrix in zip(self.state.quaternion, R, strict=True):
@@ -177,7 +178,9 @@ class StaggeredMethod(RadauMethod):
         stages, ends = self.stages, self._end_velocities()
         stage_powers(self._handed.reference, ends, self._powers)
         for side, (end, frame) in enumerate(((self.start, 0), (self.end, -1))):
-            velocity = ends[:, side] + (2.0 * side - 1.0) * self._stretching(side, frame)
+            velocity = ends[:, side]
+            if self._stretches:
+                velocity = velocity + (2.0 * side - 1.0) * self._stretching(side, frame)
             if not end.in_lab:
                 velocity = rotate_back(stages.quaternion[:, frame].copy(), velocity)
             end.follow(weights @ velocity, weights @ stages.omega[:, frame])
@@ -190,6 +193,8 @@ class StaggeredMethod(RadauMethod):
 
     def strain(self) -> float:
         """The trial's stretch by the compliance of its ends, in rod lengths."""
+        if not self._stretches:
+            return 0.0
         forces, tangents = self.stages.F[-1, [0, -1]], self.stages.R[-1, [0, -1], :, 2]
         stretch = self.driven.compliance * np.abs(np.sum(forces * tangents, axis=1))
         return float(stretch.sum() / self.s[-1])

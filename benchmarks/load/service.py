@@ -25,18 +25,27 @@ APIS = 2
 def cpu_time(called: str = "") -> float:
     """CPU time (s) that the processes have taken that this one has started, and those that they have; of those alone
     that have `called` in their command."""
-    parents, seconds = {}, {}
-    for entry in Path("/proc").glob("[0-9]*/stat"):
+    seconds = 0.0
+    for pid in started(called):
         with suppress(OSError):  # it has just ended
-            fields = entry.read_text().rpartition(")")[2].split()
+            fields = Path("/proc", str(pid), "stat").read_text().rpartition(")")[2].split()
+            seconds += sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
+    return seconds
+
+
+def started(called: str = "") -> set[int]:
+    """The processes that this one has started, and those that they have, which have `called` in their command."""
+    parents, meant = {}, set()
+    for entry in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
             pid = int(entry.parent.name)
-            used = sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
-            meant = called.encode() in entry.with_name("cmdline").read_bytes()
-            parents[pid], seconds[pid] = int(fields[1]), used if meant else 0.0
+            parents[pid] = int(entry.read_text().rpartition(")")[2].split()[1])
+            if called.encode() in entry.with_name("cmdline").read_bytes():
+                meant.add(pid)
     ours = {os.getpid()}
     while more := {pid for pid, parent in parents.items() if parent in ours} - ours:
         ours |= more
-    return sum(seconds[pid] for pid in ours - {os.getpid()})
+    return (ours - {os.getpid()}) & meant
 
 
 @contextmanager

@@ -19,7 +19,7 @@ import numpy as np
 from benchmarks.reading.memory import peak_of, started_here
 from service.cases import CaseSpec, build_scene, parse_case
 from service.jobs import Database
-from service.jobs.held import HeldJob, claim
+from service.jobs.held import claim
 from service.jobs.job import Dataset, Reached
 from service.jobs.lifecycle import Status
 from service.results import DatasetWriter
@@ -70,9 +70,10 @@ class Held:
 def of_a_large_dataset(address: str, settings: Settings) -> tuple[float, list[Held]]:
     """The size (bytes) of the file, and what publishing and reading it took."""
     with httpx.Client(base_url=address, timeout=600.0) as client:
-        told = client.post("/v1/jobs", json={"case": "cantilever-vibration", "set": CASE}).raise_for_status().json()
-    job_id = str(told["id"])
-    path, published = _published(job_id, settings)
+        job = client.post("/v1/jobs", json={"case": "cantilever-vibration", "set": CASE}).raise_for_status().json()
+        told = client.get(job["links"]["case"]).raise_for_status().json()
+    job_id = str(job["id"])
+    path, published = _published(job_id, parse_case(told), settings)
     servers = started_here("api")
     return path.stat().st_size, [published, *(_read(address, job_id, what, servers) for what in READS)]
 
@@ -85,30 +86,29 @@ def _read(address: str, job_id: str, what: str, servers: list[int]) -> Held:
     return Held(what, told[0], server, told[1])
 
 
-def _published(job_id: str, settings: Settings) -> tuple[Path, Held]:
+def _published(job_id: str, spec: CaseSpec, settings: Settings) -> tuple[Path, Held]:
     """The job ended, with a dataset of chance numbers, which cannot be packed; as a worker does it."""
-    database = Database(settings.database_url)
-    held = claim(database, job_id, 3600.0, "benchmark:0")
-    assert held is not None
-    spec = parse_case(held.case)
-    path, took = settings.datasets / f"{job_id}.1.nc", [0.0]
+    path, took, done = settings.datasets / f"{job_id}.1.nc", [0.0], []
     with tempfile.TemporaryDirectory(dir=settings.data) as directory:
         segments = list(_segments(Path(directory), stored_variables(spec)))
 
         def publish() -> None:
             began = time.perf_counter()
-            _publish(held, spec, path, Path(directory), segments)
+            with DatasetWriter(path, spec, Path(directory), segments) as writer:
+                done.append(writer.publish("completed", "", simulate(build_scene(spec))))
             took[0] = time.perf_counter() - began
 
         grown = peak_of([os.getpid()], publish)
-    database.close()
+    _end(job_id, Dataset(path.name, done[0].sha256, done[0].bytes), settings)
     return path, Held("put together, verified and published, from its segments", took[0], None, grown)
 
 
-def _publish(held: HeldJob, spec: CaseSpec, path: Path, directory: Path, segments: list[Segment]) -> None:
-    with DatasetWriter(path, spec, directory, segments) as writer:
-        done = writer.publish("completed", "", simulate(build_scene(spec)))
-    held.finish(Status.SUCCESSFUL, "completed", "", Dataset(path.name, done.sha256, done.bytes), Reached(1.0, 5.0))
+def _end(job_id: str, dataset: Dataset, settings: Settings) -> None:
+    database = Database(settings.database_url)
+    held = claim(database, job_id, 60.0, "benchmark:0")
+    if held is None or held.finish(Status.SUCCESSFUL, "completed", "", dataset, Reached(1.0, 5.0)) is None:
+        raise RuntimeError(f"job {job_id} cannot be ended")
+    database.close()
 
 
 def _segments(directory: Path, variables: tuple[Variable, ...]) -> Iterator[Segment]:

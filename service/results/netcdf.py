@@ -19,6 +19,8 @@ from service.results.segments import Block
 
 CHUNK_BYTES = 250_000
 """Of a chunk: reading one frame unpacks one chunk, and smaller ones would pack little worse but be many."""
+CHUNK_CACHE = 4 * CHUNK_BYTES
+"""Of a variable, in memory: frames come in order, so what has been written is not needed again."""
 Blocks = Callable[[], Iterator[Block]]
 
 
@@ -62,6 +64,8 @@ def verify(path: Path, blocks: Blocks) -> None:
     """Read the file back and compare it with the blocks. Raises OSError where they differ."""
     with _library_errors(path), netCDF4.Dataset(path) as dataset:
         dataset.set_auto_mask(False)
+        for variable in dataset.variables.values():
+            variable.set_var_chunk_cache(CHUNK_CACHE)
         at = 0
         for block in blocks():
             upto = at + len(block["time"])
@@ -109,6 +113,7 @@ def _define(dataset: netCDF4.Dataset, variable: Variable, frames: int) -> None:
         complevel=1,
         shuffle=True,
         fletcher32=True,
+        chunk_cache=CHUNK_CACHE,
         chunksizes=(max(1, min(frames, in_chunk)), *rest),
         fill_value=np.nan if variable.type == "f8" else False,
     )

@@ -21,8 +21,9 @@ class Range:
     scale: Scale = "linear"
 
 
-Parameters = Mapping[str, Sequence[Any] | Range | Mapping[str, Any]]
-"""By dotted key: values, a range, or what the service takes for one."""
+Parameters = Mapping[str, Any]
+"""By dotted key: values (also numpy's), a Range, or what the service takes for one. No narrower type: a dictionary of
+both kinds, kept in a variable, is one of objects to a type checker."""
 
 
 def sweep_request(case: CaseLike, settings: Mapping[Any, Any], parameters: Parameters,

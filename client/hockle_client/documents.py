@@ -172,13 +172,14 @@ class Event(Document):
 class Link(Document):
     """An address by which anybody reads one dataset, until it expires or is revoked.
 
-    `url`, that of the file, `zarr`, that of a Zarr store, and `opendap` are told once, when the link is made.
+    `url`, that of the file, `zarr`, that of a Zarr store, and `opendap` are told once, when the link is made; else they
+    are empty.
     """
 
     id: str
-    url: str | None
-    zarr: str | None
-    opendap: str | None
+    url: str
+    zarr: str
+    opendap: str
     created: datetime
     expires: datetime
     revoked: datetime | None

@@ -205,4 +205,4 @@ class Job(JobFacts):
 
     def _linked(self, told: dict[str, Any]) -> Link:
         addresses = {"url": told.pop("href", None)} | {name: told.pop(name, None) for name in ("zarr", "opendap")}
-        return Link(**{name: one and f"{self._client.url}{one}" for name, one in addresses.items()}, **told)
+        return Link(**{name: f"{self._client.url}{one}" if one else "" for name, one in addresses.items()}, **told)

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from mypy import api
 
 PAGE = (Path(__file__).parents[2] / "docs" / "client.md").read_text()
 BLOCKS = re.findall(r"^```python\n(.*?)^```", PAGE, re.M | re.S)
@@ -31,6 +32,14 @@ def test_every_block_runs_in_its_order(server, tmp_path, monkeypatch, capsys):
     assert (tmp_path / "run.nc").read_bytes()[:4] == b"\x89HDF"
     assert sorted(names["part"].data_vars) == ["Wr", "r"] and list(names["table"]) == ["Tw", "Wr", "Lk"]
     assert names["whole"].sizes["member"] == 4 and "loads.damping" in names["whole"].coords
+
+
+def test_a_type_checker_finds_no_fault_with_it(tmp_path, monkeypatch):
+    monkeypatch.setenv("MYPYPATH", str(Path(__file__).parents[2] / "client"))
+    (tmp_path / "page.py").write_text("".join(BLOCKS))
+    told = ["--strict", "--python-version", "3.11", "--follow-imports", "silent", "--ignore-missing-imports"]
+    out, _, status = api.run([*told, "--cache-dir", str(tmp_path), str(tmp_path / "page.py")])
+    assert status == 0, out
 
 
 def test_a_sweep_of_200_takes_at_most_eight_lines():

@@ -38,6 +38,7 @@ def main() -> int:
     parser.add_argument("--slow", type=int, default=2000, help="slow connections")
     parser.add_argument("--clients", type=int, default=200, help="honest clients beside them")
     parser.add_argument("--seconds", type=float, default=400.0, help="of CPU for which each parser is tried")
+    parser.add_argument("--minutes", type=float, default=180.0, help="for jobs and parsers at the most")
     told = parser.parse_args()
     stop_on_signals()  # and clean up then
     os.environ |= ENVIRONMENT
@@ -50,8 +51,8 @@ def main() -> int:
         rows += slowloris(port, job_id, told.slow, told.clients, 30.0)
         rows += odd_requests(port)
     with ProcessPoolExecutor(1, get_context("spawn")) as beside:
-        tried = beside.submit(patient_parsers, told.seed, told.seconds)
-        rows += disturbed(told.seed, told.jobs)
+        tried = beside.submit(patient_parsers, told.seed, told.seconds, told.minutes)
+        rows += disturbed(told.seed, told.jobs, told.minutes)
         rows += tried.result()
     print(text(made_with, rows))
     keep(made_with, rows)

@@ -59,20 +59,22 @@ PARSERS: dict[str, tuple[Callable[[Any], object], Any, tuple[type[Exception], ..
 """What reads, what it is given, and by what it says no."""
 
 
-def parsers(first_seed: int, seconds: float) -> list[Row]:
-    """Try each for so many seconds of CPU time; the seeds go on from the first."""
-    return [_row(name, first_seed, seconds) for name in PARSERS]
+def parsers(first_seed: int, seconds: float, minutes: float) -> list[Row]:
+    """Try each for so many seconds of CPU time, in so many minutes in all; the seeds go on from the first."""
+    each = 60.0 * minutes / len(PARSERS)
+    return [_row(name, first_seed, seconds, each) for name in PARSERS]
 
 
-def patient_parsers(first_seed: int, seconds: float) -> list[Row]:
+def patient_parsers(first_seed: int, seconds: float, minutes: float) -> list[Row]:
     """The same in a process of its own, which leaves the CPU to whoever else wants it."""
     os.nice(NICE)
-    return parsers(first_seed, seconds)
+    return parsers(first_seed, seconds, minutes)
 
 
-def _row(name: str, first_seed: int, seconds: float) -> Row:
+def _row(name: str, first_seed: int, seconds: float, within: float) -> Row:
     read, strategy, refusals = PARSERS[name]
     began, number, tried, fault = time.process_time(), first_seed, 0, ""
+    end = time.monotonic() + within
 
     def one(told: Any) -> None:
         nonlocal tried
@@ -82,7 +84,7 @@ def _row(name: str, first_seed: int, seconds: float) -> Row:
 
     bounds = settings(max_examples=AT_ONCE, deadline=None, database=None, phases=[Phase.generate, Phase.shrink],
                       suppress_health_check=list(HealthCheck))  # fmt: skip
-    while not fault and time.process_time() - began < seconds:
+    while not fault and time.process_time() - began < seconds and time.monotonic() < end:
         try:
             seed(number)(bounds(given(strategy)(one)))()  # type: ignore[no-untyped-call]
         except Exception as error:  # whatever it is, it was not promised

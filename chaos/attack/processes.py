@@ -41,8 +41,8 @@ LEASES = 3
 CASES = ("short-loop", "free-flight")
 
 
-def disturbed(seed: int, count: int) -> list[Row]:
-    """Disturb the service until so many jobs were accepted; then all must end, and soon."""
+def disturbed(seed: int, count: int, minutes: float) -> list[Row]:
+    """Disturb the service until so many jobs were accepted or so many minutes are over; then all must end, and soon."""
     known = {name: case for name, case in cases().items() if name in CASES}
     expected = {name: undisturbed(case) for name, case in known.items()}
     with (
@@ -57,7 +57,7 @@ def disturbed(seed: int, count: int) -> list[Row]:
         served.start()
         try:
             with watch.looking():
-                _disturb(target, record, count)
+                _disturb(target, record, count, time.monotonic() + 60.0 * minutes)
                 began = time.monotonic()
                 record.all_ended = come_to_an_end(target)
                 took = time.monotonic() - began
@@ -83,13 +83,13 @@ QUIET = 10.0
 """Seconds that a job may take by itself beside others, and processes to start."""
 
 
-def _disturb(target: Target, record: Record, count: int) -> None:
+def _disturb(target: Target, record: Record, count: int, end: float) -> None:
     stopped = threading.Event()
     open_ = threading.Thread(target=keep_open, args=(target, QUEUED, stopped))
     open_.start()
     waiting: list[Fault] = []
     try:
-        while len(record.accepted) < count:
+        while len(record.accepted) < count and time.monotonic() < end:
             target.served.look_after()
             if not waiting:  # each once in a round, in another order each time
                 waiting = target.random.sample(FAULTS, len(FAULTS))

@@ -16,7 +16,7 @@ SECONDS = 0.3
 
 
 def test_every_parser_says_yes_or_the_no_that_is_promised():
-    rows = parsers.parsers(1, SECONDS)
+    rows = parsers.parsers(1, SECONDS, 60.0)
     assert {row.what.removeprefix("parser: ") for row in rows} == set(parsers.PARSERS)
     assert [row for row in rows if not row.good] == []
 
@@ -26,7 +26,7 @@ def test_a_parser_that_breaks_is_told_with_its_seed(monkeypatch):
         return len(told) // len(told.strip())
 
     monkeypatch.setattr(parsers, "PARSERS", {"broken": (breaks, parsers.TEXT, (ValueError,))})
-    [row] = parsers.parsers(7, 60.0)
+    [row] = parsers.parsers(7, 60.0, 1.0)
     assert not row.good and row.seen.startswith("seed 7: ZeroDivisionError")
 
 
@@ -43,3 +43,8 @@ def test_odd_requests_are_refused_and_honest_clients_answered_beside_slow_ones()
 def test_the_table_marks_what_gave_way():
     told = text(["seed 1"], [Row("a", "b", "c", True), Row("d", "e", "f", False)])
     assert "| a | b | c | good |" in told and "| d | e | f | BAD |" in told and "- seed 1" in told
+
+
+def test_parsers_end_in_time():
+    seen = {row.seen for row in parsers.parsers(1, 60.0, 0.0)}
+    assert seen == {"0 texts, seeds 1 to 0, 0 s of CPU"}

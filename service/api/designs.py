@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
@@ -18,6 +19,8 @@ from service.results.schema import ERRORS, LABELS, VARIABLES
 
 MOST_MEMBERS = 10_000
 MOST_PARAMETERS = 50
+MOST_BYTES = 100_000_000
+"""Of the cases of all members."""
 NAME = r"^[A-Za-z][A-Za-z0-9_.-]{0,99}$"
 TAKEN = frozenset({"member", "time", "s", "id", "job", "label", "status", "outcome", "t", *LABELS,
                    *(variable.name for variable in (*VARIABLES, *ERRORS.values()))})
@@ -204,6 +207,9 @@ class EnsembleRequest(BaseModel):
     def specs(self, values: list[Values]) -> Iterator[CaseSpec]:
         """The case of each member. Raises CaseError, which names the first member that cannot be run."""
         base = self._base()
+        if (size := self._size(base)) > MOST_BYTES:
+            raise CaseError([FieldError(f"/{self._where}", None, f"must make cases of at most {MOST_BYTES:,} bytes in "
+                                        f"all, not {size:,} ({self.many:,} members)")])  # fmt: skip
         for number, own in enumerate(values):
             told = dict(zip(self.paths, own, strict=True))
             try:
@@ -214,6 +220,12 @@ class EnsembleRequest(BaseModel):
                                      f"member {number} ({of}): {fault.pointer or 'the case'} {fault.rule}")
                           for fault in error.errors]  # fmt: skip
                 raise CaseError(faults, error.more) from None
+
+    def _size(self, base: dict[str, Any]) -> int:
+        """Bytes of the members' cases, about."""
+        listed = [one.values for one in self.parameters.values() if one.values]
+        own = sum(self.many // len(values) * len(json.dumps(values)) for values in listed)
+        return self.many * len(json.dumps([base, self.set])) + own + len(json.dumps(self.members or ()))
 
     def _base(self) -> dict[str, Any]:
         if not isinstance(self.case, str):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import json
 from collections.abc import Iterator
@@ -122,14 +123,19 @@ def found(ensembles: Ensembles, ensemble_id: str) -> Ensemble:
 
 @router.post("", status_code=202, response_model=EnsembleDocument, openapi_extra=BODY,
              responses=problems(400, 409, 413, 415, 422))
-def submit_ensemble(parts: InParts, caller: Submitter, body: Annotated[dict[str, Any], Depends(json_object)],
-                    idempotency_key: IdempotencyKey = None) -> Response:
+async def submit_ensemble(parts: InParts, caller: Submitter, body: Annotated[dict[str, Any], Depends(json_object)],
+                          idempotency_key: IdempotencyKey = None) -> Response:
     """Accept many cases at once: a grid, a list or a sample of values in one case. All of them are accepted, or none.
 
     Each member is an ordinary job; members with the same case are one job, and one that has run it before is as good,
     unless `reuse` is false.
     """
-    new = requested(ensemble_request(body), body, parts, caller, idempotency_key or "")
+    async with parts.one_ensemble:
+        return await asyncio.to_thread(_accepted, body, parts, caller, idempotency_key or "")
+
+
+def _accepted(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Response:
+    new = requested(ensemble_request(body), body, parts, caller, key)
     ensembles = Ensembles(parts.registry.database, caller.owner)
     accepted = ensembles.submit(new, parts.submissions.terms)
     parts.submissions.announce()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import asyncio
+from dataclasses import dataclass, field
 from typing import Annotated
 
 from fastapi import Depends, Request
@@ -36,6 +37,8 @@ class Parts:
     datasets: Datasets
     health: Health
     admitted: Admitted
+    one_ensemble: asyncio.Lock = field(default_factory=asyncio.Lock)
+    """Held by whose cases are understood: those of many at once would take gigabytes."""
 
 
 class _With(SecurityBase):

@@ -10,14 +10,14 @@ from typing import Annotated, Any, Literal, NoReturn
 from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.api.bodies import at_leisure, json_object
+from service.api.bodies import json_object
 from service.api.description import EXECUTE_BODY, problems
 from service.api.documents import JobDocument, document
 from service.api.jobs import deleted
 from service.api.numbers import WHOLE
 from service.api.parts import InParts, Jobs, OwnJobs, Reader, Submitter
 from service.api.problems import Problem
-from service.api.submitting import requested
+from service.api.submitting import understood
 from service.cases import CaseError, FieldError
 from service.jobs import ENDED, Job, Selection, Status
 
@@ -136,7 +136,7 @@ async def execute(request: Request, process_id: str, caller: Submitter, parts: I
     if not isinstance(case, dict):
         raise CaseError([FieldError("/inputs/case", case, "must be an object: a case, or a shipped one with settings")])
     try:
-        submission = await at_leisure(request.state.body_size, requested, case, parts, caller, "")
+        submission = await understood(request, case, parts, caller, "")
     except CaseError as error:
         inside = [FieldError(f"/inputs/case{fault.pointer}", fault.value, fault.rule) for fault in error.errors]
         raise CaseError(inside, error.more) from None

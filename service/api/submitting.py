@@ -11,7 +11,7 @@ from fastapi import APIRouter, Depends, Header, Request, Response
 
 from service.access import Caller
 from service.api.again import Again
-from service.api.bodies import at_leisure, json_object
+from service.api.bodies import LARGEST_BODY, at_leisure, json_object
 from service.api.description import CASE_BODY, problems
 from service.api.documents import JobDocument, answer
 from service.api.parts import InParts, Parts, Submitter
@@ -47,14 +47,19 @@ async def submit(
     job for a day. A job of one's own that has run the same case is the answer instead of a new one, unless `reuse` is
     false.
     """
-    size = request.state.body_size
-    submission = await at_leisure(size, requested, body, parts, caller, idempotency_key or "")
+    submission = await understood(request, body, parts, caller, idempotency_key or "")
     with parts.submissions.put(submission) as future:
         job = await asyncio.wrap_future(future)
     seconds = wait_preferred(prefer)
     job = await until_ended(job, seconds, parts)
     headers = {} if seconds is None else {"Preference-Applied": f"wait={seconds}"}
     return answer(job, 200 if job.status in ENDED else 202, headers)
+
+
+async def understood(request: Request, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
+    """`requested`, beside the event loop where the case may be large: that of the request, or of a job it names."""
+    size = LARGEST_BODY if "job" in body else request.state.body_size
+    return await at_leisure(size, requested, body, parts, caller, key)
 
 
 def requested(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:

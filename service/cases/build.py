@@ -33,7 +33,9 @@ def build_scene(spec: CaseSpec) -> Scene:
         _part("/ends/end", lambda: check_end(build_end(spec.ends.end)))
     initial = _part("/initial", lambda: _initial(spec.initial, spec.rod.length))
     if spec.rod.kappa0 == "initial":
-        rod = replace(rod, kappa0=_curvature(spec.initial, spec.rod.length, spec.numerics.expected_intervals))
+        intervals = spec.numerics.expected_intervals
+        kappa0 = _part("/initial", lambda: _curvature(spec.initial, spec.rod.length, intervals))
+        rod = replace(rod, kappa0=kappa0)
     return _part("", lambda: _scene(spec, rod, initial))
 
 

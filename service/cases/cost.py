@@ -70,10 +70,10 @@ def by_size(spec: CaseSpec) -> Cost:
     numerics = spec.numerics
     nodes, frames = numerics.expected_intervals + 1, spec.frames
     points, pairs = contact_points(spec)
-    steps = _steps(spec)
-    step = STEP + STEP_NODE * nodes + POINT * points + PAIR * pairs
     if spec.analysis == "static":
         steps, step = 2 * frames + 10, STATIC_NODE * nodes
+    else:
+        steps, step = _steps(spec), STEP + STEP_NODE * nodes + POINT * points + PAIR * pairs
     frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
     seconds = steps * step + frames * frame
     if numerics.tolerance:

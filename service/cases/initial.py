@@ -14,6 +14,8 @@ from service.meaning import means
 from solver import Initial
 
 ORIGIN: Triple = (0.0, 0.0, 0.0)
+LONGEST_AXIS = 1e100
+"""Its square is finite. How long it is does not matter."""
 
 
 class _Motion(Spec):
@@ -82,6 +84,8 @@ class Centreline(_Motion):
                 raise refusal(f"points/{i}", self.points[i], "must differ from the point before it")
         if self.a1 is not None and not any(self.a1):
             raise refusal("a1", self.a1, "must not be zero")
+        if self.a1 is not None and hypot(*self.a1) > LONGEST_AXIS:
+            raise refusal("a1", self.a1, f"must be at most {LONGEST_AXIS:g} long")
         return self
 
     def build(self, length: float) -> Initial:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 from typing import TYPE_CHECKING
 
 from pydantic import BaseModel
@@ -56,9 +57,11 @@ def tables_in(part: BaseModel | tuple[object, ...], pointer: str = "",
 def _refuse_output(case: CaseSpec) -> None:
     if case.output.interval > case.t_end:
         raise refusal("output/interval", case.output.interval, f"must be <= t_end ({case.t_end} s)")
-    stored = case.frames * ((case.numerics.intervals or FIRST_INTERVALS) + 1)
+    frames = case.t_end / case.output.interval
+    stored = inf if frames > MOST_NODE_FRAMES else case.frames * ((case.numerics.intervals or FIRST_INTERVALS) + 1)
     if stored > MOST_NODE_FRAMES:
-        rule = f"must leave at most {MOST_NODE_FRAMES:,} nodes times frames, not {stored:,}"
+        told = f"{frames:.3g} frames" if stored == inf else f"{stored:,}"
+        rule = f"must leave at most {MOST_NODE_FRAMES:,} nodes times frames, not {told}"
         raise refusal("output/interval", case.output.interval, rule)
     steps = case.t_end / (case.numerics.dt_max or case.output.interval)
     if case.analysis == "dynamic" and steps > MOST_STEPS:

@@ -134,3 +134,8 @@ def test_tables_that_would_not_fit_into_memory_are_refused_by_the_longest():
     [fault] = refused.value.errors
     assert fault.pointer == "/loads/distributed/0/force/0"
     assert "200,000 points" in fault.rule and "210," in fault.rule
+
+
+def test_an_equilibrium_costs_the_same_whatever_dt_max_it_is_told():
+    told = [parse_case(apply_settings(load_case("static-elastica"), {"numerics.dt_max": dt})) for dt in (5e-324, 0.1)]
+    assert estimate(told[0]) == estimate(told[1])

@@ -327,3 +327,19 @@ def test_some_constants_of_contact_are_refused(contact: dict[str, Any], pointer:
     with pytest.raises(CaseError, match=rule) as refused:
         parse_case({**load_case("short-loop"), "contact": contact})
     assert [fault.pointer for fault in refused.value.errors] == [pointer]
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "value", "pointer"),
+    [
+        ("elastica", "t_end", 1e308, "/output/interval"),
+        ("elastica", "t_end", 1e300, "/output/interval"),
+        ("cantilever-vibration", "output.interval", 5e-324, "/output/interval"),
+        ("hanging-cable", "initial.a1", [1.0, 1e308, 0.0], "/initial/a1"),
+    ],
+)
+def test_a_number_whose_products_overflow_is_refused_in_a_line(name: str, key: str, value: object, pointer: str):
+    with pytest.raises(CaseError) as refused:
+        parse_case(apply_settings(load_case(name), {key: value}))
+    assert [fault.pointer for fault in refused.value.errors] == [pointer]
+    assert len(str(refused.value)) < 200

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
+from contextlib import suppress
+
 import netCDF4
 import numpy as np
 import pytest
 
+from service.api.submitting import requested
 from service.cases import apply_settings, load_case
 from worker.run import run_next
 
@@ -129,3 +133,18 @@ def test_equal_members_and_those_that_have_run_are_begun_with_too(client, regist
         pass
     for one in (told, again):
         assert client.get(one["links"]["self"]).json()["status"] == "successful"
+
+
+@pytest.mark.parametrize("path", ["/v1/jobs", "/ogc/processes/simulate/execution"])
+def test_the_case_of_a_job_is_read_beside_the_event_loop_however_small_the_body(client, case, monkeypatch, path):
+    job_id, seen = client.post("/v1/jobs", json=case).json()["id"], []
+
+    def looking(*told):
+        with suppress(RuntimeError):
+            seen.append(asyncio.get_running_loop())
+        return requested(*told)
+
+    monkeypatch.setattr("service.api.submitting.requested", looking)
+    body = {"job": job_id, "set": {"t_end": 0.9}, "reuse": False}
+    assert client.post(path, json=body if path == "/v1/jobs" else {"inputs": {"case": body}}).status_code in (201, 202)
+    assert seen == []

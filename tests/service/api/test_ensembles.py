@@ -305,3 +305,27 @@ def test_sobol_indices_tell_which_parameter_matters(client, case, registry, run_
 
 def test_statuses_are_those_of_jobs(client, grid):
     assert set(client.post("/v1/ensembles", json=grid).json()["counts"]) == {str(status) for status in Status}
+
+
+@pytest.mark.parametrize("design", [
+    {"members": [{"loads.damping": float(i)} for i in range(1000)]},
+    {"parameters": {"loads.damping": list(range(1000))}},
+    {"parameters": {"loads.damping": list(range(50)), "t_end": [0.04, 0.05] * 10}},
+    {"parameters": {"loads.damping": {"low": 0.0, "high": 1.0}}, "sample": {"method": "latin_hypercube", "size": 1000}},
+])  # fmt: skip
+def test_cases_that_are_too_large_in_all_are_refused_before_they_are_made(client, case, monkeypatch, design):
+    table = {"s": [i * 1e-5 for i in range(5000)], "value": [0.0] * 5000}
+    large = case | {"loads": {"distributed": [{"force": [table, 0.0, 0.0]}] * 3}}
+    monkeypatch.setattr("service.api.designs.parse_case", lambda _: pytest.fail("it was made"))
+    answer = client.post("/v1/ensembles", json={"case": large, **design})
+    assert problem(answer) == (422, "invalid_case")
+    assert "must make cases of at most 100,000,000 bytes in all" in answer.json()["detail"]
+
+
+def test_a_table_that_members_differ_in_counts_too(client, case, monkeypatch):
+    tables = [[{"s": [0.0, 1.0], "value": [float(i)] * n} for n in (2, 20_000)] for i in range(4)]
+    monkeypatch.setattr("service.api.designs.parse_case", lambda _: pytest.fail("it was made"))
+    parameters = {f"p{i}": {"path": f"loads.distributed.{i}", "values": told} for i, told in enumerate(tables)}
+    parameters["damping"] = {"path": "loads.damping", "values": list(range(200))}
+    answer = client.post("/v1/ensembles", json={"case": case, "parameters": parameters})
+    assert "bytes in all" in answer.json()["detail"]

@@ -19,6 +19,7 @@ from worker.parent import die_with_parent
 
 PATIENCE = 120.0
 WORKERS = 2
+TRIES = 10
 
 
 class Served:
@@ -38,13 +39,14 @@ class Served:
     def start(self) -> None:
         """Start it, and wait until it says that it serves."""
         parent = os.getpid()
-        for _ in range(3):
+        for _ in range(TRIES):
             before = self.log.stat().st_size if self.log.exists() else 0
             with self.log.open("ab") as log:
                 self.process = subprocess.Popen(self._command, stdout=log, stderr=log, env=self._environment,
                                                 preexec_fn=partial(die_with_parent, parent))
             if self._serves(self.process, before):
                 return
+            time.sleep(1.0)  # the disk may be full just now
         raise RuntimeError(f"it does not start: {self.log.read_text()[-2000:]}")
 
     def stop(self) -> None:

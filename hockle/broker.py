@@ -45,8 +45,8 @@ def short_directory(home: Path) -> Iterator[Path]:
     if note.is_file():
         _remove(Path(note.read_text()))
     made = Path(tempfile.mkdtemp(prefix=PREFIX))
-    note.write_text(str(made))
     try:
+        note.write_text(str(made))
         yield made
     finally:
         _remove(made)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
@@ -13,6 +14,7 @@ from hockle.failure import Failure
 COMMANDS = ("local", "plots", "film", "serving", "parts", "keys", "store", "remote", "jobs", "operating", "sweep",
             "again", "completion", "demo")
 
+FULL = (errno.ENOSPC, errno.EDQUOT)
 UNIX_ONLY = ("fcntl", "resource")
 """Modules of Python that Windows lacks."""
 
@@ -32,12 +34,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("hockle: this command needs Linux or macOS, for it locks files as they do: on Windows use it in WSL; "
               "cases, validate and what talks to a server work everywhere", file=sys.stderr)  # fmt: skip
         return 1
-    except KeyboardInterrupt:
-        print("hockle: interrupted", file=sys.stderr)
-        return 130
     except BrokenPipeError:  # the reader of a pipe, such as head, has enough
         sys.stderr.close()
         return 0
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        print(f"hockle: there is no room left for {error.filename or 'what it writes'}: {error.strerror}",
+              file=sys.stderr)  # fmt: skip
+        return 1
+    except KeyboardInterrupt:
+        print("hockle: interrupted", file=sys.stderr)
+        return 130
 
 
 def parser() -> argparse.ArgumentParser:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import stat
@@ -10,6 +11,7 @@ import sys
 
 import pytest
 
+from hockle.broker import short_directory
 from hockle.cli import main
 
 BAD_FILE = "lease = = 3\n"
@@ -86,3 +88,19 @@ def test_a_directory_that_somebody_made_for_all_is_closed(tmp_path, capsys):
     assert stat.S_IMODE(data.stat().st_mode) == 0o700
     modes = {path.name: stat.S_IMODE(path.stat().st_mode) & 0o077 for path in data.rglob("*")}
     assert modes and not any(modes.values()), modes
+
+
+def test_a_full_disk_is_one_line_and_leaves_no_folder_behind(monkeypatch, tmp_path, capsys):
+    """Found by `make attack`: started while the disk was full, it gave a traceback, and left a folder each time."""
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "tmp"))
+    monkeypatch.setattr("pathlib.Path.write_text", full)
+    with pytest.raises(OSError, match="No space left"):
+        short_directory(tmp_path / "broker").__enter__()
+    assert list((tmp_path / "tmp").iterdir()) == []
+    monkeypatch.setattr("hockle.serving.settings_of", full)
+    assert refusal(capsys, "serve") == "there is no room left for what it writes: No space left on device"

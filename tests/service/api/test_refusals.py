@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import threading
 from typing import Any
 
 import pytest
 from sqlalchemy.exc import InterfaceError, OperationalError
 
 from service.api import bodies
-from service.api.bodies import LARGEST_BODY, parse
+from service.api.bodies import LARGEST_BODY, SMALL_BODY, at_leisure, parse
 from service.api.problems import Problem
 from service.cases import CaseError
 
@@ -231,6 +233,14 @@ def test_reading_an_object_looks_at_each_key_once():
     with pytest.raises(ValueError, match="stands twice"):
         bodies._without_doubles([*pairs, (Counted("k899"), 2)])
     assert Counted.compared < 3 * len(pairs)
+
+
+@pytest.mark.parametrize("size", [SMALL_BODY, SMALL_BODY + 1])
+def test_a_large_body_is_read_beside_the_event_loop(size):
+    async def threads() -> set[int]:
+        return {threading.get_ident(), await at_leisure(size, threading.get_ident)}
+
+    assert len(asyncio.run(threads())) == (1 if size == SMALL_BODY else 2)
 
 
 def test_of_many_faults_the_first_are_told_and_how_many_more(client, case):

@@ -100,9 +100,10 @@ def _held(pid: int) -> tuple[float, int, int]:
 def _size(directory: Path) -> float:
     """MB of all files below."""
     total = 0
-    for path in directory.rglob("*"):
-        with suppress(OSError):  # it may have just been removed
-            total += path.stat().st_size if path.is_file() else 0
+    for folder, _, names in os.walk(directory):  # which passes over folders that have just been removed
+        for name in names:
+            with suppress(OSError):  # so may this one be
+                total += Path(folder, name).stat().st_size
     return 1e-6 * total
 
 

@@ -11,9 +11,10 @@ import shutil
 import subprocess
 import sys
 import threading
+import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,7 +23,9 @@ import pytest
 from fastapi.testclient import TestClient
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from sqlalchemy.exc import OperationalError
 
+from chaos.postgres import Postgres, binaries, postgres
 from service.access import KeyStore, Scope
 from service.api.app import create_app
 from service.api.listening import listen
@@ -37,6 +40,8 @@ HERE = Path(__file__).parent
 LONG = os.environ.get("FUZZ") == "long"
 MALFORMED = 10_000 if LONG else 500
 DAY = 86400.0
+ONLY_STATUSES = ["--checks", "content_type_conformance,response_headers_conformance"]
+"""Of answers while the database comes and goes; their statuses are looked at afterwards."""
 OUR_KEYS = ["--generation-with-security-parameters", "false"]  # and none of its own, which are all wrong
 SEED = os.environ.get("FUZZ_SEED", "20260101")
 
@@ -51,16 +56,27 @@ CASES = [load_case(name) for name in shipped_cases()]
 
 
 class Ran(NamedTuple):
-    """A data directory in which a job of alice's has run, that job, and keys of hers."""
+    """Settings with which a job of alice's has run, that job, and keys of hers; PostgreSQL, if it is that."""
 
-    data: Path
+    settings: Settings
+    server: Postgres | None
     job: Job
     keys: list[str | None]
 
 
-@pytest.fixture
-def ran(tmp_path_factory: pytest.TempPathFactory) -> Ran:
-    told = Settings(data=tmp_path_factory.mktemp("data"))
+@pytest.fixture(params=["sqlite", "postgresql"])
+def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ran]:
+    data = tmp_path_factory.mktemp("data")
+    if request.param == "sqlite":
+        yield ran_with(Settings(data=data), None)
+    elif binaries() is None:
+        pytest.skip("no PostgreSQL on this machine")
+    else:
+        with postgres() as server:
+            yield ran_with(Settings(data=data, database=server.create("fuzz")), server)
+
+
+def ran_with(told: Settings, server: Postgres | None) -> Ran:
     told.make_directories()
     database = Database(told.database_url)
     short = apply_settings(load_case("cantilever-vibration"), {"t_end": 0.1, "output.interval": 0.02})
@@ -71,7 +87,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Ran:
     full, other = ({Scope.READ, Scope.SUBMIT}, {Scope.OPERATE})
     keys = [KeyStore(database).create("alice", frozenset(scopes), DAY).text for scopes in (full, other)]
     database.close()
-    return Ran(told.data, job, [keys[0]] * 6 + [keys[1], None])
+    return Ran(told, server, job, [keys[0]] * 6 + [keys[1], None])
 
 
 def examples(few: int, seconds: int, phases: str = "examples,fuzzing,stateful") -> list[str]:
@@ -82,12 +98,12 @@ def examples(few: int, seconds: int, phases: str = "examples,fuzzing,stateful") 
 
 
 @contextmanager
-def serving(data: Path, **environment: str) -> Iterator[str]:
+def serving(settings: Settings, **environment: str) -> Iterator[str]:
     """The address of a running service, in a process of its own."""
     [listening] = listen("127.0.0.1", 0)
     with listening:
         command = [sys.executable, "-m", "hockle", "api", "--fd", str(listening.fileno())]
-        told = {**os.environ, "HOCKLE_DATA": str(data), "REDIS_URL": "", **environment}
+        told = {**os.environ, **settings.environment(), "REDIS_URL": "", **environment}
         process = subprocess.Popen(command, env=told, pass_fds=[listening.fileno()])
         try:
             address = f"http://127.0.0.1:{listening.getsockname()[1]}"
@@ -112,16 +128,17 @@ def until_ready(url: str, process: subprocess.Popen[bytes]) -> None:
 def waiting(ran: Ran, tmp_path: Path) -> Iterator[list[str]]:
     """The ids of jobs of alice's that wait. A job whose events are followed ends soon, as the one that has run, so
     that they come to an end; the others wait until they are dismissed."""
-    database, over, followed = Database(Settings(data=ran.data).database_url), threading.Event(), tmp_path / "followed"
+    database, over, followed = Database(ran.settings.database_url), threading.Event(), tmp_path / "followed"
     followed.touch()
 
     def end() -> None:
         known: set[str] = set()
         while not over.wait(0.2):
             for job_id in set(followed.read_text().split()) - known:
-                known.add(job_id)
-                if held := claim(database, job_id, 60.0, "fuzz"):
-                    held.finish(Status.SUCCESSFUL, "completed", "", ran.job.dataset, Reached(1.0))
+                with suppress(OperationalError):  # the database is away
+                    if held := claim(database, job_id, 60.0, "fuzz"):
+                        held.finish(Status.SUCCESSFUL, "completed", "", ran.job.dataset, Reached(1.0))
+                    known.add(job_id)
 
     jobs = [Registry(database).submit(NewJob(Registry(database).case(ran.job.id), owner="alice")) for _ in range(2)]
     thread = threading.Thread(target=end)
@@ -151,15 +168,40 @@ def schemathesis(
 
 
 def test_schemathesis_finds_nothing(ran, waiting, tmp_path):
-    with serving(ran.data) as address:
+    with serving(ran.settings) as address:
         schemathesis(address, ran, waiting, tmp_path, *examples(8, seconds=900))
+
+
+@pytest.mark.parametrize("ran", ["postgresql"], indirect=True)
+def test_while_the_database_goes_away_and_comes_back_there_is_only_503_and_right_after_nothing(ran, waiting, tmp_path):
+    over, away = threading.Event(), tmp_path / "away"
+    away.mkdir()
+
+    def comes_and_goes() -> None:
+        while not over.wait(1.0):
+            ran.server.kill()
+            time.sleep(1.0)
+            ran.server.start()
+
+    thread = threading.Thread(target=comes_and_goes)
+    with serving(ran.settings) as address:
+        thread.start()
+        try:
+            met = schemathesis(address, ran, waiting, away, *examples(8, seconds=300), *ONLY_STATUSES)
+        finally:
+            over.set()
+            thread.join()
+        assert met["503"] > 10 and met["200"] > 10
+        assert [status for status in met if status.startswith("5") and status != "503"] == []
+        assert httpx.get(f"{address}/v1/jobs", timeout=60.0, trust_env=False).status_code == 200
+        schemathesis(address, ran, waiting, tmp_path, *examples(4, seconds=60, phases="examples,fuzzing"))
 
 
 @pytest.mark.parametrize(("rate", "tries", "meets"), [
     ("1000", examples(4, 180), {"200", "401", "403"}), ("0.5", examples(2, 60, "examples,fuzzing"), {"401", "429"}),
 ])  # fmt: skip
 def test_schemathesis_finds_nothing_where_keys_are_required(ran, waiting, tmp_path, rate, tries, meets):
-    with serving(ran.data, HOCKLE_REQUIRE_KEYS="1", HOCKLE_RATE=rate) as address:
+    with serving(ran.settings, HOCKLE_REQUIRE_KEYS="1", HOCKLE_RATE=rate) as address:
         met = schemathesis(address, ran, waiting, tmp_path, *tries, *OUR_KEYS, keys=ran.keys)
         assert meets <= set(met)
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from sqlalchemy import func, select
 
-from chaos.disk import small_disk
+from chaos.disk import SIZE, small_disk
 from chaos.faults import WEIGHTS, Fault, Target
 from chaos.postgres import postgres
 from chaos.reader import reading
@@ -38,10 +38,10 @@ QUEUED = 6
 
 
 @contextmanager
-def environment(kind: str, data: Path) -> Iterator[tuple[Settings, Any, bool]]:
+def environment(kind: str, data: Path, size: str = SIZE) -> Iterator[tuple[Settings, Any, bool]]:
     """Settings for a database of this kind, with a small disk where that can be had."""
     with ExitStack() as stack:
-        small = stack.enter_context(small_disk(data))
+        small = stack.enter_context(small_disk(data, size))
         server = stack.enter_context(postgres(small_disk)) if kind == "postgresql" else None
         url = server.create("hockle") if server else ""
         settings = Settings(data=data, database=url, lease=LEASE, checkpoint=CHECKPOINT)

@@ -12,10 +12,10 @@ SIZE = "300m"
 
 
 @contextmanager
-def small_disk(directory: Path) -> Iterator[bool]:
+def small_disk(directory: Path, size: str = SIZE) -> Iterator[bool]:
     """Mount one at `directory`, which is made, while the block runs; yields whether that could be done."""
     directory.mkdir(parents=True, exist_ok=True)
-    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={SIZE},mode=700", "hockle-chaos", str(directory)],
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size},mode=700", "hockle-chaos", str(directory)],
                              capture_output=True, check=False).returncode == 0  # fmt: skip
     try:
         yield mounted

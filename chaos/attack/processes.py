@@ -37,6 +37,8 @@ FAULTS: tuple[Fault, ...] = (
     stop_worker_past_its_lease, stop_api_past_its_lease, stall_broker, jump_clock, fill_disk,
 )  # fmt: skip
 QUEUED = 4
+ROOM = "3g"
+"""Disk: each job leaves 4.5 MB, and 500 are wanted."""
 LEASES = 3
 CASES = ("short-loop", "free-flight")
 
@@ -47,7 +49,7 @@ def disturbed(seed: int, count: int, minutes: float) -> list[Row]:
     expected = {name: undisturbed(case) for name, case in known.items()}
     with (
         tempfile.TemporaryDirectory(prefix="hockle-attack-", ignore_cleanup_errors=True) as directory,
-        environment("sqlite", Path(directory) / "data") as (settings, server, small),
+        environment("sqlite", Path(directory) / "data", ROOM) as (settings, server, small),
     ):
         record, watch, served = Record(seed), Watch(settings), Served(settings, free_port())
         served.clock.write_text("0")

@@ -29,6 +29,7 @@ PARAMETERS = {
     "name": "A shipped case",
     "link_id": "A link, as the list of them names it",
     "token": "What the link was answered with",
+    "what": "The structure (dds), the attributes (das) or the values (dods)",
     "Idempotency-Key": "The same key and body give the same job for a day, also if the first answer was lost",
     "Last-Event-ID": "The version of the job that was seen last: what came after it is sent",
     "limit": "At most so many on a page",

@@ -18,10 +18,11 @@ from solver import Scene
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.methods.space.one_axis.axis import axis_of
+from solver.physics.axial import axial_compliance
 from solver.physics.elasticity import elasticity_of, moments, principal
-from solver.physics.ends import DrivenEnd
 from solver.physics.loads.floor import Given as Floor
 from solver.physics.section import sample
+from solver.run.first_mesh import twisted
 from solver.scene.ends import End
 from solver.scene.layout import nodes_at_rest
 
@@ -42,11 +43,9 @@ FIRST_FREQUENCY = 3.516
 def likely_seconds(scene: Scene) -> float:
     """CPU seconds at a tolerance of 1e-3, but for what very many frames or nodes cost."""
     overdamped = scene.damping > MUCH * _frequency(scene)
-    if _turned(scene) > TURN and not overdamped:
+    if twisted(scene) > TURN and not overdamped:
         return WOUND
-    r, quaternion, kappa = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, INTERVALS + 1))
-    straight = float(np.linalg.norm(r[-1] - r[0])) > 0.999 * scene.rod.length
-    if straight and all(_holds(end) for end in (scene.start, scene.end)):
+    if axial_compliance(scene) > 0.0:
         return HELD
     if any(isinstance(load, Floor) for load in scene.loads):
         return ON_FLOOR
@@ -59,18 +58,7 @@ def likely_seconds(scene: Scene) -> float:
         weight = float(np.linalg.norm(scene.gravity)) * mass * scene.rod.length**3
         return DEEP if weight > LIMP * stiffness else IN_WATER
     swings = scene.damping < 2.0 * _frequency(scene)
-    return LET_GO if swings and _is_let_go(scene, quaternion, kappa) else FOLLOWED
-
-
-def _turned(scene: Scene) -> float:
-    """The largest rotation (rad) of one end about itself relative to the other that the scene asks for."""
-    ends = DrivenEnd(scene.start), DrivenEnd(scene.end)
-    turned = [[end.rotation_prescribed(t) or 0.0 for end in ends] for t in scene.t_end * np.linspace(0.1, 1.0, 10)]
-    return max(abs(one - two) for one, two in turned)
-
-
-def _holds(end: End) -> bool:
-    return all(component[0].kind != "load" for component in end.translation)
+    return LET_GO if swings and _is_let_go(scene) else FOLLOWED
 
 
 def _frequency(scene: Scene) -> float:
@@ -86,14 +74,15 @@ def _mean(scene: Scene) -> tuple[float, float]:
     return float(softer.mean()), float(sample(scene.rod, s).mass.mean())
 
 
-def _is_let_go(scene: Scene, quaternion: Array, kappa: Array) -> bool:
+def _is_let_go(scene: Scene) -> bool:
     """Whether the rod is not at rest where it begins: by its stress, its weight, a load that is there at once, or its
     motion."""
     length, (stiffness, mass) = float(scene.rod.length), _mean(scene)
+    s = np.linspace(0.0, length, INTERVALS + 1)
+    _, quaternion, kappa = nodes_at_rest(scene.initial, s)
     tangent = rotate(quaternion, np.tile([0.0, 0.0, 1.0], (len(quaternion), 1)))
     weight = float(np.linalg.norm(np.cross(tangent, scene.gravity), axis=1).mean()) * mass * length**3
-    elastic = elasticity_of(scene.rod, np.linspace(0.0, length, len(kappa)))
-    stress = float(np.abs(moments(elastic, kappa)).max()) * length
+    stress = float(np.abs(moments(elasticity_of(scene.rod, s), kappa)).max()) * length
     crossed = [np.cross(tangent[0], [c.value(0.0) for c in load.force]) for load in scene.points]
     across = [float(np.linalg.norm(one)) for one in crossed]
     across += [_across(scene.start, tangent[0]), _across(scene.end, tangent[-1])]

@@ -15,6 +15,8 @@ LARGEST_TURN = 0.6
 """Rotation (rad) within an interval that the first mesh has at the most."""
 LOOKED_AT = 513
 """Nodes at which the initial shape is looked at."""
+TIMES = 101
+"""Times at which the ends are looked at."""
 
 
 def first_mesh(scene: Scene) -> int:
@@ -28,5 +30,6 @@ def first_mesh(scene: Scene) -> int:
 def twisted(scene: Scene) -> float:
     """The largest rotation (rad) of one end about itself relative to the other that the scene asks for."""
     ends = DrivenEnd(scene.start), DrivenEnd(scene.end)
-    turned = [[end.rotation_prescribed(t) or 0.0 for end in ends] for t in scene.outputs]
+    times = np.linspace(0.0, scene.t_end, TIMES).tolist()
+    turned = [[end.rotation_prescribed(t) or 0.0 for end in ends] for t in times]
     return max(abs(one - two) for one, two in turned)

@@ -25,10 +25,10 @@ def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
 
 def meant(fault: FieldError, name: str, names: Sequence[str]) -> FieldError:
     """The same fault, with the one of the known `names` that is most like the unknown `name`, if one is."""
-    return FieldError(fault.pointer, fault.value, fault.rule + likely(name, names))
+    return FieldError(fault.pointer, fault.value, fault.rule + did_you_mean(name, names))
 
 
-def likely(name: str, names: Sequence[str]) -> str:
+def did_you_mean(name: str, names: Sequence[str]) -> str:
     """The known name that is most like an unknown one, in whatever letters, as the end of a message; if one is."""
     known = {one.lower(): one for one in names}
     near = get_close_matches(name[:80].lower(), known, n=1)

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from service.cases.suggestions import likely
+from service.cases.suggestions import did_you_mean
 from service.results.part import Column, Part
 from service.results.schema import COORDINATES, ERRORS, LABELS, VARIABLES, Variable
 
@@ -131,7 +131,7 @@ def held(variables: Mapping[str, Variable], name: str) -> Variable:
 
 def unknown(name: str, names: Sequence[str]) -> UnknownVariable:
     """What is told of a variable that is none of these."""
-    return UnknownVariable(f"variable must be one of {', '.join(names)}, got {name!r}{likely(name, names)}")
+    return UnknownVariable(f"variable must be one of {', '.join(names)}, got {name!r}{did_you_mean(name, names)}")
 
 
 def check_size(size: int, limit: int) -> None:

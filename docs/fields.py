@@ -27,13 +27,14 @@ def fields_table(*parts: Schema, called: Callable[[str], str] = str) -> str:
 def _row(name: str, parts: tuple[Schema, ...]) -> tuple[str, ...]:
     having = [part for part in parts if name in part["properties"]]
     field = having[0]["properties"][name]
-    default = "required" if name in having[0].get("required", ()) else _default(field)
+    default = "required" if name in having[0].get("required", ()) else default_of(field)
     only = "" if len(having) == len(parts) else f"{having[0]['title'].lower()}: "
-    values = list(dict.fromkeys(text for part in having if (text := _range(part["properties"][name]))))
+    values = list(dict.fromkeys(text for part in having if (text := range_of(part["properties"][name]))))
     return default, field.get("unit", ""), " or ".join(values), only + field["description"]
 
 
-def _default(field: Schema) -> str:
+def default_of(field: Schema) -> str:
+    """Its default in words."""
     default = field["default"]
     if default is None or default in ([], {}):
         return "none"
@@ -54,7 +55,7 @@ def _list(default: list[Any], field: Schema) -> str:
     return "0" if not any(default) else AXES[tuple(default)]
 
 
-def _range(field: Schema) -> str:
+def range_of(field: Schema) -> str:
     """The rule for a field's value, or for each number in it."""
     values = field.get("enum") or field.get("items", {}).get("enum") or [field.get("const")]
     if values != [None]:

@@ -1,9 +1,8 @@
-"""What the site needs beside its pages (a hook of MkDocs): the interface's document, the pages that are lists of files,
-formulas as MathML, and links to what lies beside docs/ in the repository."""
+"""What the site needs beside its pages (a hook of MkDocs): the interface, the pages that are lists of files, formulas
+as MathML, and links to what lies beside docs/ in the repository."""
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from pathlib import Path
@@ -19,15 +18,8 @@ if TYPE_CHECKING:
 HERE = Path(__file__).parent
 LINK = re.compile(r"(?<!!)\[([^\]]+)\]\(([^)#:]+)(#[^)]*)?\)")
 DISPLAYED = re.compile(r"^```math\n(.*?)^```$", re.M | re.S)
+INTERFACE = "<!-- interface -->"
 INLINE = re.compile(r"\$`([^`]+)`\$")
-
-
-def on_pre_build(config: MkDocsConfig) -> None:
-    """Write the document of the HTTP interface, from which its page is made."""
-    from service.api.app import create_app
-    from service.settings import Settings
-
-    (HERE / "openapi.json").write_text(json.dumps(create_app(Settings()).openapi()))
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
@@ -40,8 +32,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
-    """Formulas as MathML; links that leave docs/ as names of files in the repository."""
+    """Formulas as MathML; links that leave docs/ as names of files in the repository; the interface on its page."""
     place = HERE / page.file.src_uri
+    if INTERFACE in markdown:
+        return markdown.replace(INTERFACE, interface())
     text = DISPLAYED.sub(lambda match: convert(match[1], display="block"), markdown)
     text = INLINE.sub(lambda match: convert(match[1]), text)
     return LINK.sub(lambda match: _link(match, place.parent), text)
@@ -51,6 +45,15 @@ def on_post_page(output: str, **_: Any) -> str:
     """What the theme leaves without a name."""
     dialog = 'data-md-component="search" role="dialog"'
     return output.replace(dialog, f'{dialog} aria-label="Search"')
+
+
+def interface() -> str:
+    """The operations and schemas of the HTTP interface."""
+    from docs.interface import page
+    from service.api.app import create_app
+    from service.settings import Settings
+
+    return page(create_app(Settings()).openapi())
 
 
 def decisions() -> str:

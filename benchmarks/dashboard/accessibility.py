@@ -10,8 +10,6 @@ from typing import Any
 from service.api.documentation import SITE
 
 SCHEMES = ("light", "dark")
-HEAVY = "http"
-"""The page of the API's reference, of 3.3 MB: axe takes minutes on it."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +38,10 @@ def version() -> str:
 
 
 def documentation() -> list[str]:
-    """The addresses of the pages of the site, which must have been built (make site): all but HEAVY."""
+    """The addresses of the pages of the site, which must have been built (make site)."""
     if not SITE.is_dir():
         raise SystemExit("the documentation has not been built here: make site")
-    folders = sorted(path.parent.relative_to(SITE).as_posix() for path in SITE.rglob("index.html")
-                     if path.parent.name != HEAVY)  # fmt: skip
+    folders = sorted(path.parent.relative_to(SITE).as_posix() for path in SITE.rglob("index.html"))
     return ["/docs/" if name == "." else f"/docs/{name}/" for name in folders]
 
 

@@ -23,7 +23,7 @@ FETCHED = re.compile(r"""(?:url\(|@import\s+)["']?(?:https?:)?//""")
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    for module in ("mkdocs", "latex2mathml", "neoteroi"):
+    for module in ("mkdocs", "latex2mathml"):
         pytest.importorskip(module, reason="no MkDocs: make .venv/.docs")
     folder = tmp_path_factory.mktemp("site")
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(folder)]
@@ -57,8 +57,8 @@ def test_axe_finds_nothing_on_any_page(site, tmp_path, monkeypatch, scheme):
         page = opened()
         page.emulate_media(color_scheme=scheme)
         for path in sorted(site.rglob("index.html")):
-            if path.parent.name == "http" or (scheme == "dark" and "decisions" in path.parts):
-                continue  # make bench-dashboard looks at them too: the one takes minutes, the others are many and alike
+            if scheme == "dark" and "decisions" in path.parts:
+                continue  # they are many and alike; make bench-dashboard looks at them too
             page.goto(f"{server.address}/docs/{path.parent.relative_to(site).as_posix()}/".replace("/./", "/"))
             found[path] = axe(page).violations
     assert len(found) > 15 and {path: told for path, told in found.items() if told} == {}
@@ -75,6 +75,14 @@ def test_every_operation_stands_on_its_page(site, tmp_path):
     operations = [f"{method.upper()} {path}" for path, its in create_app(Settings(tmp_path)).openapi()["paths"].items()
                   for method in its]  # fmt: skip
     assert operations and [one for one in operations if one not in text] == []
+
+
+def test_every_schema_stands_on_the_page_of_the_interface_once(site, tmp_path):
+    page = (site / "http" / "index.html").read_text(encoding="utf-8")
+    schemas = create_app(Settings(tmp_path)).openapi()["components"]["schemas"]
+    assert schemas and [name for name in schemas if page.count(f'<h3 id="{name.lower()}"') != 1] == []
+    [limit] = re.findall(r"<td><code>limit</code></td>\s*<td>query</td>\s*<td>50</td>\s*<td>([^<]*)</td>", page)[:1]
+    assert limit == "integer, 1 to 200"
 
 
 def test_the_api_serves_it_without_a_key(client):

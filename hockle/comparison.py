@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from hockle.figures import LEAST_TURNS, NOISE, STYLE, prefixed
 from hockle.stage import Stage
-from hockle.tube import Tube
+from hockle.tube import Tube, radius
 from hockle.view import View
 
 MOST = 6
@@ -47,12 +47,13 @@ def curves(datasets: Mapping[str, xr.Dataset]) -> Figure:
 
 def shapes(datasets: Mapping[str, xr.Dataset]) -> Figure:
     """The last frame of each dataset, to one scale."""
-    views = {label: View.of(json.loads(one.attrs["case"]), one.r.values) for label, one in datasets.items()}
+    cases = {label: json.loads(one.attrs["case"]) for label, one in datasets.items()}
+    views = {label: View.of(cases[label], one.r.values) for label, one in datasets.items()}
     tubes = {label: Tube.of(one.r.values[-1], one.orientation.values[-1]).turned(views[label].axes)
              for label, one in datasets.items()}  # fmt: skip
     with mpl.rc_context(STYLE):
         told = next(iter(views.values())).told
-        stage = Stage(len(tubes), np.vstack([tube.r for tube in tubes.values()]), told)
+        stage = Stage([radius(case) for case in cases.values()], np.vstack([tube.r for tube in tubes.values()]), told)
         for i, (label, tube) in enumerate(tubes.items()):
             stage.draw(i, tube, f"{label}, t = {float(datasets[label].time[-1]):g} s")
     return stage.figure

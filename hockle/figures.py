@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hockle.stage import Stage
-from hockle.tube import Tube
+from hockle.tube import Tube, radius
 from hockle.view import View
 
 PAPERS_TIMES = (20.0, 25.0, 29.0, 32.0)
@@ -39,7 +39,16 @@ ENERGIES = (
     ("energy_potential", "potential, from its start", OTHER[1]),
 )
 NOISE = 1e-4
-"""An energy that is never this part of the largest is left out."""
+"""An energy that is never this part of the largest may be noise."""
+
+UNSEEN = 5e-3
+"""An energy that is never this part of the largest cannot be told from zero beside it: half the width of a line."""
+
+UNMOVED = 2e-3
+"""Shapes that differ by less than this part of their extent look the same."""
+
+FEW = 30
+"""Frames; a curve through fewer shows where they are."""
 
 LEAST_TURNS = 1e-3
 """Twist and writhe below are noise of the computation, or nothing to be seen."""
@@ -52,12 +61,14 @@ PREFIXES = ((1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9,
 
 def snapshots(dataset: xr.Dataset) -> Figure:
     """The rod at four times (figure 6): thickened tubes with a stripe along a1 that shows the twist."""
-    view = View.of(json.loads(dataset.attrs["case"]), dataset.r.values)
+    case = json.loads(dataset.attrs["case"])
+    view = View.of(case, dataset.r.values)
     frames = [dataset.sel(time=t, method="nearest") for t in snapshot_times(dataset)]
     tubes = [Tube.of(frame.r.values, frame.orientation.values).turned(view.axes) for frame in frames]
     start = dataset.r.values[0] @ view.axes.T
     with mpl.rc_context(STYLE):
-        stage = Stage(len(tubes), np.vstack([*(tube.r for tube in tubes), start]), view.told + ", dashed: at first")
+        points = np.vstack([*(tube.r for tube in tubes), start])
+        stage = Stage([radius(case)] * len(tubes), points, view.told + ", dashed: at first")
         for i, (tube, frame) in enumerate(zip(tubes, frames, strict=True)):
             stage.draw(i, tube, f"t = {float(frame.time):g} s", start)
         stage.title(dataset.attrs["title"])
@@ -70,10 +81,10 @@ def energies(dataset: xr.Dataset) -> Figure:
     largest = max(float(np.abs(values).max()) for values, _, _ in changes)
     scale, prefix = prefixed(largest)
     with mpl.rc_context(STYLE):
-        figure, axes = panel("time (s)", f"energy ({prefix}J)")
+        figure, axes = panel(_over(dataset), f"energy ({prefix}J)")
         for values, label, colour in changes:
-            if np.abs(values).max() > NOISE * largest:
-                axes.plot(dataset.time, values / scale, color=colour, label=label)
+            if np.abs(values).max() > UNSEEN * largest:
+                axes.plot(dataset.time, values / scale, color=colour, label=label, **_marked(dataset))
         finish(axes, dataset)
     return figure
 
@@ -81,10 +92,9 @@ def energies(dataset: xr.Dataset) -> Figure:
 def topology(dataset: xr.Dataset) -> Figure:
     """Twist, writhe and linking number in time (figure 8)."""
     with mpl.rc_context(STYLE):
-        figure, axes = panel("time (s)", "turns")
-        axes.plot(dataset.time, dataset.Lk, color="#374151", label="Lk")
-        axes.plot(dataset.time, dataset.Tw, color=TORSION, label="Tw")
-        axes.plot(dataset.time, dataset.Wr, color=BENDING, label="Wr")
+        figure, axes = panel(_over(dataset), "turns")
+        for name, colour in (("Lk", "#374151"), ("Tw", TORSION), ("Wr", BENDING)):
+            axes.plot(dataset.time, dataset[name], color=colour, label=name, **_marked(dataset))
         finish(axes, dataset)
     return figure
 
@@ -105,13 +115,26 @@ def snapshot_times(dataset: xr.Dataset) -> Sequence[float]:
 
 
 def _most_different(r: NDArray[np.float64]) -> list[int]:
-    """The first frame, and then again and again the one that is farthest from all those chosen; in order of time."""
+    """The first frame, and then again and again the one that is farthest from all those chosen; in order of time.
+
+    The last one beside the first where the rod does not move.
+    """
     chosen = [0]
-    distance = np.full(len(r), np.inf)
-    while len(chosen) < min(SNAPSHOTS, len(r)):
-        distance = np.minimum(distance, np.abs(r - r[chosen[-1]]).max(axis=(1, 2)))
+    least = UNMOVED * float(np.ptp(r, axis=(0, 1)).max())
+    distance = np.abs(r - r[0]).max(axis=(1, 2))
+    while len(chosen) < SNAPSHOTS and distance.max() > least:
         chosen.append(int(distance.argmax()))
-    return sorted(set(chosen))
+        distance = np.minimum(distance, np.abs(r - r[chosen[-1]]).max(axis=(1, 2)))
+    return sorted(chosen) if len(chosen) > 1 else [0, len(r) - 1]
+
+
+def _over(dataset: xr.Dataset) -> str:
+    """What curves are drawn over: equilibria have a parameter instead of time."""
+    return "parameter (s)" if json.loads(dataset.attrs["case"]).get("analysis") == "static" else "time (s)"
+
+
+def _marked(dataset: xr.Dataset) -> dict[str, Any]:
+    return {"marker": "o", "markersize": 4} if dataset.sizes["time"] < FEW else {}
 
 
 def _level(name: str, dataset: xr.Dataset) -> float:
@@ -135,6 +158,6 @@ def finish(axes: Axes, dataset: xr.Dataset) -> None:
     axes.set_xlim(0.0, float(dataset.time[-1]))
     low, high = axes.get_ylim()
     if high - low < LEAST_CHANGE * max(abs(low), abs(high)):
-        axes.set_ylim(min(low, 0.0), max(high, 0.0))
+        axes.set_ylim(min(1.05 * low, 0.0), max(1.05 * high, 0.0))
     axes.set_title(dataset.attrs["title"], fontsize=10)
     axes.figure.legend(loc="outside lower center", ncols=len(axes.lines))

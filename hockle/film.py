@@ -6,6 +6,7 @@ import argparse
 import json
 import shutil
 from collections.abc import Mapping
+from math import floor, log10
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -56,23 +57,25 @@ def make(datasets: Mapping[str, xr.Dataset], path: Path, seconds: float) -> int:
     import numpy as np
 
     from hockle.stage import Stage
-    from hockle.tube import Tube
+    from hockle.tube import Tube, radius
     from hockle.view import View
 
     kind = path.suffix.lower()
-    views = [View.of(json.loads(one.attrs["case"]), one.r.values) for one in datasets.values()]
+    cases = [json.loads(one.attrs["case"]) for one in datasets.values()]
+    views = [View.of(case, one.r.values) for case, one in zip(cases, datasets.values(), strict=True)]
     points = [one.r.values.reshape(-1, 3) @ view.axes.T for one, view in zip(datasets.values(), views, strict=True)]
-    stage = Stage(len(datasets), np.vstack(points), views[0].told)
+    stage = Stage([radius(case) for case in cases], np.vstack(points), views[0].told)
     if len(datasets) == 1:
         stage.title(next(iter(datasets.values())).attrs["title"])
     end = max(float(one.time[-1]) for one in datasets.values())
     times = np.linspace(0.0, end, max(2, round(seconds * RATES[kind])))
+    digits = max(0, 2 - floor(log10(end)))
     writer = _writer(kind)
     with writer.saving(stage.figure, str(path), DPI[kind]):
         for t in times:
             for i, ((name, one), view) in enumerate(zip(datasets.items(), views, strict=True)):
-                label = f"{name}, t = {t:.4g} s" if len(datasets) > 1 else f"t = {t:.4g} s"
-                stage.draw(i, Tube.at(one, float(t)).turned(view.axes), label)
+                label = f"{name}, " if len(datasets) > 1 else ""
+                stage.draw(i, Tube.at(one, float(t)).turned(view.axes), f"{label}t = {t:.{digits}f} s")
             writer.grab_frame()
     return len(times)
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import product
 from math import ceil
+from textwrap import fill
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from mpl_toolkits.mplot3d import proj3d  # type: ignore[import-untyped]
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
 from mpl_toolkits.mplot3d.axes3d import Axes3D  # type: ignore[import-untyped]
 from numpy.typing import NDArray
@@ -17,14 +21,20 @@ from hockle.tube import Tube
 Array = NDArray[np.float64]
 
 THICKNESS = 0.005
-"""The tube's radius as a fraction of the shapes' extent."""
+"""The least radius of a tube, as a fraction of the shapes' extent: thinner ones are drawn thicker than they are."""
 
-MARGIN = 0.92
-"""The part of a panel that the shapes may take; perspective makes what is near larger than the box says."""
+MARGIN = 0.94
+"""The part of a panel's width that is filled."""
 
 ELEVATION, AZIMUTH = 18.0, -62.0
 PANEL = 5.5
-"""Width of a panel in inches."""
+"""Width of a panel in inches, and the most of its height."""
+
+HEADING = 0.45
+"""Height of a panel's heading in inches."""
+
+TITLE, CAPTION = 11, 14
+"""Letters to an inch."""
 
 STEPS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 GRID, SHADOW, GHOST = "#e3e6ea", "#b9c0c9", "#93a1b3"
@@ -33,19 +43,24 @@ GRID, SHADOW, GHOST = "#e3e6ea", "#b9c0c9", "#93a1b3"
 class Stage:
     """Panels to one scale, for tubes in a view's axes (right, back, up)."""
 
-    def __init__(self, panels: int, points: Array, told: str) -> None:
-        """`points` (m, 3): all that is ever drawn; `told`: where the lab axes point."""
-        self._extent = float(np.ptp(points, axis=0).max())
-        self._low, self._high = _box(points, self._extent)
-        width, height = _seen(self._high - self._low)
-        self._zoom = MARGIN * float(np.linalg.norm(self._high - self._low)) / max(width, height)
-        columns, rows = min(2, panels), ceil(panels / 2)
-        row = PANEL * min(1.0, height / width) + 0.3
-        self.figure = Figure(figsize=(columns * PANEL, rows * row + 1.0), facecolor="white")
-        step = next((step for step in STEPS if self._extent / step <= 12), STEPS[-1])
-        self._panels = [self._panel(i, columns, row, step) for i in range(panels)]
-        self._drawn: list[list[Artist]] = [[] for _ in range(panels)]
-        caption = f"grid {step:g} m, {told}; tubes thicker than the rod, stripe along a1"
+    def __init__(self, radii: Sequence[float], points: Array, told: str) -> None:
+        """`radii`: that of the rod (m) on each panel; `points` (m, 3): all that is ever drawn; `told`: where the lab
+        axes point.
+        """
+        extent = float(np.ptp(points, axis=0).max())
+        self._radii = [max(radius, THICKNESS * extent) for radius in radii]
+        self._low, self._high = _box(points, extent, max(self._radii))
+        low, high = _seen(points, self._low, self._high)
+        self._size = PANEL * MARGIN / float((high - low).max())
+        self._centre = (low + high) / 2
+        columns, rows = min(2, len(radii)), ceil(len(radii) / 2)
+        row = self._size * float(high[1] - low[1]) + HEADING
+        self.figure = Figure(figsize=(columns * PANEL, rows * row + 1.1), facecolor="white")
+        step = next((step for step in STEPS if extent / step <= 12), STEPS[-1])
+        self._panels = [self._panel(i, columns, row, step) for i in range(len(radii))]
+        self._drawn: list[list[Artist]] = [[] for _ in radii]
+        thicker = "tubes thicker than the rod, " if 1.01 * min(radii) < THICKNESS * extent else ""
+        caption = fill(f"grid {step:g} m, {told}; {thicker}stripe along a1", int(columns * PANEL * CAPTION))
         self.figure.text(0.5, 0.1 / self.figure.get_figheight(), caption, ha="center", color="#6b7280", fontsize=9)
 
     def draw(self, panel: int, tube: Tube, title: str, ghost: Array | None = None) -> None:
@@ -55,7 +70,7 @@ class Stage:
             artist.remove()
         heading.set_text(title)
         floor = float(self._low[2])
-        quads, colours = tube.facets(THICKNESS * self._extent)
+        quads, colours = tube.facets(self._radii[panel])
         surface = Poly3DCollection(list(quads), facecolors=colours, edgecolors=colours, linewidths=0.2, zorder=2)
         axes.add_collection3d(surface)
         shown[:] = [surface, *axes.plot(tube.r[:, 0], tube.r[:, 1], floor, color=SHADOW, linewidth=2.2, zorder=1)]
@@ -63,41 +78,43 @@ class Stage:
             shown += axes.plot(*ghost.T, color=GHOST, linewidth=1.0, linestyle=(0, (4, 3)), zorder=1)
 
     def _panel(self, place: int, columns: int, row: float, step: float) -> tuple[Axes3D, Text]:
-        """Square axes (what 3-D axes are) centred on a row, and their heading; what is empty overlaps the other row."""
-        height = self.figure.get_figheight()
-        top = 1.0 - (0.5 + (place // columns) * row) / height
-        left, centre = (place % columns) / columns, top - row / 2 / height
+        """Square axes (what 3-D axes are) with what is seen amid a panel, and a heading; empty parts overlap."""
+        width, height = self.figure.get_size_inches()
+        top = height - 0.6 - (place // columns) * row
+        middle = np.array([(place % columns + 0.5) * PANEL, top - (row + HEADING) / 2])
+        left, bottom = (middle - self._size * self._centre) / (width, height)
         axes: Axes3D = self.figure.add_axes(
-            (left, centre - PANEL / 2 / height, 1 / columns, PANEL / height), projection="3d"
+            (left, bottom, self._size / width, self._size / height), projection="3d"
         )
-        _prepare(axes, self._low, self._high, self._zoom)
+        _prepare(axes, self._low, self._high)
         _floor(axes, self._low, self._high, step)
-        heading = self.figure.text(left + 0.5 / columns, top - 0.01, "", ha="center", va="top", fontsize=11)
+        heading = self.figure.text(middle[0] / width, top / height - 0.01, "", ha="center", va="top", fontsize=11)
         return axes, heading
 
     def title(self, text: str) -> None:
         """Name the whole."""
-        self.figure.suptitle(text, fontsize=12)
+        self.figure.suptitle(fill(text, int(self.figure.get_figwidth() * TITLE)), fontsize=12)
 
 
-def _seen(size: Array) -> tuple[float, float]:
-    """Width and height of a box of that size as it is seen."""
-    elevation, azimuth = np.radians(ELEVATION), np.radians(AZIMUTH)
-    along, aside = abs(np.cos(azimuth)), abs(np.sin(azimuth))
-    width = aside * size[0] + along * size[1]
-    height = np.cos(elevation) * size[2] + np.sin(elevation) * (along * size[0] + aside * size[1])
-    return float(width), float(height)
+def _seen(points: Array, low: Array, high: Array) -> tuple[Array, Array]:
+    """Where points (m, 3) and the floor of their box are seen in square axes of width 1: left below, right above."""
+    axes: Axes3D = Figure(figsize=(1.0, 1.0)).add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
+    _prepare(axes, low, high)
+    corners = np.array(list(product((low[0], high[0]), (low[1], high[1]), (low[2],))))
+    x, y, _ = proj3d.proj_transform(*np.vstack([points, corners]).T, axes.get_proj())
+    seen = axes.transAxes.inverted().transform(axes.transData.transform(np.column_stack([x, y])))
+    return seen.min(axis=0), seen.max(axis=0)
 
 
-def _box(points: Array, extent: float) -> tuple[Array, Array]:
+def _box(points: Array, extent: float, radius: float) -> tuple[Array, Array]:
     """Lowest and highest corner of the box that is drawn: room for the tubes, and a floor of some depth."""
     low, high = points.min(axis=0), points.max(axis=0)
     least = np.array([0.0, 0.3, 0.1]) * extent
-    room = np.maximum(0.0, least - (high - low)) / 2 + 2 * THICKNESS * extent
+    room = np.maximum(0.0, least - (high - low)) / 2 + 2 * radius
     return low - room, high + room
 
 
-def _prepare(axes: Axes3D, low: Array, high: Array, zoom: float) -> None:
+def _prepare(axes: Axes3D, low: Array, high: Array) -> None:
     """Equal scales, and nothing drawn by the axes themselves."""
     axes.computed_zorder = False
     axes.set_proj_type("persp", focal_length=0.8)
@@ -105,7 +122,7 @@ def _prepare(axes: Axes3D, low: Array, high: Array, zoom: float) -> None:
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_zlim(low[2], high[2])
-    axes.set_box_aspect(high - low, zoom=zoom)
+    axes.set_box_aspect(high - low)
     axes.set_axis_off()
     axes.patch.set_visible(False)
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 import xarray as xr
@@ -15,6 +16,12 @@ FACETS = 16
 MOST_RINGS = 400
 BODY, STRIPE = np.array([0.93, 0.62, 0.20]), np.array([0.13, 0.22, 0.42])
 LIGHT = np.array([-0.35, -0.55, 0.76])
+
+
+def radius(case: Mapping[str, Any]) -> float:
+    """Half the largest diameter (m) of a case's rod."""
+    diameter = case["rod"]["diameter"]
+    return float(max(diameter["value"]) if isinstance(diameter, Mapping) else diameter) / 2
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from PIL import Image
 
 from hockle.cli import main
 from hockle.tube import Tube
+from service.cases import shipped_cases
 from service.results import open_dataset
 
 QUICK = ["--set", "t_end=4", "--set", "numerics.intervals=20", "--set", "output.interval=0.5"]
@@ -42,6 +43,20 @@ def test_a_gif_of_two_datasets_moves(path: Path, tmp_path: Path):
         last = np.asarray(pictures.convert("RGB"), float)
     for half in (slice(0, first.shape[1] // 2), slice(first.shape[1] // 2, None)):
         assert np.abs(first[:, half] - last[:, half]).max() > 100
+
+
+@pytest.mark.parametrize("name", shipped_cases())
+def test_a_shipped_case_has_a_film_in_which_nothing_is_cut_off(name: str, tmp_path: Path):
+    path, film = tmp_path / "out.nc", tmp_path / "film.gif"
+    assert main(["run", name, "-o", str(path), *QUICK, "--set", "t_end=1"]) == 0
+    assert main(["film", str(path), "-o", str(film), "--seconds", "0.2"]) == 0
+    with Image.open(film) as pictures:
+        assert pictures.n_frames == 2
+        for k in range(2):
+            pictures.seek(k)
+            picture = np.asarray(pictures.convert("L"))
+            edges = [picture[:2], picture[-2:], picture[:, :2], picture[:, -2:]]
+            assert picture.min() < 100 and min(edge.min() for edge in edges) > 240
 
 
 def test_between_frames_a_rod_is_between_them(path: Path):

@@ -9,6 +9,7 @@ import pytest
 
 from hockle import figures
 from hockle.cli import main
+from hockle.stage import Stage
 from hockle.tube import Tube
 from hockle.view import View
 from service.results import open_dataset
@@ -65,6 +66,25 @@ def test_what_is_thrown_without_twist_has_no_figure_of_its_twist(tmp_path: Path)
     assert main(["run", "free-flight", "-o", str(path), "--set", "t_end=1"]) == 0
     assert main(["plot", str(path)]) == 0
     assert not (tmp_path / "out-topology.png").exists()
+
+
+def test_what_stays_as_it_is_is_shown_at_first_and_at_last(tmp_path: Path):
+    path = tmp_path / "out.nc"
+    assert main(["run", "greenhill", "-o", str(path), "--set", "t_end=2", "--set", "numerics.intervals=20"]) == 0
+    with open_dataset(path) as dataset:
+        assert list(figures.snapshot_times(dataset)) == [0.0, 2.0]
+
+
+@pytest.mark.parametrize(("radius", "drawn", "told"), [(1e-4, 0.005, True), (0.02, 0.02, False)])
+def test_a_rod_is_drawn_no_thinner_than_it_is(radius: float, drawn: float, told: bool, monkeypatch):
+    asked = []
+    facets = Tube.facets
+    monkeypatch.setattr(Tube, "facets", lambda tube, thick: asked.append(thick) or facets(tube, thick))
+    upright = np.array([[0.0, 0, 0], [0, 0, 1]])
+    stage = Stage([radius], upright, "")
+    stage.draw(0, Tube.of(upright, np.tile([1.0, 0.0, 0.0, 0.0], (2, 1))), "")
+    assert asked == [pytest.approx(drawn)]
+    assert any("thicker than the rod" in text.get_text() for text in stage.figure.texts) == told
 
 
 def test_several_datasets_are_drawn_beside_each_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

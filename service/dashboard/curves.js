@@ -49,7 +49,8 @@ export async function series(job, shape) {
     if (turns(curves) > LEAST_TURNS) curves.defect = time.map((/** @type {number} */ _, /** @type {number} */ k) => defect(curves.Tw[k], curves.Wr[k], curves.Lk[k]));
     if (shape.output.fields.includes("f")) {
       const ends = await Promise.all([`f&s_max=0`, `f&s_min=${shape.rod.length}`].map((end) => read(part + end)));
-      ends.forEach((end, k) => curves[TENSIONS[k]] = end.variables.f.values.map((/** @type {any} */ at) => at[0]?.[2] ?? null));
+      ends.forEach((end, k) => curves[TENSIONS[k]] = time.map((/** @type {number} */ _, /** @type {number} */ frame) =>
+        end.variables.f.values[frame]?.[0]?.[2] ?? null)); // a running job may have got more frames meanwhile
     }
     return time.length ? { time, curves } : null;
   } catch (error) {

@@ -46,7 +46,7 @@ def test_a_running_job_is_drawn_as_its_frames_come(server, add, page):
     def data(route):
         names = route.request.url.split("variables=")[1].split("&")[0].split(",")
         time = [0.25 * k for k in range(frames[0])]
-        value = {"f": [[[0.0, 0.0, 1.0]] for _ in time]}
+        value = {"f": [[[0.0, 0.0, 1.0]] for _ in [*time, "one that came meanwhile"]]}
         route.fulfill(json={"coordinates": {"time": {"values": time}}, "variables": {
             name: {"units": "1", "values": value.get(name, time)} for name in names}})
 
@@ -58,6 +58,7 @@ def test_a_running_job_is_drawn_as_its_frames_come(server, add, page):
     assert "running, t = 0.00 s, 1 min 30 s left" in page.inner_text("#page")
     frames[0] = 5
     page.wait_for_function("() => document.querySelector('#page .legend').innerText.includes('Tw 1')")
+    assert page.locator("#page .chart path[d*=NaN]").count() == 0
 
 
 def test_the_outcome_comes_with_its_remedy(server, add, page):

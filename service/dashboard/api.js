@@ -9,11 +9,12 @@
 
 /** A refusal of the service; `status` is that of HTTP, 401 where a key is missing or not valid; `problem` its document. */
 export class Refusal extends Error {
-  /** @param {number} status @param {any} problem */
-  constructor(status, problem) {
+  /** @param {number} status @param {any} problem @param {boolean} [keyed] whether a key was sent */
+  constructor(status, problem, keyed = false) {
     super(problem.detail || problem.title || `the server answers ${status}`);
     this.status = status;
     this.problem = problem;
+    this.keyed = keyed;
   }
 
   /** Whether the same request may be answered a little later. */
@@ -32,7 +33,7 @@ export async function call(address, options = {}) {
   const answer = await fetch(address, { ...options, headers });
   if (answer.ok) return answer;
   if (answer.status === 401) sessionStorage.removeItem("key");
-  throw new Refusal(answer.status, await answer.json().catch(() => ({})));
+  throw new Refusal(answer.status, await answer.json().catch(() => ({})), Boolean(key));
 }
 
 /** The JSON in the answer. Throws Refusal. @param {string} address */

@@ -196,7 +196,7 @@ export class JobsTable {
   tell() {
     if (this.closing.signal.aborted) return;
     const shown = this.known.size;
-    byId("count").textContent = `${shown} jobs shown${this.next ? ", there are older ones" : ""}`;
+    byId("count").textContent = `${shown} ${shown === 1 ? "job" : "jobs"} shown${this.next ? ", there are older ones" : ""}`;
     byId("empty").hidden = shown > 0 || this.next !== null;
     byId("more").hidden = !this.next;
   }

@@ -60,7 +60,7 @@ async function guarded(work, after = look) {
     await health();
   } catch (error) {
     if (shown !== view) return;
-    if (error instanceof Refusal && error.status === 401) return askForKey(error.message);
+    if (error instanceof Refusal && error.status === 401) return askForKey(error.keyed);
     notice(error instanceof Refusal ? error.message : "the server does not answer; it is asked again");
     if (error instanceof Refusal && !error.passes) return;
     if (!(error instanceof Refusal)) tellHealth(false, "away");
@@ -70,13 +70,14 @@ async function guarded(work, after = look) {
   if (shown === view) timer = setTimeout(next, EVERY);
 }
 
-/** @param {string} told */
-function askForKey(told) {
+/** @param {boolean} refused whether there was a key */
+function askForKey(refused) {
   view?.close();
   byId("jobs").hidden = byId("page").hidden = true;
   byId("login").hidden = false;
   byId("login").elements.key.focus();
-  notice(told);
+  notice(refused ? "This key was refused: it is not known here, or it has expired or been revoked. A key begins with hk_." : "");
+  health().catch(() => tellHealth(false, "away"));
 }
 
 async function health() {

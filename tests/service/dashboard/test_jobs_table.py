@@ -31,9 +31,13 @@ def test_a_wrong_key_is_refused_on_the_page_and_a_right_one_opens_it(keyed_serve
     asked = []
     page.on("dialog", lambda dialog: (asked.append(dialog.message), dialog.dismiss()))
     page.goto(keyed_server.address + "/#/?status=failed")
+    page.wait_for_selector("#login:not([hidden])")
+    page.wait_for_function("() => document.querySelector('#health').innerText !== 'asking'")
+    assert page.is_hidden("#notice")  # nobody has done anything wrong yet
     page.fill("#login input", "hk_wrong")
     page.click("#login button")
     page.wait_for_selector("#notice:not([hidden])")
+    assert page.inner_text("#notice").startswith("This key was refused: ")
     page.wait_for_selector("#login:not([hidden])")
     new = keyed_server.app.state.parts.keys.create("alice", frozenset({Scope.READ}), 3600.0)
     page.fill("#login input", new.text)
@@ -151,10 +155,10 @@ def test_every_text_stands_out_from_its_ground(server, add, page, scheme):
 
 def test_nothing_is_wider_than_a_phone(server, add, page):
     add(2, label="a" * 60)
-    page.set_viewport_size({"width": 390, "height": 800})
+    page.set_viewport_size({"width": 360, "height": 800})
     page.goto(server.address)
     rows(page, 2)
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert page.evaluate("document.documentElement.scrollWidth") <= 360
 
 
 @pytest.mark.parametrize("built", [True, False])

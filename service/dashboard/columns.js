@@ -33,7 +33,11 @@ export class Columns {
   /** The value of each column for a job. @param {string} id */
   cells(id) {
     const shape = this.cases.get(id);
-    return this.keys.map((key) => element("td", "value", shape ? brief(key.split(".").reduce((node, part) => node?.[part], shape)) : ""));
+    return this.keys.map((key) => {
+      const cell = element("td", "value", shape ? brief(key.split(".").reduce((node, part) => node?.[part], shape)) : "");
+      cell.dataset.head = key;
+      return cell;
+    });
   }
 
   heads() {

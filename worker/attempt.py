@@ -94,8 +94,7 @@ class Attempt:
                 self._compute(simulation, writer, max(self._overrun * estimate(spec).seconds, LEAST_BUDGET))
             except RunFailed as failure:
                 status, outcome, message = Status.FAILED, failure.outcome, str(failure)
-            self._with_room(writer.flush)
-            self._check_size()
+            self._check_size(writer)
             message = " ".join([message, *simulation.notes()]).strip()
             published = self._with_room(lambda: writer.publish(outcome.value, message, simulation))
         dataset = Dataset(self._path.name, published.sha256, published.bytes, self._datasets.stamp(self._path.name))
@@ -173,7 +172,7 @@ class Attempt:
             self._held.checkpointed(self._lease.reached)
         except (OSError, DBAPIError) as error:
             log.warning("job %s: no checkpoint could be written: %s", self._held.job.id, error)
-        self._check_size()
+        self._check_size(writer)
         now = time.monotonic()
         self._due = now + max(self._interval, (now - began) / SHARE)
 
@@ -206,8 +205,8 @@ class Attempt:
             if shutil.disk_usage(self._path.parent).free >= needed or time.monotonic() >= deadline:
                 return
 
-    def _check_size(self) -> None:
-        if size_of(self._directory) > self._held.job.limits.disk:
+    def _check_size(self, writer: DatasetWriter) -> None:
+        if size_of(self._directory) + writer.waiting > self._held.job.limits.disk:
             raise OutOfDisk
 
     def _drift(self, spec: CaseSpec) -> Drift | None:

@@ -58,13 +58,20 @@ class Segments:
         self.written = list(written)
         self.frames = sum(segment.frames for segment in written)
         self._waiting: list[Frame] = []
+        self._frame_bytes = 0
 
     def append(self, frame: Frame) -> None:
         """Add one frame; raises OSError where it cannot be written."""
+        self._frame_bytes = self._frame_bytes or sum(np.asarray(v.of(frame)).nbytes for v in self._variables)
         self._waiting.append(frame)
         self.frames += 1
-        if len(self._waiting) * self._frame_bytes() >= SEGMENT_BYTES:
+        if self.waiting >= SEGMENT_BYTES:
             self.flush()
+
+    @property
+    def waiting(self) -> int:
+        """Bytes of the frames that are in no segment yet."""
+        return len(self._waiting) * self._frame_bytes
 
     def flush(self) -> None:
         """Write the waiting frames into a segment of their own."""
@@ -75,15 +82,14 @@ class Segments:
         self._waiting.clear()
 
     def blocks(self) -> Iterator[Block]:
-        """The segments' arrays in order of time; frames that still wait are not among them."""
+        """The arrays of all frames in order of time: those of the segments, then those that wait."""
         for segment in self.written:
             with np.load(self._directory / segment.name) as arrays:
                 yield {name: arrays[name] for name in arrays.files}
+        if self._waiting:
+            yield self._block()
 
     def _block(self) -> Block:
         block: Block = {v.name: np.array([v.of(f) for f in self._waiting], v.type) for v in self._variables}
         block["time"] = np.array([frame.t for frame in self._waiting])
         return block
-
-    def _frame_bytes(self) -> int:
-        return sum(np.asarray(v.of(self._waiting[0])).nbytes for v in self._variables)

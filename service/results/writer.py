@@ -68,6 +68,11 @@ class DatasetWriter:
         """How many it has."""
         return self._segments.frames
 
+    @property
+    def waiting(self) -> int:
+        """Bytes of those that are not on the disk yet."""
+        return self._segments.waiting
+
     def flush(self) -> list[Segment]:
         """Bring all frames so far to the disk, and tell where they are. Raises OSError."""
         self._segments.flush()
@@ -79,7 +84,6 @@ class DatasetWriter:
         `outcome` and `message` say how the run ended. Raises OSError where that cannot be done; then nothing is left
         under the name that was not there before, and it may be tried again.
         """
-        self._segments.flush()
         self._tries += 1  # HDF5 keeps a file open that it could not write, and never writes under its name again
         beside = self._directory / f"{self._path.stem}.{self._tries}{self._path.suffix}.part"
         try:

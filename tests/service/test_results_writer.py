@@ -9,6 +9,7 @@ import os
 import resource
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args
 
@@ -146,6 +147,35 @@ def test_many_segments_make_the_same_dataset_as_one(path: Path, monkeypatch: pyt
         xr.testing.assert_equal(one, many)
 
 
+def test_frames_that_are_in_memory_at_the_end_take_no_other_way_to_the_disk(path: Path, monkeypatch):
+    monkeypatch.setattr(segments, "write_segment", no_space)
+    write(path, small_spec(), 3)
+    with open_dataset(path) as dataset:
+        assert dataset.sizes["time"] == 3
+
+
+def test_only_what_packs_well_is_packed(path: Path):
+    spec, rng = small_spec(), np.random.default_rng(1)
+    with DatasetWriter(path, spec) as writer:
+        for frame in frames(spec, 3):
+            writer.append(replace(frame, r=rng.standard_normal(frame.r.shape), v=np.zeros_like(frame.v)))
+        writer.publish("completed", "", ended(spec))
+    with netCDF4.Dataset(path) as dataset:
+        packed = {name: dataset[name].filters() for name in ("r", "v", "Tw")}
+    assert {name: told["zlib"] for name, told in packed.items()} == {"r": False, "v": True, "Tw": False}
+    assert all(told["fletcher32"] for told in packed.values())
+
+
+@pytest.mark.parametrize(("count", "chunks"), [(1, 1), (103, 1), (104, 2), (341, 4)])
+def test_the_last_chunk_is_hardly_shorter_than_the_others(path: Path, monkeypatch, count, chunks):
+    spec = small_spec()
+    monkeypatch.setattr(netcdf, "CHUNK_BYTES", 103 * 8 * 11 * 3)
+    write(path, spec, count)
+    with netCDF4.Dataset(path) as dataset:
+        rows = dataset["r"].chunking()[0]
+    assert (chunks - 1) * rows < count <= chunks * rows < count + chunks
+
+
 def test_a_run_that_fails_before_its_first_frame_leaves_an_empty_dataset(path: Path):
     write(path, small_spec(), 0)
     with open_dataset(path) as dataset:
@@ -214,6 +244,7 @@ def test_a_full_disk_leaves_the_old_dataset_and_nothing_else(
     path: Path, monkeypatch: pytest.MonkeyPatch, module: Any, name: str, fault: Any
 ):
     path.write_bytes(b"the old one")
+    monkeypatch.setattr(segments, "SEGMENT_BYTES", 1)
     with monkeypatch.context() as full:
         full.setattr(module, name, fault)
         with pytest.raises(OSError):

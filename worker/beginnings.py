@@ -21,7 +21,6 @@ from service.cases.beginning import common_frame
 from service.jobs import Registry
 from service.jobs.held import HeldJob
 from service.results import Datasets
-from service.results.durable import write_whole
 from service.results.query import opened
 from service.results.schema import stored_variables
 from service.results.segments import Block, Segment, write_segment
@@ -65,7 +64,7 @@ class Beginnings:
         try:
             self._directory.mkdir(mode=0o700, parents=True, exist_ok=True)
             state = Checkpoint(run.statistics.steps, run.checkpoint(), ())
-            write_whole(self._directory / f"{frame:08d}", packed(state, self._key, compressed=True))
+            (self._directory / f"{frame:08d}").write_bytes(packed(state, self._key))  # one that is torn is passed over
         except OSError as error:
             log.warning("the state at frame %d cannot be kept: %s", frame, error)
 

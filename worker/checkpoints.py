@@ -5,20 +5,23 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from io import BytesIO
+from math import prod
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from service.results.durable import write_whole
 from service.results.segments import Segment
 
 KEPT = 2
 DIGEST = 32
-HEAD = "head"
+HEAD, PLACES, WORDS = "head", "places", "words"
+WORD = 8
 
 log = logging.getLogger(__name__)
 
@@ -35,8 +38,9 @@ class Checkpoint:
 class Checkpoints:
     """The checkpoints of one job in `directory`, of which the newest two are kept.
 
-    A file is the SHA-256 of the rest, then NumPy's npz: the state's arrays, and the other things as
-    JSON. `key` tells what must be the same for a run to go on: the case and the solver's code.
+    A file is the SHA-256 of the rest, then NumPy's npz: the state's arrays one after the other, as words of which
+    zeros are left out (they are most), with the places of those that are there, and the other things as JSON. `key`
+    tells what must be the same for a run to go on: the case and the solver's code.
     """
 
     def __init__(self, directory: Path, epoch: int, key: str) -> None:
@@ -68,16 +72,19 @@ class Checkpoints:
         return sorted((path for path in found if path.suffix != ".part"), reverse=True)
 
 
-def packed(checkpoint: Checkpoint, key: str, compressed: bool = False) -> bytes:
+def packed(checkpoint: Checkpoint, key: str) -> bytes:
     """A checkpoint as a file holds it."""
     arrays = {name: value for name, value in checkpoint.state.items() if isinstance(value, np.ndarray)}
     numbers = {name: value for name, value in checkpoint.state.items() if name not in arrays}
     head = {"key": key, "steps": checkpoint.steps, "numbers": numbers,
-            "segments": [asdict(segment) for segment in checkpoint.segments]}
+            "segments": [asdict(segment) for segment in checkpoint.segments],
+            "arrays": [(name, value.dtype.str, value.shape) for name, value in arrays.items()]}
+    told = np.frombuffer(json.dumps(head).encode(), np.uint8)
+    whole = b"".join([*(value.tobytes() for value in arrays.values()), bytes(WORD)])
+    words = np.frombuffer(whole[: len(whole) // WORD * WORD], np.uint64)
     content = BytesIO()
-    arrays[HEAD] = np.frombuffer(json.dumps(head).encode(), np.uint8)
-    write = np.savez_compressed if compressed else np.savez
-    write(content, **arrays)  # type: ignore[arg-type]  # nothing is named allow_pickle
+    there = words != 0
+    np.savez(content, **{HEAD: told, PLACES: np.packbits(there), WORDS: words[there]})
     return hashlib.sha256(content.getbuffer()).digest() + content.getvalue()
 
 
@@ -87,8 +94,21 @@ def unpacked(file_content: bytes, key: str) -> Checkpoint:
     if hashlib.sha256(content).digest() != digest:
         raise ValueError("it is damaged")
     with np.load(BytesIO(content)) as file:
-        state = {name: file[name] for name in file.files}
-    head = json.loads(state.pop(HEAD).tobytes())
+        arrays = {name: file[name] for name in file.files}
+    head = json.loads(arrays.pop(HEAD).tobytes())
     if head["key"] != key:
         raise ValueError("it is of another case, or of another version of the solver")
-    return Checkpoint(head["steps"], state | head["numbers"], tuple(Segment(**told) for told in head["segments"]))
+    if WORDS in arrays:  # else it is of a version that wrote each array by itself
+        arrays = dict(_arrays(head["arrays"], np.unpackbits(arrays[PLACES]).astype(bool), arrays[WORDS]))
+    return Checkpoint(head["steps"], arrays | head["numbers"], tuple(Segment(**told) for told in head["segments"]))
+
+
+def _arrays(told: list[tuple[str, str, list[int]]], places: NDArray[np.bool_],
+            words: NDArray[np.uint64]) -> Iterator[tuple[str, NDArray[Any]]]:  # fmt: skip
+    whole, at = np.zeros(len(places), np.uint64), 0
+    whole[places] = words
+    content = whole.tobytes()
+    for name, kind, shape in told:
+        array = np.frombuffer(content, kind, prod(shape), at).reshape(shape).copy()
+        at += array.nbytes
+        yield name, array

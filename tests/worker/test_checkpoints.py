@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from dataclasses import replace
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +23,7 @@ from service.jobs.reconciler import beats, take_back
 from service.results import open_dataset
 from service.settings import Settings
 from worker import run
-from worker.checkpoints import Checkpoint, Checkpoints
+from worker.checkpoints import Checkpoint, Checkpoints, packed, unpacked
 
 ROOT = Path(__file__).parents[2]
 CASE = apply_settings(
@@ -185,6 +189,41 @@ print(len(np.ones(50_000_000)))
 def test_more_memory_than_the_limit_is_refused_and_the_limit_ends_with_the_job():
     told = subprocess.run([sys.executable, "-c", GREEDY], cwd=ROOT, capture_output=True, text=True)
     assert told.stdout.split() == ["refused", "50000000"], told.stderr
+
+
+STATE = {
+    "zeros": np.zeros((3, 5)), "some": np.array([0.0, -0.0, np.nan, np.inf, 5e-324, 1.0]), "none": np.zeros((0, 4)),
+    "one": np.array(2.5), "flags": np.array([True, False, True]), "counts": np.array([7, 0, -1], np.int32),
+    "last": np.arange(4.0), "number": 0.1, "nothing": None,
+}  # fmt: skip
+
+
+def assert_equal_states(told: Mapping[str, Any]) -> None:
+    assert told.keys() == STATE.keys()
+    for name, value in STATE.items():
+        if isinstance(value, np.ndarray):
+            assert (told[name].dtype, told[name].shape) == (value.dtype, value.shape), name
+            assert told[name].tobytes() == value.tobytes() and told[name].flags.writeable, name
+        else:
+            assert told[name] == value, name
+
+
+def test_a_checkpoint_gives_back_every_bit_and_leaves_zeros_out():
+    assert_equal_states(unpacked(packed(Checkpoint(3, STATE, ()), "key"), "key").state)
+    large, small = (len(packed(Checkpoint(3, {"a": make(10_000)}, ()), "key")) for make in (np.ones, np.zeros))
+    assert large > 80_000 and small < 5_000
+
+
+def test_a_checkpoint_of_before_zeros_were_left_out_is_read(tmp_path):
+    arrays = {name: value for name, value in STATE.items() if isinstance(value, np.ndarray)}
+    head = {"key": "key", "steps": 3, "numbers": {"number": 0.1, "nothing": None}, "segments": []}
+    content = BytesIO()
+    np.savez(content, head=np.frombuffer(json.dumps(head).encode(), np.uint8), **arrays)
+    whole = hashlib.sha256(content.getvalue()).digest() + content.getvalue()
+    (tmp_path / "checkpoint-000000000003.1").write_bytes(whole)
+    found = Checkpoints(tmp_path, 2, "key").newest()
+    assert found is not None and (found.steps, found.segments) == (3, ())
+    assert_equal_states(found.state)
 
 
 def test_two_checkpoints_are_kept_and_another_attempts_are_its_own(tmp_path):

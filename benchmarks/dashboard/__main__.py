@@ -146,7 +146,8 @@ def _table(page: Any, address: str, registry: Any) -> list[str]:
     page.reload()
     page.wait_for_function("() => document.querySelectorAll('#jobs tbody tr').length === 50")
     rows = page.evaluate("performance.now()") / 1000
-    painted = page.evaluate("performance.getEntriesByName('first-contentful-paint')[0].startTime") / 1000
+    first = page.wait_for_function("performance.getEntriesByName('first-contentful-paint')[0]?.startTime")
+    painted = first.json_value() / 1000  # a busy browser tells of it after the rows are there
     return [f"| the table of {JOBS:,} jobs: first paint | {painted:.2f} s | < 1 s |",
             f"| its first 50 rows are there | {rows:.2f} s | |"]
 

@@ -48,6 +48,12 @@ def dot(a: Any, b: Any) -> Any:
 
 
 @inner
+def vector_product(a: Any, b: Any) -> Any:
+    """a x b, in space."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@inner
 def norm(a: Any) -> float:
     """The length of a vector."""
     return sqrt(dot(a, a))

@@ -107,11 +107,14 @@ class StaggeredMethod(RadauMethod):
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
-        orientation = orientations_at_nodes(self.state.quaternion)
+        orientation = np.empty((len(self.s), 4))
+        orientations_at_nodes(self.state.quaternion, orientation)
         omega = self._R @ self.state.omega[:, :, None]
         between = 0.5 * (omega[1:-2] + omega[2:-1])
         omega_lab = np.concatenate([omega[:1], between, omega[-1:]])[:, :, 0]
-        kappa, q = bending_at_nodes(self.chain, *self._bend(self.state.quaternion))
+        joints = self._bend(self.state.quaternion)
+        bending_at_nodes(self.chain, *joints)
+        kappa, q, *_ = joints
         return Fields(
             v=rotate_back(orientation, self._nodes[1]), omega=rotate_back(orientation, omega_lab),
             f=rotate_back(orientation, self.state.F), kappa=kappa - self._offset, q=q,

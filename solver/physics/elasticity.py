@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, inner
-from solver.kernels.vectors import minus, stiffness, transform
+from solver.kernels.kernel import inlined, inner, kernel
+from solver.kernels.vectors import dot, minus, stiffness, transform, vector_product
 from solver.kernels.vectors import vector as line
 from solver.scene.curve import Curve
 from solver.scene.rod import Profile, Rod
@@ -73,12 +73,14 @@ def moments(elastic: Elasticity, kappa: Array) -> Array:
     return np.asarray(np.einsum("nij,nj->ni", elastic.K, kappa - elastic.kappa0))
 
 
-def strains(K: Array, q: Array) -> Array:
-    """kappa - kappa0 = K^-1 q (n, 3) of moments q (n, 3). By cofactors: LAPACK rounds as the host's CPU has it."""
-    a, b, c = K[:, 0], K[:, 1], K[:, 2]
-    cofactors = np.cross(b, c), np.cross(c, a), np.cross(a, b)
-    scaled = sum(q[:, i : i + 1] * each for i, each in enumerate(cofactors))
-    return np.asarray(scaled / np.sum(a * cofactors[0], axis=1)[:, None])
+@kernel
+def add_strain(elastic: Elasticity, j: int, q: Any, kappa: Array) -> None:
+    """Add to kappa (3,) what a moment q adds: K^-1 q, by Cramer's rule. (LAPACK rounds as the host's CPU has it.)"""
+    a, b, c = stiffness(elastic.K, j)
+    bc, ca, ab = vector_product(b, c), vector_product(c, a), vector_product(a, b)
+    whole = dot(a, bc)
+    for k in range(3):
+        kappa[k] += (q[0] * bc[k] + q[1] * ca[k] + q[2] * ab[k]) / whole
 
 
 @inner

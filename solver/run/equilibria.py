@@ -125,9 +125,10 @@ class Equilibria(Run):
     def _fields(self, point: Point) -> Fields:
         """The state along the rod, at the nodes, of the point that was looked at last."""
         equations, rest = self._equations, np.zeros_like(point.F)
-        stages, orientation = equations.stages, orientations_at_nodes(point.quaternion)
-        joints = stages.bend[0], stages.moment[0], stages.left[0], stages.right[0]
-        kappa, q = bending_at_nodes(equations.chain, *joints)
+        stages, orientation = equations.stages, np.empty((len(self.s), 4))
+        orientations_at_nodes(point.quaternion, orientation)
+        kappa, q = stages.bend[0].copy(), stages.moment[0].copy()
+        bending_at_nodes(equations.chain, kappa, q, stages.left[0], stages.right[0])
         tips = stages.r[0] + 0.5 * equations.chain.h * stages.R[0, 1:-1, :, 2]
         return Fields(
             v=rest, omega=rest, f=rotate_back(orientation, point.F),

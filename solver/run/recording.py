@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from math import isnan
 from typing import Any, NamedTuple
 
@@ -24,6 +25,7 @@ class Columns(NamedTuple):
     numbers: Array
 
 
+@cache
 def column(name: str) -> slice:
     """Where the components of an output along the rod stand."""
     before = [output.name for output in ALONG].index(name)
@@ -60,11 +62,11 @@ def number_of(row: Array, index: int) -> float:
     return float(row[1 + index])
 
 
-def columns_of(rows: Sequence[Array], judged: bool = False) -> Columns:
+def columns_of(rows: Sequence[Array] | Array, judged: bool = False) -> Columns:
     """The outputs of many frames (frames, ...), copied: all, or of those along the rod the `JUDGED` components."""
-    table, end = np.array(rows), 1 + len(NUMBERS)
+    table, end = np.asarray(rows), 1 + len(NUMBERS)
     along = table[:, end:].reshape(len(table), -1, WIDTH)
-    return Columns(along[..., JUDGED] if judged else along, table[:, None, 1:end])
+    return Columns(along[..., JUDGED] if judged else along.copy(), table[:, None, 1:end].copy())
 
 
 def frame_of(t: float, columns: Columns) -> Frame:

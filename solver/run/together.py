@@ -61,7 +61,7 @@ class Piece:
 class Together:
     """The frames of the chosen attempts, extrapolated (see `series`). `recorded`: the rows of each attempt."""
 
-    def __init__(self, scene: Scene, attempts: Sequence[Attempt], recorded: Sequence[Sequence[Array]]) -> None:
+    def __init__(self, scene: Scene, attempts: Sequence[Attempt], recorded: Sequence[Array]) -> None:
         self._scene, self._attempts, self._recorded = scene, attempts, recorded
         self._chosen, self._diagonal = chosen(attempts), is_diagonal(attempts)
         self.finest = attempts[self._chosen.finest]

@@ -6,6 +6,8 @@ and one complex eigenvalue by TRANSFORM, and the embedded estimate of order 3 wi
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 ROOT = np.sqrt(6.0)
@@ -49,11 +51,13 @@ TO_CUBIC, TO_PARABOLA = np.linalg.inv(_cubic(C)), np.linalg.inv(_parabola(C))
 """From values at the stages to the coefficients of the polynomial through (0, 0) and them, and of the parabola."""
 
 
+@lru_cache(maxsize=8)
 def extrapolation(ratio: float) -> np.ndarray:
     """(3, 3): values of the polynomial through (0, 0) and the stages at the stages of a next step `ratio` as long."""
     return np.asarray(_cubic(1.0 + ratio * C) @ TO_CUBIC)
 
 
+@lru_cache(maxsize=8)
 def quadratic_extrapolation(ratio: float) -> np.ndarray:
     """(3, 3): values of the parabola through the three stages at the stages of a next step `ratio` as long."""
     return np.asarray(_parabola(1.0 + ratio * C) @ TO_PARABOLA)

@@ -11,20 +11,21 @@ from solver.run.plan import FIRST_INTERVALS
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 
-LARGEST_TURN = 0.6
-"""Rotation (rad) within an interval that the first mesh has at the most."""
+LARGEST_TURN, LARGEST_TURN_PRESSED = 1.2, 0.6
+"""Rotation (rad) within an interval that the first mesh has at the most; and where strands press on each other."""
 LOOKED_AT = 513
 """Nodes at which the initial shape is looked at."""
 TIMES = 101
 """Times at which the ends are looked at."""
 
 
-def first_mesh(scene: Scene) -> int:
-    """How many times FIRST_INTERVALS are to be doubled: see `plan`."""
+def first_mesh(scene: Scene, pressed: bool) -> int:
+    """How many times FIRST_INTERVALS are to be doubled: see `plan`. `pressed`: whether strands press on each other."""
+    largest = LARGEST_TURN_PRESSED if pressed else LARGEST_TURN
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
     _, _, kappa = nodes_at_rest(scene.initial, s)
     bent = float(np.sum(np.linalg.norm(kappa, axis=1)[1:] * np.diff(s)))
-    return max(ceil(log2(max(bent, twisted(scene)) / (LARGEST_TURN * FIRST_INTERVALS) + 1e-9)), 0)
+    return max(ceil(log2(max(bent, twisted(scene)) / (largest * FIRST_INTERVALS) + 1e-9)), 0)
 
 
 def twisted(scene: Scene) -> float:

@@ -1,26 +1,29 @@
 """Which resolution a run to a tolerance tries next: a pure function of what those before have shown.
 
-A resolution is a mesh of FIRST_INTERVALS 2^mesh intervals and steps whose error relative to their motion is at most
-FIRST_STEPS tolerance / 4^steps. The coarsest mesh runs with two kinds of steps, which tells for next to nothing what
-shorter steps would change. Then the mesh is made finer, or the steps shorter, or both at once: both errors fall to a
-quarter then, so that one difference tells them together. It ends when their sum is below the tolerance, when the work
-is done that may be, or when it shows that this work cannot bring it there. This is asked of each quantity that the
-tolerance is for: one that cannot be brought there, as the curvature where a moment jumps, does not keep the others from
-it. Of those that can be, the one with the largest error says what is made finer.
+A resolution is a mesh of FIRST_INTERVALS 2^mesh intervals and steps whose error relative to their motion, as the
+embedded formula has it, is at most FIRST_STEPS tolerance^(1/2) / 4^steps: where the motion is smooth, the true one
+falls faster. The coarsest mesh runs with two kinds of steps, which tells for next to nothing what shorter ones would
+change. Then the mesh is made finer, or the steps shorter, or both at once: both errors fall to a quarter then, so that
+one difference tells them together. It ends when their sum is below the tolerance, when the work is done that may be, or
+when it shows that this work cannot bring it there. This is asked of each quantity that the tolerance is for: one that
+cannot be brought there, as the curvature where a moment jumps, does not keep the others from it. Of those that can be,
+the one with the largest error says what is made finer.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import ceil, inf, log
+from math import ceil, inf, log, sqrt
 from typing import NamedTuple
 
-from solver.run.series import Attempt, is_diagonal
+from solver.run.series import Attempt, chosen, is_diagonal
 
 FIRST_INTERVALS = 16
-FIRST_STEPS = 16.0
+FIRST_STEPS = 0.5
 STEP_SHARE = 0.4
 """Part of the tolerance that the error of the steps may take."""
+FAR = 64.0
+"""How many times larger than that of the steps the error of the mesh is where it is made finer alone first."""
 OVERHEAD = 60
 """Intervals that take as long as all else in a Newton iteration."""
 MOST_WORK = 1.2e7
@@ -77,7 +80,7 @@ def intervals_of(mesh: int) -> int:
 
 def step_tolerance(steps: int, tolerance: float) -> float:
     """The largest error of a step relative to its motion."""
-    return FIRST_STEPS * tolerance / 4.0**steps
+    return FIRST_STEPS * sqrt(tolerance) / 4.0**steps
 
 
 def longest_step(steps: int, interval: float) -> float:
@@ -148,12 +151,13 @@ def _wishes(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals
             yield Trial(mesh, steps + 1)
         yield Trial(max(mesh - 1, 0), steps - 1)  # if it can, the last one is to tell all
     if len(meshes) == 1:
-        yield from _second_mesh(history, complete, max(excess.steps for excess in errors), most_intervals)
+        by_steps = max(excess.steps for excess in errors)
+        yield from _second_mesh(history, complete, by_steps, most_intervals)
         return
     for excess in sorted(errors, key=lambda excess: -excess.total):
         if excess.total <= 1.0 or not history[-1].complete:
             return
-        for trial in _finer(_finest(complete), excess, diagonal=is_diagonal(history)):
+        for trial in _finer(_finest(complete), excess, len(chosen(history).meshes), diagonal=is_diagonal(history)):
             if _may_do(history, excess, trial, most_intervals):
                 yield trial
 
@@ -179,12 +183,14 @@ def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], by_ste
     yield finer if finer.mesh <= mesh + 2 and intervals_of(finer.mesh) <= most_intervals else None
 
 
-def _finer(best: Attempt, excess: Excess, diagonal: bool) -> list[Trial]:
-    """Finer resolutions than the finest there is, what is wanted most first."""
+def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Trial]:
+    """Finer resolutions than the finest there is, what is wanted most first. `chain`: meshes that tell its error; with
+    other steps there would be two of them."""
     mesh, steps = Trial(best.mesh + 1, best.steps), Trial(best.mesh, best.steps + 1)
     both = Trial(best.mesh + 1, best.steps + 1)
     alone = [mesh, steps] if excess.mesh >= excess.steps else [steps, mesh]
-    if diagonal or (excess.mesh > 1.0 - STEP_SHARE and excess.steps > STEP_SHARE):
+    alike = chain < 3 and excess.mesh <= FAR * excess.steps
+    if diagonal or (alike and excess.mesh > 1.0 - STEP_SHARE and excess.steps > STEP_SHARE):
         return [both, alone[0]]
     return alone[:1]
 

@@ -51,14 +51,15 @@ class Refined(Run):
     def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
         super().__init__(scene, statistics)
         self._history: list[tuple[float, ...]] = []
-        self._recorded: list[tuple[Array, ...]] = []
-        """The rows of each attempt; none of one that failed once another is complete."""
+        self._recorded: list[Array] = []
+        """The rows of each attempt (frames, ...); none of one that failed once another is complete."""
         self._noticed: list[tuple[float, ...]] = []
         """The remarks of each attempt."""
         self._rows: list[Array] = []
         self._excesses: list[tuple[float, ...]] = [tuple(Excess())] * len(QUANTITIES)
         """Of each quantity what it is beyond the tolerance."""
-        self._mesh, self._steps = first_mesh(scene), 0
+        self._mesh, self._steps = first_mesh(scene, pressed=False), 0
+        self._first_if_pressed = first_mesh(scene, pressed=True)
         self._work, self._progress, self._decided = 0.0, 0.0, False
         self._detail = ""
         self._errors_of_frames = np.zeros((0, len(QUANTITIES)))
@@ -171,18 +172,20 @@ class Refined(Run):
             self._rows.append(row_of(frame))
         if self._run.finished:
             self._ended(self._run.t, OUTCOMES.index(Outcome.COMPLETED), slow=False)
+        elif not self._history and self._run.presses and self._first_if_pressed > self._mesh:
+            self._ended(self._run.t, OUTCOMES.index(Outcome.MESH_TOO_COARSE), slow=False)
         elif self._work > allowance(self._attempts, Trial(self._mesh, self._steps)):
             self._ended(self._run.t, OUTCOMES.index(Outcome.TOLERANCE_NOT_REACHED), slow=True)
 
     def _ended(self, t: float, outcome: int, slow: bool) -> None:
         complete = OUTCOMES[outcome] is Outcome.COMPLETED
         self._history.append(tuple(Attempt(self._mesh, self._steps, self._work, t, complete, slow, outcome)))
-        self._recorded.append(tuple(self._rows))
+        self._recorded.append(np.array(self._rows))
         self._noticed.append(astuple(self._run.remarks))
         self._rows, self._work = [], 0.0
         if complete:
             done = [attempt.complete for attempt in self._attempts]
-            self._recorded = [rows if there else () for rows, there in zip(self._recorded, done, strict=True)]
+            self._recorded = [rows if there else rows[:0] for rows, there in zip(self._recorded, done, strict=True)]
             self._excesses = [tuple(each) for each in self._together.excesses(self._errors)]
         then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
         if then is None:

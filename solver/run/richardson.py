@@ -16,8 +16,12 @@ WARY = 2.0
 """By how much the error of two meshes is taken larger: nothing shows yet that the order is 2."""
 AGREEMENT = 0.6
 """Part of what order 2 would make the differences of successive meshes fall by, from which on it is believed."""
-LEAST = 0.02
-"""Part of the finest mesh's own error that the extrapolated one is never told to be below."""
+CLEAN, LEFT = 0.1, (1.0 / 3.0, 1.0 / 7.5)
+"""What is left of the change from one extrapolated solution to the next: a third if that is still of order 2, half as
+much again as a fifth if it is of order 4; this is taken where order 2 shows in the meshes to within `CLEAN`. Three such
+errors are more than the third."""
+LEAST = 0.02, 0.005
+"""Part of the finest mesh's own error that the extrapolated one is never told to be below; and where order 2 shows."""
 
 
 def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, Array]:
@@ -25,8 +29,8 @@ def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, 
 
     `ratios`: how many times finer each mesh is than the one before it. Of one, nothing tells the error: NaN. Of two, u1
     and u2: u2 + (u2 - u1) / (k^2 - 1), and as its error that correction, taken `WARY`. Of three, the difference of the
-    two such solutions tells their error; a third of it is taken. Where a column's differences do not fall as order 2
-    has it, nothing is extrapolated, and the error is what a series of such differences would leave.
+    two such solutions tells their error; a part of it is taken, see `LEFT`. Where a column's differences do not fall as
+    order 2 has it, nothing is extrapolated, and the error is what a series of such differences would leave.
     """
     fine = meshes[-1]
     nodes, steps = fine.shape[1], [k if fine.shape[1] > 1 else 1 for k in ratios]
@@ -42,7 +46,9 @@ def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, 
     fall = _rms(apart[0]) / np.maximum(_rms(far), 1e-300)
     believed = fall >= AGREEMENT * ratios[1] ** 2
     change = far + last[:, :: steps[0]] - corrections[0]
-    settled = np.maximum(np.abs(change) / 3.0, LEAST * np.abs(last[:, :: steps[0]]))
+    clean = np.abs(fall / ratios[1] ** 2 - 1.0) <= CLEAN
+    settled = np.maximum(np.where(clean, *LEFT[::-1]) * np.abs(change),
+                         np.where(clean, *LEAST[::-1]) * np.abs(last[:, :: steps[0]]))  # fmt: skip
     left = np.clip(1.0 / np.maximum(fall - 1.0, 1e-3), 1.0 / (ratios[1] ** 2 - 1.0), 1.0)
     errors = nowhere_small(settled, nodes), nowhere_small(left * np.abs(apart[1]), nodes)
     return fine + np.where(believed, correction, 0.0), np.where(believed, *errors)

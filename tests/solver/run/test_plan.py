@@ -106,8 +106,8 @@ def test_which_attempts_make_the_frames(attempts: list[Attempt], then: Chosen) -
 
 
 def test_a_step_shorter_has_a_quarter_of_the_error() -> None:
-    assert step_tolerance(2, 1e-3) == 1e-3
-    assert step_tolerance(3, 1e-3) == 0.25e-3
+    assert step_tolerance(2, 1e-3) == step_tolerance(1, 1e-3) / 4.0
+    assert step_tolerance(3, 1e-3) == step_tolerance(1, 1e-3) / 16.0
 
 
 @pytest.mark.parametrize("seed", range(300))

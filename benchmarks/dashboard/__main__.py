@@ -70,7 +70,9 @@ def _times() -> None:
 
 def _accessibility() -> None:
     with service() as (server, page, run):
-        rows = accessibility.rows(page, server.address, _pages(page, server.address, run))
+        with serving(server.app.state.parts.settings, keyed=True) as keyed:
+            rows = accessibility.rows(page, keyed.address, {"/#login": "#login:not([hidden])"})
+        rows += accessibility.rows(page, server.address, _pages(page, server.address, run))
     table = ["| page | rules that hold, in light | broken in light | in dark |", "|---|---:|---:|---:|", *rows]
     _write(RESULTS / "accessibility.md", "What axe finds on each page",
            f"axe-core {accessibility.version()}, on all pages", table)

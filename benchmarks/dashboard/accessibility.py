@@ -55,7 +55,7 @@ def rows(page: Any, address: str, ready: Mapping[str, str]) -> list[str]:
             page.goto(address + path)
             page.wait_for_selector(there, state="attached")
             found.append(axe(page))
-        shown = path.split("?")[0].split("/01")[0]
+        shown = re.sub(r"/01\w+", "/ID", path.split("?")[0])
         made.append(f"| `{shown}` | {found[0].held} | " + " | ".join(str(len(one.violations)) for one in found) + " |")
     page.emulate_media(color_scheme="light")
     return made

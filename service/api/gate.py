@@ -84,7 +84,7 @@ class Gate:
         return grant
 
     def _check_host(self, host: str) -> None:
-        name = _name_in(f"//{host}")
+        name = _name_in(host)
         if is_loopback(name) or name in self._hosts or (self._keyed and _is_address(name)):
             return
         told = "a name of this service (HOCKLE_HOSTS)" if self._keyed else "a loopback address"
@@ -138,11 +138,14 @@ def _limits(grant: Grant) -> dict[str, str]:
             "RateLimit": f'"owner";r={grant.remaining};t={ceil(grant.reset)}'}
 
 
-def _name_in(url: str) -> str:
+def _name_in(host: str) -> str:
+    """The name that a Host header gives, without its port; nothing where it is more than these (RFC 9110, 7.2)."""
     try:
-        return urlsplit(url).hostname or ""
-    except ValueError:
+        parts = urlsplit(f"//{host}")
+        name, _ = parts.hostname, parts.port
+    except ValueError:  # of the port, too
         return ""
+    return name if name and parts.netloc == host and "@" not in host else ""
 
 
 def _is_address(name: str) -> bool:

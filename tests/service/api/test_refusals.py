@@ -179,7 +179,8 @@ def test_a_refused_body_names_the_field_the_value_and_the_rule(client):
         "/parameters/loads.damping/low needs a sample, which says how the range is filled")
 
 
-@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "10.0.0.7:80", "", "[::1"])
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1.evil.example", "10.0.0.7:80", "", "[::1", "a@127.0.0.1",
+                                  "127.0.0.1/x", "127.0.0.1?x", "127.0.0.1#x", "127.0.0.1:99999", "127.0.0.1:x"])
 def test_a_foreign_host_is_refused(client, host):
     assert_problem(client.get("/v1/jobs", headers={"Host": host}), 421)
 

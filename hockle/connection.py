@@ -42,17 +42,17 @@ def follow(client: Client, job_id: str) -> JobState:
 
     job = client.job(job_id)
     client.patience = PATIENCE
-    show(one.state.model_dump() for one in job.watch())
+    show(current.state.model_dump() for current in job.watch())
     return job.state
 
 
 def sentence(job: JobState) -> str:
     """How a job is doing."""
-    told = f"{job.id}: {job.status}"
+    text = f"{job.id}: {job.status}"
     if job.status == "running":
-        told += f", {job.phase or 'starting'}, {job.progress:.0%} done, t = {job.t:.2f} s"
+        text += f", {job.phase or 'starting'}, {job.progress:.0%} done, t = {job.t:.2f} s"
     if job.outcome not in ("", "completed"):
-        told += f", {job.outcome}"
+        text += f", {job.outcome}"
     if job.message:
-        told += f": {job.message}"
-    return told
+        text += f": {job.message}"
+    return text

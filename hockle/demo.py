@@ -26,7 +26,7 @@ def register(subparsers: Any) -> None:
     parser.set_defaults(run=demo)
 
 
-def demo(told: argparse.Namespace) -> int:
+def demo(arguments: argparse.Namespace) -> int:
     """Serve, submit, wait, fetch, compare, draw, and stop everything again."""
     from hockle import plots
     from hockle.supervisor import Services, stop_on_signals
@@ -34,8 +34,8 @@ def demo(told: argparse.Namespace) -> int:
     from service.settings import Settings
 
     stop_on_signals()
-    told.output.mkdir(parents=True, exist_ok=True)
-    path = told.output / f"{CASE}.nc"
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    path = arguments.output / f"{CASE}.nc"
     print("starting API, worker and broker", flush=True)
     with tempfile.TemporaryDirectory(prefix="hockle-demo-") as data:
         with Services(Settings(data=Path(data)), port=0) as services, Client(services.address) as client:
@@ -43,7 +43,7 @@ def demo(told: argparse.Namespace) -> int:
             _run(services, client, path)
         print("API, worker and broker are stopped", flush=True)
     print(plots.milestones_table(path))
-    for figure in plots.draw(path, told.output):
+    for figure in plots.draw(path, arguments.output):
         print(figure)
     return 0
 

@@ -68,7 +68,7 @@ def snapshots(dataset: xr.Dataset) -> Figure:
     start = dataset.r.values[0] @ view.axes.T
     with mpl.rc_context(STYLE):
         points = np.vstack([*(tube.r for tube in tubes), start])
-        stage = Stage([radius(case)] * len(tubes), points, view.told + ", dashed: at first")
+        stage = Stage([radius(case)] * len(tubes), points, view.directions + ", dashed: at first")
         for i, (tube, frame) in enumerate(zip(tubes, frames, strict=True)):
             stage.draw(i, tube, f"t = {float(frame.time):g} s", start)
         stage.title(dataset.attrs["title"])
@@ -144,7 +144,7 @@ def _level(name: str, dataset: xr.Dataset) -> float:
 
 def prefixed(largest: float) -> tuple[float, str]:
     """The factor and the name of the SI prefix with which numbers up to `largest` are short."""
-    return next((one for one in PREFIXES if largest >= one[0]), PREFIXES[-1])
+    return next((prefix for prefix in PREFIXES if largest >= prefix[0]), PREFIXES[-1])
 
 
 def panel(x: str, y: str) -> tuple[Figure, Axes]:

@@ -33,22 +33,22 @@ def register(subparsers: Any) -> None:
     parser.set_defaults(run=film)
 
 
-def film(told: argparse.Namespace) -> int:
+def film(arguments: argparse.Namespace) -> int:
     """Make the film, and name it."""
-    kind = told.output.suffix.lower()
+    kind = arguments.output.suffix.lower()
     if kind not in RATES:
-        raise Failure(f"output must end in {' or '.join(RATES)}, got {told.output}")
-    if not 0 < told.seconds <= LONGEST:
-        raise Failure(f"seconds must be > 0 and <= {LONGEST:g}, got {told.seconds:g}")
-    with several(told.datasets) as datasets:
+        raise Failure(f"output must end in {' or '.join(RATES)}, got {arguments.output}")
+    if not 0 < arguments.seconds <= LONGEST:
+        raise Failure(f"seconds must be > 0 and <= {LONGEST:g}, got {arguments.seconds:g}")
+    with several(arguments.datasets) as datasets:
         for name, dataset in datasets.items():
             if missing := SHAPE - set(dataset.data_vars):
                 raise Failure(f"{name} holds no {' and no '.join(sorted(missing))}: output.fields must have them")
         try:
-            many = make(datasets, told.output, told.seconds)
+            many = make(datasets, arguments.output, arguments.seconds)
         except OSError as error:
-            raise Failure(f"{told.output} cannot be written: {error.strerror or error}") from None
-    print(f"{told.output} ({told.output.stat().st_size / 1e6:.1f} MB, {many} pictures)")
+            raise Failure(f"{arguments.output} cannot be written: {error.strerror or error}") from None
+    print(f"{arguments.output} ({arguments.output.stat().st_size / 1e6:.1f} MB, {many} pictures)")
     return 0
 
 
@@ -61,21 +61,22 @@ def make(datasets: Mapping[str, xr.Dataset], path: Path, seconds: float) -> int:
     from hockle.view import View
 
     kind = path.suffix.lower()
-    cases = [json.loads(one.attrs["case"]) for one in datasets.values()]
-    views = [View.of(case, one.r.values) for case, one in zip(cases, datasets.values(), strict=True)]
-    points = [one.r.values.reshape(-1, 3) @ view.axes.T for one, view in zip(datasets.values(), views, strict=True)]
-    stage = Stage([radius(case) for case in cases], np.vstack(points), views[0].told)
+    cases = [json.loads(dataset.attrs["case"]) for dataset in datasets.values()]
+    views = [View.of(case, dataset.r.values) for case, dataset in zip(cases, datasets.values(), strict=True)]
+    points = [dataset.r.values.reshape(-1, 3) @ view.axes.T
+              for dataset, view in zip(datasets.values(), views, strict=True)]  # fmt: skip
+    stage = Stage([radius(case) for case in cases], np.vstack(points), views[0].directions)
     if len(datasets) == 1:
         stage.title(next(iter(datasets.values())).attrs["title"])
-    end = max(float(one.time[-1]) for one in datasets.values())
+    end = max(float(dataset.time[-1]) for dataset in datasets.values())
     times = np.linspace(0.0, end, max(2, round(seconds * RATES[kind])))
     digits = max(0, 2 - floor(log10(end)))
     writer = _writer(kind)
     with writer.saving(stage.figure, str(path), DPI[kind]):
         for t in times:
-            for i, ((name, one), view) in enumerate(zip(datasets.items(), views, strict=True)):
+            for i, ((name, dataset), view) in enumerate(zip(datasets.items(), views, strict=True)):
                 label = f"{name}, " if len(datasets) > 1 else ""
-                stage.draw(i, Tube.at(one, float(t)).turned(view.axes), f"{label}t = {t:.{digits}f} s")
+                stage.draw(i, Tube.at(dataset, float(t)).turned(view.axes), f"{label}t = {t:.{digits}f} s")
             writer.grab_frame()
     return len(times)
 

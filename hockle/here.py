@@ -22,7 +22,7 @@ def add_data(*parsers: argparse.ArgumentParser) -> None:
         parser.add_argument("--data", type=Path, help="directory of the service (default HOCKLE_DATA, or ./var)")
 
 
-def settings_of(told: argparse.Namespace) -> Settings:
+def settings_of(arguments: argparse.Namespace) -> Settings:
     """The settings, with the directories that they name. Raises Failure."""
     from service.settings import from_environment
 
@@ -30,13 +30,13 @@ def settings_of(told: argparse.Namespace) -> Settings:
         settings = from_environment()
     except ValueError as error:
         raise Failure(str(error)) from None
-    if getattr(told, "data", None) is not None:
-        settings = replace(settings, data=told.data)
-    made(settings)
+    if getattr(arguments, "data", None) is not None:
+        settings = replace(settings, data=arguments.data)
+    make_directories(settings)
     return settings
 
 
-def made(settings: Settings) -> None:
+def make_directories(settings: Settings) -> None:
     """Make its directories. Raises Failure."""
     try:
         settings.make_directories()

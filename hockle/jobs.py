@@ -25,62 +25,63 @@ def register(subparsers: Any) -> None:
     pinning = subparsers.add_parser("pin", help="keep jobs: nobody deletes them")
     unpinning = subparsers.add_parser("unpin", help="let jobs be deleted")
     deleting = subparsers.add_parser("delete", help="delete jobs that have ended, with their datasets")
-    for parser, what in ((pinning, pin), (unpinning, unpin), (deleting, delete)):
+    for parser, command in ((pinning, pin), (unpinning, unpin), (deleting, delete)):
         parser.add_argument("ids", metavar="ID", nargs="+")
-        parser.set_defaults(run=what)
+        parser.set_defaults(run=command)
     watching = subparsers.add_parser("watch", help="follow a job to its end")
     watching.add_argument("id", metavar="ID")
     watching.set_defaults(run=watch)
     add_server(listing, cancelling, watching, pinning, unpinning, deleting)
 
 
-def jobs(told: argparse.Namespace) -> int:
+def jobs(arguments: argparse.Namespace) -> int:
     """Print a line for each job: id, status, progress, when it was submitted, label, title."""
-    with connected(told.server) as client:
-        for job in islice(client.jobs(status=told.status, label=told.label, ensemble=told.ensemble), told.many):
+    with connected(arguments.server) as client:
+        listed = client.jobs(status=arguments.status, label=arguments.label, ensemble=arguments.ensemble)
+        for job in islice(listed, arguments.many):
             state = job.state
             print(f"{state.id}  {state.status:10}  {state.progress:4.0%}  {state.created:%Y-%m-%d %H:%M}"
                   f"  {state.label:12}  {state.title}".rstrip())
     return 0
 
 
-def cancel(told: argparse.Namespace) -> int:
+def cancel(arguments: argparse.Namespace) -> int:
     """Cancel jobs, and print how each is doing then."""
-    with connected(told.server) as client:
-        for job_id in told.ids:
+    with connected(arguments.server) as client:
+        for job_id in arguments.ids:
             state = client.job(job_id).cancel().state
             waits = " (it ends within a second)" if not state.ended else ""
             print(f"{sentence(state)}{waits}")
     return 0
 
 
-def pin(told: argparse.Namespace) -> int:
+def pin(arguments: argparse.Namespace) -> int:
     """Have jobs kept."""
-    with connected(told.server) as client:
-        for job_id in told.ids:
+    with connected(arguments.server) as client:
+        for job_id in arguments.ids:
             client.job(job_id).pin()
     return 0
 
 
-def unpin(told: argparse.Namespace) -> int:
+def unpin(arguments: argparse.Namespace) -> int:
     """Let jobs be deleted."""
-    with connected(told.server) as client:
-        for job_id in told.ids:
+    with connected(arguments.server) as client:
+        for job_id in arguments.ids:
             client.job(job_id).unpin()
     return 0
 
 
-def delete(told: argparse.Namespace) -> int:
+def delete(arguments: argparse.Namespace) -> int:
     """Delete jobs that have ended."""
-    with connected(told.server) as client:
-        for job_id in told.ids:
+    with connected(arguments.server) as client:
+        for job_id in arguments.ids:
             client.job(job_id).delete()
     return 0
 
 
-def watch(told: argparse.Namespace) -> int:
+def watch(arguments: argparse.Namespace) -> int:
     """Show a job to its end; 1 if it was not successful."""
-    with connected(told.server) as client:
-        ended = follow(client, told.id)
+    with connected(arguments.server) as client:
+        ended = follow(client, arguments.id)
     print(sentence(ended))
     return 0 if ended.status == "successful" else 1

@@ -36,28 +36,28 @@ def register(subparsers: Any) -> None:
     add_data(creating, listing, revoking)
 
 
-def create(told: argparse.Namespace) -> int:
+def create(arguments: argparse.Namespace) -> int:
     """Make a key and print its text."""
     from service.access import Scope
 
-    scopes = told.scopes.split(",")
+    scopes = arguments.scopes.split(",")
     unknown = [name for name in scopes if name not in SCOPES]
     if unknown:
         raise Failure(f"--scopes takes some of {', '.join(SCOPES)}, got {unknown[0]!r}")
-    if not 0 < told.days <= MOST_DAYS:
-        raise Failure(f"--days must be > 0 and at most {MOST_DAYS}, got {told.days:g}")
-    with _store(told) as store:
+    if not 0 < arguments.days <= MOST_DAYS:
+        raise Failure(f"--days must be > 0 and at most {MOST_DAYS}, got {arguments.days:g}")
+    with _store(arguments) as store:
         try:
-            new = store.create(told.owner, frozenset(map(Scope, scopes)), told.days * DAY)
+            new = store.create(arguments.owner, frozenset(map(Scope, scopes)), arguments.days * DAY)
         except ValueError as error:
             raise Failure(str(error)) from None
     print(new.text)
     return 0
 
 
-def list_keys(told: argparse.Namespace) -> int:
+def list_keys(arguments: argparse.Namespace) -> int:
     """Print every key: prefix, owner, scopes, expiry, state."""
-    with _store(told) as store:
+    with _store(arguments) as store:
         now = datetime.now(UTC)
         for key in store.all():
             expires = datetime.fromtimestamp(key.expires, UTC)
@@ -66,21 +66,21 @@ def list_keys(told: argparse.Namespace) -> int:
     return 0
 
 
-def revoke(told: argparse.Namespace) -> int:
+def revoke(arguments: argparse.Namespace) -> int:
     """Make a key useless."""
     from service.access import UnknownKey
 
-    with _store(told) as store:
+    with _store(arguments) as store:
         try:
-            store.revoke(told.prefix)
+            store.revoke(arguments.prefix)
         except UnknownKey:
-            raise Failure(f"no key has the prefix {told.prefix!r}: see hockle keys list") from None
+            raise Failure(f"no key has the prefix {arguments.prefix!r}: see hockle keys list") from None
     return 0
 
 
 @contextmanager
-def _store(told: argparse.Namespace) -> Iterator[KeyStore]:
+def _store(arguments: argparse.Namespace) -> Iterator[KeyStore]:
     from service.access import KeyStore
 
-    with registry_of(settings_of(told)) as database:
+    with registry_of(settings_of(arguments)) as database:
         yield KeyStore(database)

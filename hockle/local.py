@@ -48,11 +48,11 @@ def cases(_: argparse.Namespace) -> int:
     return 0
 
 
-def validate(told: argparse.Namespace) -> int:
+def validate(arguments: argparse.Namespace) -> int:
     """Print what a case would cost and what looks like a slip in it, or everything that is wrong with it."""
     from service.cases import build_scene, warnings_of
 
-    spec = _spec(told)
+    spec = _spec(arguments)
     intervals, dt_max = spec.numerics.intervals, spec.numerics.dt_max
     if intervals is None or dt_max is None:
         size = f"{spec.frames} frames, nodes and steps as a tolerance of {spec.numerics.tolerance} needs"
@@ -65,10 +65,10 @@ def validate(told: argparse.Namespace) -> int:
     return 0
 
 
-def run(told: argparse.Namespace) -> int:
+def run(arguments: argparse.Namespace) -> int:
     """Simulate a case, with a progress bar, and print a summary; 1 if the run failed, 130 if interrupted."""
-    spec = _spec(told)
-    path = told.output or Path(f"{spec.name}.nc")
+    spec = _spec(arguments)
+    path = arguments.output or Path(f"{spec.name}.nc")
     if path.is_dir():
         raise Failure(f"{path} is a directory: -o takes the name of a file")
     try:
@@ -93,12 +93,12 @@ def summary(path: Path) -> str:
 
     with Dataset(path) as dataset:
         dataset.set_auto_mask(False)
-        told = dataset.__dict__
+        attributes = dataset.__dict__
         frames = len(dataset["time"])
         lines = [
-            f"{told['case_name']}: {told['outcome']}",
-            f"  steps {told['steps']} ({told['failed_steps']} repeated), "
-            f"Newton iterations {told['newton_iterations']}, CPU {told['cpu_time']:.2f} s",
+            f"{attributes['case_name']}: {attributes['outcome']}",
+            f"  steps {attributes['steps']} ({attributes['failed_steps']} repeated), "
+            f"Newton iterations {attributes['newton_iterations']}, CPU {attributes['cpu_time']:.2f} s",
         ]
         if frames:
             last = {name: float(v[-1]) for name, v in dataset.variables.items() if v.dimensions == ("time",)}
@@ -108,8 +108,8 @@ def summary(path: Path) -> str:
                 f"  at t = {last['time']:g} s: Tw {last['Tw']:.4f}, Wr {last['Wr']:.4f}, Lk {last['Lk']:.4f}",
                 f"  energy {stored:.4g} J, " + _trust(last),
             ]
-        if told["outcome"] == Outcome.COMPLETED and told["message"]:
-            lines.append(f"  {told['message']}")
+        if attributes["outcome"] == Outcome.COMPLETED and attributes["message"]:
+            lines.append(f"  {attributes['message']}")
     return "\n".join(
         [*lines, f"  {path} ({path.stat().st_size / 1e6:.1f} MB, {frames} frames)"]
     )
@@ -129,11 +129,11 @@ def _directions(many: int) -> str:
     return "direction" if many == 1 else "directions"
 
 
-def _spec(told: argparse.Namespace) -> CaseSpec:
+def _spec(arguments: argparse.Namespace) -> CaseSpec:
     from hockle.settings import read_case
     from service.cases import CaseError, parse_case
 
-    raw = read_case(told.case, told.settings)
+    raw = read_case(arguments.case, arguments.settings)
     try:
         return parse_case(raw)
     except CaseError as error:
@@ -164,8 +164,8 @@ def _simulate(spec: CaseSpec, path: Path) -> RunFailed | None:
 def _progress(spec: CaseSpec, simulation: Run, writer: DatasetWriter) -> Iterator[dict[str, Any]]:
     """Write the frames as they come, and say now and then what the progress bar shows; first, that the solver is
     loaded."""
-    told = {"status": spec.name, "progress": 0.0, "t": 0.0}
-    yield told | {"phase": LOADING}
+    state = {"status": spec.name, "progress": 0.0, "t": 0.0}
+    yield state | {"phase": LOADING}
     simulation.warm()
     shown = 0.0
     while not simulation.finished:
@@ -174,8 +174,8 @@ def _progress(spec: CaseSpec, simulation: Run, writer: DatasetWriter) -> Iterato
             writer.append(frame)
         if monotonic() - shown >= SHOWN_EVERY:
             shown = monotonic()
-            yield told | {"phase": simulation.phase, "progress": simulation.progress, "t": simulation.t}
-    yield told | {"phase": simulation.phase, "progress": 1.0, "t": simulation.t}
+            yield state | {"phase": simulation.phase, "progress": simulation.progress, "t": simulation.t}
+    yield state | {"phase": simulation.phase, "progress": 1.0, "t": simulation.t}
 
 
 def _not_written(path: Path, error: OSError) -> str:

@@ -47,8 +47,8 @@ def table(rows: list[tuple[str, float, float]]) -> str:
     """The milestones as text."""
     lines = [f"{'milestone':36}{'this run':>12}{'paper':>10}"]
     for name, value, paper in rows:
-        told = "not reached" if isnan(value) else f"{value:.3f}"
-        lines.append(f"{name:36}{told:>12}{paper:>10g}")
+        value_text = "not reached" if isnan(value) else f"{value:.3f}"
+        lines.append(f"{name:36}{value_text:>12}{paper:>10g}")
     return "\n".join(lines)
 
 

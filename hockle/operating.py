@@ -28,42 +28,42 @@ def register(subparsers: Any) -> None:
     add_server(looking, pausing, resuming, requeuing)
 
 
-def queue(told: argparse.Namespace) -> int:
+def queue(arguments: argparse.Namespace) -> int:
     """Print a line for the jobs, and one for each host."""
-    with connected(told.server) as client:
+    with connected(arguments.server) as client:
         _show(client.workforce())
     return 0
 
 
-def pause(told: argparse.Namespace) -> int:
+def pause(arguments: argparse.Namespace) -> int:
     """Pause, and print how it is then."""
-    with connected(told.server) as client:
-        _show(client.pause(told.host, drain=told.drain))
+    with connected(arguments.server) as client:
+        _show(client.pause(arguments.host, drain=arguments.drain))
     return 0
 
 
-def resume(told: argparse.Namespace) -> int:
+def resume(arguments: argparse.Namespace) -> int:
     """Go on, and print how it is then."""
-    with connected(told.server) as client:
-        _show(client.resume(told.host))
+    with connected(arguments.server) as client:
+        _show(client.resume(arguments.host))
     return 0
 
 
-def requeue(told: argparse.Namespace) -> int:
+def requeue(arguments: argparse.Namespace) -> int:
     """Print each new job."""
-    with connected(told.server) as client:
-        for job_id in told.ids:
+    with connected(arguments.server) as client:
+        for job_id in arguments.ids:
             print(sentence(client.job(job_id).requeue().state))
     return 0
 
 
 def _show(now: Workforce) -> None:
-    print(f"queue: {now.waiting} waiting, {now.running} running{_told(now.paused)}")
+    print(f"queue: {now.waiting} waiting, {now.running} running{_pause_text(now.paused)}")
     for host in now.hosts:
-        print(f"{host.name}: {host.workers} workers{_told(host.paused)}")
+        print(f"{host.name}: {host.workers} workers{_pause_text(host.paused)}")
 
 
-def _told(pause: PauseInfo | None) -> str:
+def _pause_text(pause: PauseInfo | None) -> str:
     if pause is None:
         return ""
     return f", {'drained' if pause.drains else 'paused'} by {pause.owner} since {pause.since:%Y-%m-%d %H:%M}"

@@ -34,15 +34,16 @@ def register(subparsers: Any) -> None:
 def add_address(parser: argparse.ArgumentParser) -> None:
     """Let a command say where the API listens."""
     parser.add_argument("--host", default="127.0.0.1", help="any other than loopback needs API keys")
-    parser.add_argument("--port", type=_whole(0, 65535), default=8000, help="0 for any free one")
+    parser.add_argument("--port", type=_whole_number(0, 65535), default=8000, help="0 for any free one")
 
 
 def add_workers(parser: argparse.ArgumentParser) -> None:
     """Let a command say how many jobs run at the same time."""
-    parser.add_argument("--workers", type=_whole(1, 1024), default=os.cpu_count() or 1, help="jobs at the same time")
+    parser.add_argument("--workers", type=_whole_number(1, 1024), default=os.cpu_count() or 1,
+                        help="jobs at the same time")
 
 
-def _whole(least: int, most: int) -> Callable[[str], int]:
+def _whole_number(least: int, most: int) -> Callable[[str], int]:
     def number(text: str) -> int:
         if not (text.isdecimal() and least <= int(text) <= most):
             raise argparse.ArgumentTypeError(f"must be a whole number from {least} to {most}, got {text!r}")
@@ -51,15 +52,15 @@ def _whole(least: int, most: int) -> Callable[[str], int]:
     return number
 
 
-def api(told: argparse.Namespace) -> int:
+def api(arguments: argparse.Namespace) -> int:
     """Serve HTTP on an address, or on a listening socket that the parent process hands down, until a signal."""
     from service.api.serving import serve
 
-    settings = settings_of(told)
-    if told.fd is not None:
-        serve(settings, socket.socket(fileno=told.fd))
+    settings = settings_of(arguments)
+    if arguments.fd is not None:
+        serve(settings, socket.socket(fileno=arguments.fd))
         return 0
-    [listening] = listening_on(settings, told.host, told.port)
+    [listening] = listening_on(settings, arguments.host, arguments.port)
     serve(settings, listening)
     return 0
 
@@ -77,12 +78,12 @@ def listening_on(settings: Settings, host: str, port: int, many: int = 1) -> lis
         raise Failure(f"cannot listen on {host} port {port}: {error}") from None
 
 
-def worker(told: argparse.Namespace) -> int:
+def worker(arguments: argparse.Namespace) -> int:
     """Run jobs until a signal."""
     os.environ.update(SINGLE_THREADED | os.environ)
-    settings_of(told)
+    settings_of(arguments)
     from worker.app import app
 
-    app.worker_main(["worker", "--loglevel", "INFO", "--concurrency", str(told.workers),
+    app.worker_main(["worker", "--loglevel", "INFO", "--concurrency", str(arguments.workers),
                      "--without-gossip", "--without-mingle"])  # fmt: skip
     return 0

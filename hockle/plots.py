@@ -26,14 +26,14 @@ def register(subparsers: Any) -> None:
     parser.set_defaults(run=plot)
 
 
-def plot(told: argparse.Namespace) -> int:
+def plot(arguments: argparse.Namespace) -> int:
     """Draw datasets, print the milestones of one that is the paper's cable, and name the figures."""
-    directory = told.output or told.datasets[0].parent
+    directory = arguments.output or arguments.datasets[0].parent
     directory.mkdir(parents=True, exist_ok=True)
-    if len(told.datasets) > 1:
-        print("\n".join(map(str, compare(told.datasets, directory))))
+    if len(arguments.datasets) > 1:
+        print("\n".join(map(str, compare(arguments.datasets, directory))))
         return 0
-    figures, rows = draw(told.datasets[0], directory), milestones_table(told.datasets[0])
+    figures, rows = draw(arguments.datasets[0], directory), milestones_table(arguments.datasets[0])
     print("\n".join([rows, *map(str, figures)] if rows else map(str, figures)))
     return 0
 
@@ -63,7 +63,7 @@ def compare(paths: list[Path], directory: Path) -> list[Path]:
 
     with several(paths) as datasets:
         figures = {"curves": comparison.curves(datasets)}
-        if all(set(one.data_vars) >= SHAPE for one in datasets.values()):
+        if all(set(dataset.data_vars) >= SHAPE for dataset in datasets.values()):
             figures["shapes"] = comparison.shapes(datasets)
         return [_save(figure, directory / f"comparison-{name}.png") for name, figure in figures.items()]
 

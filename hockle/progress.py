@@ -12,7 +12,7 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 
 
 class Pace:
-    """How long the rest of the work takes, if it goes on as it did since progress was first told."""
+    """How long the rest of the work takes, if it goes on as it did since progress was first reported."""
 
     def __init__(self) -> None:
         self._first: tuple[float, float] | None = None
@@ -26,7 +26,7 @@ class Pace:
 
 
 def show(jobs: Iterable[dict[str, Any]]) -> dict[str, Any]:
-    """Show a job as it is followed to its end; gives what was said of it last.
+    """Show a job as it is followed to its end; returns its last state.
 
     Where there is a `phase`, it is shown with the status.
     """
@@ -39,11 +39,11 @@ def show(jobs: Iterable[dict[str, Any]]) -> dict[str, Any]:
         for job in jobs:
             described = ": ".join(filter(None, (job["status"], job.get("phase", ""))))
             left = None if job["status"] == "accepted" else pace.remaining(job["progress"], monotonic())
-            bar.update(task, completed=job["progress"], t=job["t"], description=described, left=_told(left))
+            bar.update(task, completed=job["progress"], t=job["t"], description=described, left=_clock(left))
     return job
 
 
-def _told(left: float | None) -> str:
+def _clock(left: float | None) -> str:
     """The remaining seconds as a clock shows them."""
     if left is None:
         return ""

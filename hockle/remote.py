@@ -31,35 +31,35 @@ def register(subparsers: Any) -> None:
     add_server(submit_parser, status_parser, fetch_parser)
 
 
-def submit(told: argparse.Namespace) -> int:
+def submit(arguments: argparse.Namespace) -> int:
     """Hand in a case and print the job's id."""
     from hockle.settings import read_case
 
-    case = read_case(told.case, told.settings)
-    with connected(told.server) as client:
-        job = client.submit(case, label=told.label, again=told.again)
+    case = read_case(arguments.case, arguments.settings)
+    with connected(arguments.server) as client:
+        job = client.submit(case, label=arguments.label, again=arguments.again)
         print(job.id, flush=True)
-        if not told.wait:
+        if not arguments.wait:
             return 0
         ended = follow(client, job.id)
     print(sentence(ended))
     return 0 if ended.status == "successful" else 1
 
 
-def status(told: argparse.Namespace) -> int:
+def status(arguments: argparse.Namespace) -> int:
     """Print how a job is doing."""
-    with connected(told.server) as client:
-        job = client.job(told.id).state
-    print(job.model_dump_json(indent=2) if told.json else sentence(job))
+    with connected(arguments.server) as client:
+        job = client.job(arguments.id).state
+    print(job.model_dump_json(indent=2) if arguments.json else sentence(job))
     return 0
 
 
-def fetch(told: argparse.Namespace) -> int:
+def fetch(arguments: argparse.Namespace) -> int:
     """Write a job's dataset to a file."""
-    path = told.output or Path(f"{told.id}.nc")
-    with connected(told.server) as client:
+    path = arguments.output or Path(f"{arguments.id}.nc")
+    with connected(arguments.server) as client:
         try:
-            job = client.job(told.id)
+            job = client.job(arguments.id)
             size = job.export(path) if path.suffix in (".glb", ".zip") else job.fetch(path)
         except OSError as error:
             raise Failure(f"cannot write {path}: {error}") from None

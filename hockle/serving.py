@@ -19,13 +19,13 @@ def register(subparsers: Any) -> None:
     parser.set_defaults(run=serve)
 
 
-def serve(told: argparse.Namespace) -> int:
+def serve(arguments: argparse.Namespace) -> int:
     """Run the service until a signal."""
     from hockle.supervisor import Services, stop_on_signals
 
-    settings = settings_of(told)
+    settings = settings_of(arguments)
     stop_on_signals()
-    with Services(settings, told.host, told.port, told.workers) as services:
+    with Services(settings, arguments.host, arguments.port, arguments.workers) as services:
         print(f"hockle serves at {services.address}, data in {settings.data.absolute()}; Ctrl-C stops it",
               flush=True)
         try:

@@ -9,25 +9,25 @@ from typing import Any
 from hockle.failure import Failure
 
 
-def parse_settings(told: Iterable[str]) -> dict[str, Any]:
+def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
     """Values by dotted key; a value is JSON, or else a plain string. Raises Failure for one without `=`."""
     settings: dict[str, Any] = {}
-    for one in told:
-        key, equals, text = one.partition("=")
+    for text in texts:
+        key, equals, value = text.partition("=")
         if not (key and equals):
-            raise Failure(f"--set takes KEY=VALUE, as numerics.intervals=400, got {one!r}")
+            raise Failure(f"--set takes KEY=VALUE, as numerics.intervals=400, got {text!r}")
         try:
-            settings[key] = json.loads(text)
+            settings[key] = json.loads(value)
         except ValueError:
-            settings[key] = text
+            settings[key] = value
     return settings
 
 
-def read_case(name_or_path: str, told: Iterable[str]) -> dict[str, Any]:
+def read_case(name_or_path: str, texts: Iterable[str]) -> dict[str, Any]:
     """The raw case of a shipped name or a file, with the settings made. Raises Failure."""
     from service.cases import CaseError, apply_settings, load_case
 
     try:
-        return apply_settings(load_case(name_or_path), parse_settings(told))
+        return apply_settings(load_case(name_or_path), parse_settings(texts))
     except (CaseError, OSError) as error:
         raise Failure(str(error)) from None

@@ -43,14 +43,14 @@ GRID, SHADOW, GHOST = "#e3e6ea", "#b9c0c9", "#93a1b3"
 class Stage:
     """Panels to one scale, for tubes in a view's axes (right, back, up)."""
 
-    def __init__(self, radii: Sequence[float], points: Array, told: str) -> None:
-        """`radii`: that of the rod (m) on each panel; `points` (m, 3): all that is ever drawn; `told`: where the lab
-        axes point.
+    def __init__(self, radii: Sequence[float], points: Array, directions: str) -> None:
+        """`radii`: that of the rod (m) on each panel; `points` (m, 3): all that is ever drawn; `directions`: where the
+        lab axes point.
         """
         extent = float(np.ptp(points, axis=0).max())
         self._radii = [max(radius, THICKNESS * extent) for radius in radii]
         self._low, self._high = _box(points, extent, max(self._radii))
-        low, high = _seen(points, self._low, self._high)
+        low, high = _projected_box(points, self._low, self._high)
         self._size = PANEL * MARGIN / float((high - low).max())
         self._centre = (low + high) / 2
         columns, rows = min(2, len(radii)), ceil(len(radii) / 2)
@@ -60,7 +60,7 @@ class Stage:
         self._panels = [self._panel(i, columns, row, step) for i in range(len(radii))]
         self._drawn: list[list[Artist]] = [[] for _ in radii]
         thicker = "tubes thicker than the rod, " if 1.01 * min(radii) < THICKNESS * extent else ""
-        caption = fill(f"grid {step:g} m, {told}; {thicker}stripe along a1", int(columns * PANEL * CAPTION))
+        caption = fill(f"grid {step:g} m, {directions}; {thicker}stripe along a1", int(columns * PANEL * CAPTION))
         self.figure.text(0.5, 0.1 / self.figure.get_figheight(), caption, ha="center", color="#6b7280", fontsize=9)
 
     def draw(self, panel: int, tube: Tube, title: str, ghost: Array | None = None) -> None:
@@ -96,14 +96,14 @@ class Stage:
         self.figure.suptitle(fill(text, int(self.figure.get_figwidth() * TITLE)), fontsize=12)
 
 
-def _seen(points: Array, low: Array, high: Array) -> tuple[Array, Array]:
+def _projected_box(points: Array, low: Array, high: Array) -> tuple[Array, Array]:
     """Where points (m, 3) and the floor of their box are seen in square axes of width 1: left below, right above."""
     axes: Axes3D = Figure(figsize=(1.0, 1.0)).add_axes((0.0, 0.0, 1.0, 1.0), projection="3d")
     _prepare(axes, low, high)
     corners = np.array(list(product((low[0], high[0]), (low[1], high[1]), (low[2],))))
     x, y, _ = proj3d.proj_transform(*np.vstack([points, corners]).T, axes.get_proj())
-    seen = axes.transAxes.inverted().transform(axes.transData.transform(np.column_stack([x, y])))
-    return seen.min(axis=0), seen.max(axis=0)
+    projected = axes.transAxes.inverted().transform(axes.transData.transform(np.column_stack([x, y])))
+    return projected.min(axis=0), projected.max(axis=0)
 
 
 def _box(points: Array, extent: float, radius: float) -> tuple[Array, Array]:

@@ -29,11 +29,11 @@ def register(subparsers: Any) -> None:
     add_data(checking, pruning, saving, restoring)
 
 
-def check(told: argparse.Namespace) -> int:
+def check(arguments: argparse.Namespace) -> int:
     """Print what is not as it should be; 1 if some of it could not be set right."""
     from service.store.check import check
 
-    settings, wrong = settings_of(told), 0
+    settings, wrong = settings_of(arguments), 0
     with registry_of(settings) as database:
         for finding in check(database, settings):
             print(finding.what)
@@ -42,40 +42,40 @@ def check(told: argparse.Namespace) -> int:
     return 1 if wrong else 0
 
 
-def prune(told: argparse.Namespace) -> int:
+def prune(arguments: argparse.Namespace) -> int:
     """Delete jobs, and print their ids."""
     from service.results import Datasets
     from service.store.removal import remove_files
     from service.store.retention import overdue, retain
 
-    settings = settings_of(told)
+    settings = settings_of(arguments)
     with registry_of(settings) as database:
-        gone = (overdue if told.dry_run else retain)(database, settings, time.time())
-        if not told.dry_run:
+        ids = (overdue if arguments.dry_run else retain)(database, settings, time.time())
+        if not arguments.dry_run:
             remove_files(database, Datasets(settings.datasets, settings.copies, settings.objects))
-    print("\n".join([*gone, f"{len(gone)} jobs {'would be' if told.dry_run else 'are'} deleted"]))
+    print("\n".join([*ids, f"{len(ids)} jobs {'would be' if arguments.dry_run else 'are'} deleted"]))
     return 0
 
 
-def backup(told: argparse.Namespace) -> int:
+def backup(arguments: argparse.Namespace) -> int:
     """Write a backup; 1 if a dataset could not be saved."""
     from service.store.backup import back_up
 
-    settings = settings_of(told)
+    settings = settings_of(arguments)
     with registry_of(settings) as database:
-        return _told(list(back_up(database, settings, told.folder)), f"saved to {told.folder}")
+        return _report(list(back_up(database, settings, arguments.folder)), f"saved to {arguments.folder}")
 
 
-def restore(told: argparse.Namespace) -> int:
+def restore(arguments: argparse.Namespace) -> int:
     """Bring a backup back; 1 if a dataset is missing or damaged."""
     from service.store.backup import restore
 
     try:
-        return _told(list(restore(settings_of(told), told.folder)), f"restored from {told.folder}")
+        return _report(list(restore(settings_of(arguments), arguments.folder)), f"restored from {arguments.folder}")
     except (FileExistsError, FileNotFoundError) as error:
         raise Failure(str(error)) from None
 
 
-def _told(faults: list[str], done: str) -> int:
+def _report(faults: list[str], done: str) -> int:
     print("\n".join([*faults, done if not faults else f"{done}, but for {len(faults)} datasets"]))
     return 1 if faults else 0

@@ -14,7 +14,7 @@ from pathlib import Path
 from hockle.broker import answers, redis_binary, redis_child, short_directory
 from hockle.children import Child
 from hockle.failure import Failure
-from hockle.here import made
+from hockle.here import make_directories
 from hockle.parts import SINGLE_THREADED, listening_on
 from hockle.rotation import rotate
 from service.pulse import last_beat
@@ -82,14 +82,14 @@ class Services:
             self._cleanup.close()
 
     def _start(self) -> None:
-        made(self.settings)
+        make_directories(self.settings)
         sockets = listening_on(self.settings, self._host, self._port, APIS)
         for listening in sockets:
             self._cleanup.enter_context(listening)
         self._port = sockets[0].getsockname()[1]
         self._hold_data_directory()
-        for left in self.settings.pulses.iterdir():
-            left.unlink()
+        for pulse in self.settings.pulses.iterdir():
+            pulse.unlink()
         self._start_broker()
         environment = self.settings.environment() | ENVIRONMENT
         apis = [f"api-{number}" for number in range(1, APIS + 1)]
@@ -112,9 +112,9 @@ class Services:
         self.settings = replace(self.settings, broker=f"redis+socket://{socket_path}")
 
     def _hold_data_directory(self) -> None:
-        held = self._cleanup.enter_context((self.settings.data / "serve.lock").open("w"))
+        lock = self._cleanup.enter_context((self.settings.data / "serve.lock").open("w"))
         try:
-            fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise Failure(f"another hockle serves from {self.settings.data.absolute()}: stop it, "
                           "or give this one another directory with --data") from None

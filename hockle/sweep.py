@@ -32,27 +32,28 @@ def register(subparsers: Any) -> None:
     add_server(parser)
 
 
-def sweep(told: argparse.Namespace) -> int:
+def sweep(arguments: argparse.Namespace) -> int:
     """Hand in the cases, and print the ensemble's id; wait for its numbers if any are asked for."""
     from hockle.settings import read_case
 
-    if told.sample and told.size is None:
-        raise Failure(f"--sample {told.sample} needs --size: how many points")
-    names = _scalars(told.scalars) if told.scalars else []
-    case = read_case(told.case, told.settings)
-    parameters = dict(_varied(one) for one in told.vary)
-    with connected(told.server) as client:
-        ensemble = client.sweep(case, parameters, sample=told.sample, size=told.size, seed=told.seed, label=told.label)
-        print(ensemble.id, file=sys.stderr if told.scalars else sys.stdout, flush=True)
+    if arguments.sample and arguments.size is None:
+        raise Failure(f"--sample {arguments.sample} needs --size: how many points")
+    names = _scalars(arguments.scalars) if arguments.scalars else []
+    case = read_case(arguments.case, arguments.settings)
+    parameters = dict(_varied(text) for text in arguments.vary)
+    with connected(arguments.server) as client:
+        ensemble = client.sweep(case, parameters, sample=arguments.sample, size=arguments.size, seed=arguments.seed,
+                                label=arguments.label)
+        print(ensemble.id, file=sys.stderr if arguments.scalars else sys.stdout, flush=True)
         if not names:
             return 0
         client.patience = PATIENCE
         ensemble.wait(progress=True)
         table = ensemble.csv(*names)
-    if told.output is None:
+    if arguments.output is None:
         print(table, end="")
     else:
-        told.output.write_text(table, encoding="utf-8")
+        arguments.output.write_text(table, encoding="utf-8")
     return 0 if ensemble.status == "successful" else 1
 
 

@@ -20,7 +20,7 @@ class View:
     """Where the lab axes point in a picture: the rows of `axes` (3, 3) are right, back and up, in the lab frame."""
 
     axes: Array
-    told: str
+    directions: str
 
     @classmethod
     def of(cls, case: Mapping[str, Any], r: Array) -> Self:

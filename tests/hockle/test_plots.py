@@ -107,14 +107,14 @@ HANGING = np.array([[[0.0, 0, 0], [0, 0, 1]], [[0, 0, 0], [-0.3, 0, 0.9]]])
 def test_gravity_is_down_and_a_horizontal_rod_lies():
     view = View.of({"loads": {"gravity": [-9.81, 0, 0]}}, HANGING)
     assert view.axes == pytest.approx(np.array([[0, 0, 1], [0, -1, 0], [1, 0, 0]]))
-    assert view.told == "e3 to the right, gravity -e1 down"
+    assert view.directions == "e3 to the right, gravity -e1 down"
     start, end = HANGING[1] @ view.axes.T
     assert end[0] - start[0] == pytest.approx(0.9) and end[2] - start[2] == pytest.approx(-0.3)
 
 
 def test_without_gravity_a_rod_along_e3_lies_as_in_the_paper_and_another_has_e3_up():
-    assert View.of({}, HANGING).told == "e3 to the right, e1 down"
-    assert View.of({}, HANGING[..., ::-1]).told == "e1 to the right, -e3 down"
+    assert View.of({}, HANGING).directions == "e3 to the right, e1 down"
+    assert View.of({}, HANGING[..., ::-1]).directions == "e1 to the right, -e3 down"
 
 
 @pytest.mark.parametrize("gravity", [(0, 0, -9.81), (1.0, 2.0, 3.0), (0, 9.81, 0)])

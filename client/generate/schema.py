@@ -28,15 +28,15 @@ def types_of(schema: dict[str, Any]) -> str:
     parts: dict[str, dict[str, Any]] = {**schema["$defs"], schema["title"]: schema}
     keys = sorted(set(_keys(schema, parts)))
     setting = "Setting = Literal[\n" + "".join(f'    "{key}",\n' for key in keys) + "]\n"
-    told = '"""The dotted keys of a case without those that count entries, as loads.point.0.s."""\n'
-    return HEAD + "".join(_declaration(name, part) for name, part in parts.items()) + "\n\n" + setting + told
+    docstring = '"""The dotted keys of a case without those that count entries, as loads.point.0.s."""\n'
+    return HEAD + "".join(_declaration(name, part) for name, part in parts.items()) + "\n\n" + setting + docstring
 
 
 def _declaration(name: str, part: dict[str, Any]) -> str:
     lines = [f"\n\nclass {name}(TypedDict):\n", _documented(part["description"])]
     for key, value in part["properties"].items():
-        told = _type(value)
-        lines.append(f"\n    {key}: {told if key in part.get('required', ()) else f'NotRequired[{told}]'}\n")
+        kind = _type(value)
+        lines.append(f"\n    {key}: {kind if key in part.get('required', ()) else f'NotRequired[{kind}]'}\n")
         if meaning := _meaning(value):
             lines.append(_documented(meaning))
     return "".join(lines)
@@ -44,12 +44,12 @@ def _declaration(name: str, part: dict[str, Any]) -> str:
 
 def _meaning(value: dict[str, Any]) -> str:
     """What a field means, its unit, and its default where it is a short one."""
-    said = [value.get("description", "")]
+    parts = [value.get("description", "")]
     if "unit" in value:
-        said.append(f"in {value['unit']}" if value["unit"] != "1" else "a plain number")
+        parts.append(f"in {value['unit']}" if value["unit"] != "1" else "a plain number")
     if value.get("default") is not None and len(json.dumps(value["default"])) < 30:
-        said.append(f"default {json.dumps(value['default'])}")
-    return "; ".join(filter(None, said))
+        parts.append(f"default {json.dumps(value['default'])}")
+    return "; ".join(filter(None, parts))
 
 
 def _documented(text: str) -> str:
@@ -58,26 +58,26 @@ def _documented(text: str) -> str:
     return textwrap.indent('"""' + "\n".join(lines) + closing + "\n", "    ")
 
 
-def _type(value: dict[str, Any]) -> str:
-    if "$ref" in value:
-        return str(value["$ref"]).rpartition("/")[2]
-    if "enum" in value or "const" in value:
-        return f"Literal[{', '.join(json.dumps(one) for one in value.get('enum', [value.get('const')]))}]"
-    if several := value.get("anyOf") or value.get("oneOf"):
-        return f"Union[{', '.join(dict.fromkeys(_type(one) for one in several))}]"
-    if value["type"] == "array":
-        entries = value.get("prefixItems") or [value["items"]]
-        [entry] = dict.fromkeys(_type(one) for one in entries)
+def _type(schema: dict[str, Any]) -> str:
+    if "$ref" in schema:
+        return str(schema["$ref"]).rpartition("/")[2]
+    if "enum" in schema or "const" in schema:
+        return f"Literal[{', '.join(json.dumps(word) for word in schema.get('enum', [schema.get('const')]))}]"
+    if choices := schema.get("anyOf") or schema.get("oneOf"):
+        return f"Union[{', '.join(dict.fromkeys(_type(choice) for choice in choices))}]"
+    if schema["type"] == "array":
+        entries = schema.get("prefixItems") or [schema["items"]]
+        [entry] = dict.fromkeys(_type(entry) for entry in entries)
         return f"Sequence[{entry}]"
-    return PLAIN[value["type"]]
+    return PLAIN[schema["type"]]
 
 
 def _keys(value: dict[str, Any], parts: dict[str, dict[str, Any]], before: str = "") -> Iterator[str]:
     """The dotted keys below a value."""
     if "$ref" in value:
         value = parts[value["$ref"].rpartition("/")[2]]
-    for one in value.get("anyOf", []) + value.get("oneOf", []):
-        yield from _keys(one, parts, before)
+    for choice in value.get("anyOf", []) + value.get("oneOf", []):
+        yield from _keys(choice, parts, before)
     for name, below in value.get("properties", {}).items():
         yield before + name
         yield from _keys(below, parts, f"{before}{name}.")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-HEAD = '''"""{what} without await.
+HEAD = '''"""{subject} without await.
 
 Written by `make client` from {source}: change that one.
 """
@@ -20,19 +20,19 @@ WORDS = {
 
 def without_await(source: str, text: str) -> str:
     """A module for programs without an event loop, from one for programs with one."""
-    what = text[3:].partition(", with await")[0]
+    subject = text[3:].partition(", with await")[0]
     text = text[text.index('"""\n', 3) + 4 :]
-    for word, other in WORDS.items():
-        text = re.sub(word, other, text, flags=re.M)
-    text = HEAD.format(source=source, what=what) + text
+    for pattern, replacement in WORDS.items():
+        text = re.sub(pattern, replacement, text, flags=re.M)
+    text = HEAD.format(source=source, subject=subject) + text
     text = text.replace("import Iterator, Iterable, Mapping", "import Iterable, Iterator, Mapping")
     return _realigned(_sorted(text))
 
 
 def _sorted(text: str) -> str:
     """The imports of the client's own modules are in order again."""
-    own = re.findall(r"^from hockle_client\..*\n", text, flags=re.M)
-    return text.replace("".join(own), "".join(sorted(own)), 1)
+    imports = re.findall(r"^from hockle_client\..*\n", text, flags=re.M)
+    return text.replace("".join(imports), "".join(sorted(imports)), 1)
 
 
 def _realigned(text: str) -> str:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from typing_extensions import Self
 
-from hockle_client.case import written
+from hockle_client.case import encoded
 from hockle_client.documents import Event, JobState, Link
 from hockle_client.handle import JobFacts, safe
 from hockle_client.problems import HockleError
@@ -98,8 +98,8 @@ class AsyncJob(JobFacts):
             raise HockleError(f"job {self.id} is {self.status}: cancel it, and wait for its end")
         await self._client._ask("DELETE", f"/v1/jobs/{self.id}")
 
-    async def _do(self, method: str, what: str) -> Self:
-        response = await self._client._ask(method, f"/v1/jobs/{self.id}/{what}")
+    async def _do(self, method: str, action: str) -> Self:
+        response = await self._client._ask(method, f"/v1/jobs/{self.id}/{action}")
         self.state = JobState.model_validate_json(response.content)
         return self
 
@@ -124,12 +124,12 @@ class AsyncJob(JobFacts):
 
         Raises Problem.
         """
-        told = {"set": dict(set), "fork": {"at": at, "start": dict(start), "end": dict(end)}}
-        return await self._again(told, label=label, priority=priority, limits=dict(limits))
+        change = {"set": dict(set), "fork": {"at": at, "start": dict(start), "end": dict(end)}}
+        return await self._again(change, label=label, priority=priority, limits=dict(limits))
 
-    async def _again(self, told: dict[str, Any], **more: Any) -> AsyncJob:
+    async def _again(self, change: dict[str, Any], **more: Any) -> AsyncJob:
         headers = {"Idempotency-Key": str(uuid.uuid4())}
-        body = written({"job": self.id, **told, **more})
+        body = encoded({"job": self.id, **change, **more})
         response = await self._client._ask("POST", "/v1/jobs", body=body, headers=headers)
         return AsyncJob(self._client, JobState.model_validate_json(response.content))
 
@@ -191,19 +191,20 @@ class AsyncJob(JobFacts):
     async def link(self, seconds: float = 86400.0) -> Link:
         """An address by which anybody reads this dataset for so long, without a key. Raises Problem."""
         body = b'{"seconds": %r}' % seconds
-        told = (await self._client._ask("POST", f"/v1/jobs/{self.id}/links", body=body)).json()
-        return self._linked(told)
+        created = (await self._client._ask("POST", f"/v1/jobs/{self.id}/links", body=body)).json()
+        return self._linked(created)
 
     async def links(self) -> list[Link]:
         """The links to this dataset, those that are good no more included. Raises Problem."""
-        told = (await self._client._ask("GET", f"/v1/jobs/{self.id}/links")).json()
-        return [self._linked(link) for link in told["links"]]
+        document = (await self._client._ask("GET", f"/v1/jobs/{self.id}/links")).json()
+        return [self._linked(link) for link in document["links"]]
 
     async def revoke(self, link: Link | str) -> None:
         """Make a link useless from now on. Raises Problem."""
         link_id = link if isinstance(link, str) else link.id
         await self._client._ask("DELETE", f"/v1/jobs/{self.id}/links/{safe(link_id)}")
 
-    def _linked(self, told: dict[str, Any]) -> Link:
-        addresses = {"url": told.pop("href", None)} | {name: told.pop(name, None) for name in ("zarr", "opendap")}
-        return Link(**{name: f"{self._client.url}{one}" if one else "" for name, one in addresses.items()}, **told)
+    def _linked(self, link: dict[str, Any]) -> Link:
+        addresses = {"url": link.pop("href", None)} | {name: link.pop(name, None) for name in ("zarr", "opendap")}
+        urls = {name: f"{self._client.url}{address}" if address else "" for name, address in addresses.items()}
+        return Link(**urls, **link)

@@ -33,10 +33,10 @@ class Case:
     @classmethod
     def load(cls, path: str | Path) -> Self:
         """A case from its file. Raises OSError, ValueError."""
-        told = json.loads(Path(path).read_text(encoding="utf-8"))
-        if not isinstance(told, dict):
+        case = json.loads(Path(path).read_text(encoding="utf-8"))
+        if not isinstance(case, dict):
             raise ValueError(f"{path} must hold a JSON object")
-        return cls(told)
+        return cls(case)
 
     def set(self, key: Setting | str, value: Any) -> Self:
         """The case with one value changed, by its dotted key: `numerics.intervals`, `loads.point.0.s`."""
@@ -53,17 +53,17 @@ CaseLike = Case | CaseSpec | Mapping[str, Any] | str
 
 def request_of(case: CaseLike, settings: Mapping[Any, Any], **more: Any) -> bytes:
     """The body that asks for a case to be run or looked at. Raises ValueError for what is no finite JSON."""
-    asked = whole(case, settings)
-    return written({"case": asked.base, "set": dict(asked.settings), **more})
+    changed = case_with(case, settings)
+    return encoded({"case": changed.base, "set": dict(changed.settings), **more})
 
 
-def whole(case: CaseLike, settings: Mapping[Any, Any]) -> Case:
-    """A case with some values changed, however it was given."""
-    made = case if isinstance(case, Case) else Case(case if isinstance(case, str) else {**case})
-    return made.with_settings(settings)
+def case_with(case: CaseLike, settings: Mapping[Any, Any]) -> Case:
+    """A case in any of its forms, with some values changed."""
+    base = case if isinstance(case, Case) else Case(case if isinstance(case, str) else {**case})
+    return base.with_settings(settings)
 
 
-def written(body: Mapping[str, Any]) -> bytes:
+def encoded(body: Mapping[str, Any]) -> bytes:
     """A body as JSON. Raises ValueError for a number that is not finite, with where it stands; TypeError."""
     try:
         return json.dumps(body, default=plain, allow_nan=False).encode()
@@ -76,12 +76,12 @@ class _Lost(str):
     """NaN, Infinity or -Infinity."""
 
 
-def _faults(told: Any, place: str) -> Iterator[ValueError]:
-    if isinstance(told, _Lost):
-        yield ValueError(f"{place} must be a finite number, got {told}")
-    inside = told.items() if isinstance(told, dict) else enumerate(told) if isinstance(told, list) else ()
-    for name, value in inside:
-        yield from _faults(value, f"{place}/{name}")
+def _faults(value: Any, place: str) -> Iterator[ValueError]:
+    if isinstance(value, _Lost):
+        yield ValueError(f"{place} must be a finite number, got {value}")
+    entries = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for name, entry in entries:
+        yield from _faults(entry, f"{place}/{name}")
 
 
 def plain(value: Any) -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
-from hockle_client.case import CaseLike, whole, written
+from hockle_client.case import CaseLike, case_with, encoded
 
 Method = Literal["latin_hypercube", "sobol", "saltelli"]
 Scale = Literal["linear", "log"]
@@ -30,11 +30,12 @@ def sweep_request(case: CaseLike, settings: Mapping[Any, Any], parameters: Param
                   members: Sequence[Mapping[str, Any]], *, sample: Method | None, size: int | None, seed: int,
                   **more: Any) -> bytes:
     """The body that asks for an ensemble. Raises ValueError for what is no finite JSON."""
-    asked = whole(case, settings)
-    body: dict[str, Any] = {"case": asked.base, "set": dict(asked.settings), **more}
-    body["parameters"] = {name: asdict(one) if isinstance(one, Range) else one for name, one in parameters.items()}
+    changed = case_with(case, settings)
+    body: dict[str, Any] = {"case": changed.base, "set": dict(changed.settings), **more}
+    body["parameters"] = {name: asdict(values) if isinstance(values, Range) else values
+                          for name, values in parameters.items()}  # fmt: skip
     if members:
         body["members"] = [dict(member) for member in members]
     if sample is not None:
         body["sample"] = {"method": sample, "size": size, "seed": seed}
-    return written(body)
+    return encoded(body)

@@ -51,11 +51,11 @@ class Ensemble:
 
     def refresh(self) -> Self:
         """Ask how it is. Raises Problem."""
-        return self._told(self._client._ask("GET", self._path()))
+        return self._updated(self._client._ask("GET", self._path()))
 
     def cancel(self) -> Self:
         """Cancel the members that have not ended. Raises Problem."""
-        return self._told(self._client._ask("POST", self._path("/cancel")))
+        return self._updated(self._client._ask("POST", self._path("/cancel")))
 
     def wait(self, timeout: float | None = None, progress: bool = False) -> Self:
         """The ensemble when all members have ended, however. `progress`: with a line on stderr.
@@ -92,9 +92,10 @@ class Ensemble:
     def scalars(self, *variables: str) -> list[dict[str, Any]]:
         """The last values of variables in time: a record of each member, with its parameters. Raises Problem."""
         query = {"variables": ",".join(variables)}
-        told = (self._client._ask("GET", self._path("/scalars"), params=query)).json()["members"]
-        return [{"member": one["number"], **one["parameters"],
-                 **{name: one[name] for name in ("job", "status", "outcome", "t")}, **one["values"]} for one in told]
+        members = (self._client._ask("GET", self._path("/scalars"), params=query)).json()["members"]
+        return [{"member": member["number"], **member["parameters"],
+                 **{name: member[name] for name in ("job", "status", "outcome", "t")}, **member["values"]}
+                for member in members]  # fmt: skip
 
     def csv(self, *variables: str) -> str:
         """The same as a table in CSV. Raises Problem."""
@@ -117,13 +118,13 @@ class Ensemble:
     def sensitivity(self, *variables: str) -> dict[str, dict[str, SobolIndex]]:
         """Sobol's indices of the last values, by variable and parameter; of a `saltelli` sample. Raises Problem."""
         query = {"variables": ",".join(variables)}
-        told = (self._client._ask("GET", self._path("/sensitivity"), params=query)).json()["indices"]
-        return {variable: {name: SobolIndex.model_validate(index) for name, index in of.items()}
-                for variable, of in told.items()}  # fmt: skip
+        indices = (self._client._ask("GET", self._path("/sensitivity"), params=query)).json()["indices"]
+        return {variable: {name: SobolIndex.model_validate(index) for name, index in by_parameter.items()}
+                for variable, by_parameter in indices.items()}  # fmt: skip
 
-    def _path(self, what: str = "") -> str:
-        return f"/v1/ensembles/{self.id}{what}"
+    def _path(self, suffix: str = "") -> str:
+        return f"/v1/ensembles/{self.id}{suffix}"
 
-    def _told(self, response: Any) -> Self:
+    def _updated(self, response: Any) -> Self:
         self.state = EnsembleState.model_validate_json(response.content)
         return self

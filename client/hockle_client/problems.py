@@ -66,10 +66,10 @@ class Problem(HockleError):
         self.type = str(document.get("type", "about:blank"))
         self.title = str(document.get("title", ""))
         self.detail = str(document.get("detail", ""))
-        known = ("rule", "value", "pointer", "parameter")
-        self.errors = [Fault(**{name: fault[name] for name in known if name in fault})
+        fields = ("rule", "value", "pointer", "parameter")
+        self.errors = [Fault(**{name: fault[name] for name in fields if name in fault})
                        for fault in document.get("errors") or []]  # fmt: skip
-        super().__init__(self._told())
+        super().__init__(self._text())
 
     @property
     def name(self) -> str:
@@ -81,7 +81,7 @@ class Problem(HockleError):
         """Whether the server is busy or away, not against it."""
         return self.status in TEMPORARY or self.name == "in_flight"
 
-    def _told(self) -> str:
+    def _text(self) -> str:
         lines = [f"  {fault}" for fault in self.errors]
         return "\n".join(["the server refused this:", *lines]) if lines else self.detail
 

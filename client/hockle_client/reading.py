@@ -38,9 +38,9 @@ def part_query(variables: Sequence[str], t_min: float | None = None, t_max: floa
                s_min: float | None = None, s_max: float | None = None, time_stride: int = 1,
                s_stride: int = 1) -> dict[str, Any]:
     """The query that asks for a part of a dataset."""
-    told = {"variables": ",".join(variables), "t_min": t_min, "t_max": t_max, "s_min": s_min, "s_max": s_max,
+    query = {"variables": ",".join(variables), "t_min": t_min, "t_max": t_max, "s_min": s_min, "s_max": s_max,
             "time_stride": time_stride, "s_stride": s_stride}
-    return {name: value for name, value in told.items() if value is not None}
+    return {name: value for name, value in query.items() if value is not None}
 
 
 def case_of(dataset: xr.Dataset | str | Path) -> CaseSpec:

@@ -100,11 +100,11 @@ class Client:
     def jobs(self, *, status: Status | None = None, label: str | None = None, owner: str | None = None,
              since: datetime | None = None, until: datetime | None = None,
              ensemble: str | None = None) -> Iterator[Job]:
-        """All jobs that meet what is given, newest first; `since` and `until` are aware times, `ensemble` is the id of
-        the one whose members are meant. Raises Problem."""
-        told = {"limit": "200", "status": status, "label": label, "owner": owner, "ensemble": ensemble,
+        """All jobs that meet these conditions, newest first; `since` and `until` are aware times, `ensemble` is the id
+        of the ensemble whose members are listed. Raises Problem."""
+        filters = {"limit": "200", "status": status, "label": label, "owner": owner, "ensemble": ensemble,
                 "since": since and since.isoformat(), "until": until and until.isoformat()}
-        query = {name: value for name, value in told.items() if value is not None}
+        query = {name: value for name, value in filters.items() if value is not None}
         page = (self._ask("GET", "/v1/jobs", params=query)).json()
         while True:
             for state in page["jobs"]:
@@ -151,9 +151,9 @@ class Client:
         """The jobs when all have ended, however. Raises TimeoutError after so many seconds."""
         deadline = None if timeout is None else time.monotonic() + timeout
         line, waited = Line() if progress else None, list(jobs)
-        for done, job in enumerate(waited):
+        for ended, job in enumerate(waited):
             if line is not None:
-                line.show_many(done, len(waited))
+                line.show_many(ended, len(waited))
             job.wait(None if deadline is None else max(0.0, deadline - time.monotonic()))
         if line is not None:
             line.show_many(len(waited), len(waited))
@@ -168,9 +168,9 @@ class Client:
         records: list[dict[str, Any]] = []
         for start in range(0, len(ids), SCALARS_AT_ONCE):
             query = {"jobs": ",".join(ids[start : start + SCALARS_AT_ONCE]), "variables": ",".join(variables)}
-            told = (self._ask("GET", "/v1/scalars", params=query)).json()["jobs"]
-            records += [{**{name: value for name, value in one.items() if name != "values"}, **one["values"]}
-                        for one in told]
+            rows = (self._ask("GET", "/v1/scalars", params=query)).json()["jobs"]
+            records += [{**{name: value for name, value in row.items() if name != "values"}, **row["values"]}
+                        for row in rows]
         return records
 
     def workforce(self) -> Workforce:
@@ -182,8 +182,8 @@ class Client:
 
         Raises Problem.
         """
-        told = self._ask("PUT", _pause_of(host), params={"drain": str(drain).lower()})
-        return Workforce.model_validate_json(told.content)
+        response = self._ask("PUT", _pause_of(host), params={"drain": str(drain).lower()})
+        return Workforce.model_validate_json(response.content)
 
     def resume(self, host: str | None = None) -> Workforce:
         """Have them take jobs again. Raises Problem."""
@@ -209,11 +209,11 @@ class Client:
                 refused = problem_of(response)
             time.sleep(retries.after(refused))
 
-    def _events(self, path: str, seen: int) -> Iterator[Event]:
+    def _events(self, path: str, last_id: int) -> Iterator[Event]:
         retries = Retries(self.patience)
         while True:
             try:
-                with self._http.stream("GET", path, headers={"Last-Event-ID": str(seen)}) as response:
+                with self._http.stream("GET", path, headers={"Last-Event-ID": str(last_id)}) as response:
                     if response.status_code == 204:
                         return
                     if response.status_code != 200:
@@ -224,7 +224,7 @@ class Client:
                     for line in response.iter_lines():
                         event = events.take(line)
                         if event is not None:
-                            seen = event.id
+                            last_id = event.id
                             yield event
                 refused: HockleError = Unreachable(self.url, httpx.ReadError("the events broke off"))
             except httpx.TransportError as error:

@@ -13,14 +13,14 @@ HEAD = ("field", "default", "unit", "range", "meaning")
 AXES = {(1, 0, 0): "e1", (0, 1, 0): "e2", (0, 0, 1): "e3"}
 
 
-def fields_table(*parts: Schema, called: Callable[[str], str] = str) -> str:
+def fields_table(*parts: Schema, label: Callable[[str], str] = str) -> str:
     """The fields of a part; of several parts that are alternatives, those that only one has say so.
 
-    `called`: what the reader calls a field. Neighbours that differ by their names only share a row.
+    `label`: what the reader calls a field. Neighbours that differ by their names only share a row.
     """
     rows = [(name, *_row(name, parts)) for name in dict.fromkeys(name for part in parts for name in part["properties"])]
     return markdown(HEAD, [
-        [", ".join(f"`{called(row[0])}`" for row in same), *rest] for rest, same in groupby(rows, lambda row: row[1:])
+        [", ".join(f"`{label(row[0])}`" for row in same), *rest] for rest, same in groupby(rows, lambda row: row[1:])
     ])  # fmt: skip
 
 
@@ -72,8 +72,8 @@ def _numbers(schema: Schema) -> Iterator[Schema]:
     if schema.get("type") in ("number", "integer"):
         yield schema
     for kind in ("anyOf", "oneOf", "prefixItems"):
-        for one in schema.get(kind, ()):
-            yield from _numbers(one)
+        for choice in schema.get(kind, ()):
+            yield from _numbers(choice)
 
 
 def _bound(number: Schema) -> str:

@@ -30,7 +30,7 @@ def draw(name: str, folder: Path) -> None:
 
 if __name__ == "__main__":
     PICTURES.mkdir(exist_ok=True)
-    with tempfile.TemporaryDirectory() as made:
+    with tempfile.TemporaryDirectory() as folder:
         for case in shipped_cases():
             if not (PICTURES / f"{case}.png").exists():
-                draw(case, Path(made))
+                draw(case, Path(folder))

@@ -28,14 +28,16 @@ def variables() -> str:
 
 def outcomes() -> str:
     """How a run can end, and what to do about it."""
-    rows = [(f"`{one.value}`", _marked(one.meaning), _marked(one.remedy), ", ".join(one.givers)) for one in Outcome]
+    rows = [(f"`{outcome.value}`", _marked(outcome.meaning), _marked(outcome.remedy), ", ".join(outcome.givers))
+            for outcome in Outcome]  # fmt: skip
     return markdown(("outcome", "meaning", "remedy", "by the"), rows)
 
 
 def calls() -> str:
     """The operations of the HTTP interface, as its OpenAPI document has them."""
     paths = _interface()["paths"]
-    rows = [_call(method, path, operation) for path, its in paths.items() for method, operation in its.items()]
+    rows = [_call(method, path, operation)
+            for path, operations in paths.items() for method, operation in operations.items()]  # fmt: skip
     return markdown(("call", "in the query", "status", "answer"), rows)
 
 
@@ -44,7 +46,7 @@ def _interface() -> dict[str, Any]:
 
 
 def _call(method: str, path: str, operation: dict[str, Any]) -> tuple[str, ...]:
-    query = [f"`{one['name']}`" for one in operation.get("parameters", ()) if one["in"] == "query"]
+    query = [f"`{parameter['name']}`" for parameter in operation.get("parameters", ()) if parameter["in"] == "query"]
     good = [status for status in operation["responses"] if status < "4"]
     first = operation["description"].split("\n\n")[0].replace("\n", " ")
     return f"`{method.upper()} {path}`", ", ".join(query), ", ".join(good), first
@@ -78,7 +80,7 @@ def costs() -> str:
 
 def settings() -> str:
     """The settings of the service."""
-    return fields_table(TypeAdapter(Settings).json_schema(), called=variable).replace("| field |", "| variable |", 1)
+    return fields_table(TypeAdapter(Settings).json_schema(), label=variable).replace("| field |", "| variable |", 1)
 
 
 def _marked(sentence: str) -> str:

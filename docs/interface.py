@@ -19,68 +19,69 @@ def page(document: dict[str, Any]) -> str:
     parts = [document["info"]["description"]]
     for tag in document["tags"]:
         parts.append(f"## {tag['name']}\n\n{tag['description']}")
-        parts += [_operation(method, path, one) for path, its in document["paths"].items()
-                  for method, one in its.items() if tag["name"] in one["tags"]]  # fmt: skip
+        parts += [_operation(method, path, operation) for path, operations in document["paths"].items()
+                  for method, operation in operations.items() if tag["name"] in operation["tags"]]  # fmt: skip
     parts.append("## Schemas")
-    parts += [_schema(name, one) for name, one in sorted(document["components"]["schemas"].items())]
+    parts += [_schema(name, schema) for name, schema in sorted(document["components"]["schemas"].items())]
     return "\n\n".join(parts) + "\n"
 
 
-def _operation(method: str, path: str, told: dict[str, Any]) -> str:
-    parts = [f"### {method.upper()} {path}", told["description"]]
-    if asked := told.get("parameters"):
-        parts.append(markdown(("parameter", "in", "default", "value", "meaning"), [_parameter(one) for one in asked]))
-    if body := told.get("requestBody"):
+def _operation(method: str, path: str, operation: dict[str, Any]) -> str:
+    parts = [f"### {method.upper()} {path}", operation["description"]]
+    if parameters := operation.get("parameters"):
+        parts.append(markdown(("parameter", "in", "default", "value", "meaning"), list(map(_parameter, parameters))))
+    if body := operation.get("requestBody"):
         parts += _body(body["content"])
-    parts.append(markdown(("status", "answer", "meaning"), list(_answers(told["responses"]))))
+    parts.append(markdown(("status", "answer", "meaning"), list(_answers(operation["responses"]))))
     return "\n\n".join(parts)
 
 
-def _parameter(told: dict[str, Any]) -> tuple[str, ...]:
-    needed = "required" if told["required"] else _default(told["schema"])
-    return f"`{told['name']}`", told["in"], needed, _value(told["schema"]), told["description"]
+def _parameter(parameter: dict[str, Any]) -> tuple[str, ...]:
+    default = "required" if parameter["required"] else _default(parameter["schema"])
+    return f"`{parameter['name']}`", parameter["in"], default, _value(parameter["schema"]), parameter["description"]
 
 
 def _body(content: dict[str, Any]) -> Iterator[str]:
-    for media, told in content.items():
-        yield f"Body: `{media}`, {_type(told['schema'])}"
-        for name, example in told.get("examples", {}).items():
+    for media, media_type in content.items():
+        yield f"Body: `{media}`, {_type(media_type['schema'])}"
+        for name, example in media_type.get("examples", {}).items():
             text = json.dumps(example["value"], indent=2)
             yield f"For example, {example.get('summary', name)}:\n\n```json\n{text}\n```"
 
 
-def _answers(told: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
-    """A row for each answer, but one for all errors that are told by their number alone."""
-    errors = [status for status, one in told.items() if PROBLEM in one.get("content", {}) and _is_usual(status, one)]
-    for status, one in told.items():
+def _answers(responses: dict[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """A row for each answer, but one for all errors that say no more than their number."""
+    errors = [status for status, response in responses.items()
+              if PROBLEM in response.get("content", {}) and _is_usual(status, response)]  # fmt: skip
+    for status, response in responses.items():
         if status not in errors:
-            kinds = [f"`{media}`{_named(part)}" for media, part in one.get("content", {}).items()]
-            yield status, " or ".join(kinds), one["description"]
+            kinds = [f"`{media}`{_type_suffix(part)}" for media, part in response.get("content", {}).items()]
+            yield status, " or ".join(kinds), response["description"]
     if errors:
         yield ", ".join(errors), f"`{PROBLEM}`: [Problem](#problem)", "an error"
 
 
-def _is_usual(status: str, told: dict[str, Any]) -> bool:
-    return bool(told["description"] == HTTPStatus(int(status)).phrase)
+def _is_usual(status: str, response: dict[str, Any]) -> bool:
+    return bool(response["description"] == HTTPStatus(int(status)).phrase)
 
 
-def _named(part: dict[str, Any]) -> str:
-    said = _type(part.get("schema", {}))
-    return f": {said}" if said else ""
+def _type_suffix(part: dict[str, Any]) -> str:
+    type_text = _type(part.get("schema", {}))
+    return f": {type_text}" if type_text else ""
 
 
-def _schema(name: str, told: Schema) -> str:
-    parts = [f"### {name}", told.get("description", "")]
-    if rows := [_field(one, field, told) for one, field in told.get("properties", {}).items()]:
+def _schema(name: str, schema: Schema) -> str:
+    parts = [f"### {name}", schema.get("description", "")]
+    if rows := [_field(field_name, field, schema) for field_name, field in schema.get("properties", {}).items()]:
         parts.append(markdown(("field", "default", "unit", "value", "meaning"), rows))
     else:
-        parts.append(_value(told))
+        parts.append(_value(schema))
     return "\n\n".join(part for part in parts if part)
 
 
-def _field(name: str, field: Schema, of: Schema) -> tuple[str, ...]:
-    needed = "required" if name in of.get("required", ()) else _default(field)
-    return f"`{name}`", needed, field.get("unit", ""), _value(field), field.get("description", "")
+def _field(name: str, field: Schema, schema: Schema) -> tuple[str, ...]:
+    default = "required" if name in schema.get("required", ()) else _default(field)
+    return f"`{name}`", default, field.get("unit", ""), _value(field), field.get("description", "")
 
 
 def _default(schema: Schema) -> str:
@@ -89,8 +90,8 @@ def _default(schema: Schema) -> str:
 
 def _value(schema: Schema) -> str:
     """Its type, and the rule for it."""
-    if either := schema.get("anyOf") or schema.get("oneOf"):
-        return " or ".join(dict.fromkeys(_value(one) for one in either if one.get("type") != "null"))
+    if choices := schema.get("anyOf") or schema.get("oneOf"):
+        return " or ".join(dict.fromkeys(_value(choice) for choice in choices if choice.get("type") != "null"))
     return ", ".join(dict.fromkeys(part for part in (_type(schema), range_of(schema)) if part))
 
 
@@ -104,8 +105,8 @@ def _type(schema: Schema) -> str:
     if schema.get("enum") or "const" in schema:
         return ""
     if schema.get("type") == "array":
-        inner = dict.fromkeys(_type(one) for one in schema.get("prefixItems", [schema.get("items", {})]))
-        return f"array of {' or '.join(one for one in inner if one) or 'values'}"
+        inner = dict.fromkeys(_type(entry) for entry in schema.get("prefixItems", [schema.get("items", {})]))
+        return f"array of {' or '.join(filter(None, inner)) or 'values'}"
     if isinstance(schema.get("additionalProperties"), dict):
         return f"object of {_type(schema['additionalProperties']) or 'values'}"
     return str(schema.get("type", "")) + (f" ({schema['format']})" if "format" in schema else "")

@@ -33,12 +33,12 @@ def scenes() -> str:
 
 
 def _scene(scene: str, rows: Sequence[Row]) -> tuple[str, ...]:
-    what = " ".join((import_module(f"validation.{scene}").__doc__ or "").split("\n\n")[0].split()).rstrip(".")
+    title = " ".join((import_module(f"validation.{scene}").__doc__ or "").split("\n\n")[0].split()).rstrip(".")
     missed = [row for row in rows if not row.passed]
     nearest = max(rows, key=lambda row: row.error / row.aim if row.aim else 0.0)
-    named = "; ".join(f"{row.name}: off by {row.error:.2g}, aim {row.aim:.2g}" for row in missed or [nearest])
-    aim = f"{what}: {len(rows)} values within their bounds"
-    measured = f"{len(missed)} outside: {named}" if missed else f"all; nearest to its bound: {named}"
+    examples = "; ".join(f"{row.name}: off by {row.error:.2g}, aim {row.aim:.2g}" for row in missed or [nearest])
+    aim = f"{title}: {len(rows)} values within their bounds"
+    measured = f"{len(missed)} outside: {examples}" if missed else f"all; nearest to its bound: {examples}"
     return aim, measured, _met(not missed), f"`python -m validation {scene}`"
 
 
@@ -65,10 +65,11 @@ COSTS = (
 def costs() -> str:
     """CPU time of kernels and scenes."""
     results = _read("last.json")
-    rows = [(what, row, row[column], unit) for name, what, column, unit in COSTS for row in results[name] if row["aim"]]
+    rows = [(subject, row, row[column], unit)
+            for name, subject, column, unit in COSTS for row in results[name] if row["aim"]]  # fmt: skip
     return markdown(HEAD, [
-        (f"{what}{_at(row)}: at most {row['aim']:g} {unit}", f"{value:.3g} {unit}", _met(value <= row["aim"]),
-         "`make bench`") for what, row, value, unit in rows
+        (f"{subject}{_at(row)}: at most {row['aim']:g} {unit}", f"{value:.3g} {unit}", _met(value <= row["aim"]),
+         "`make bench`") for subject, row, value, unit in rows
     ])  # fmt: skip
 
 
@@ -94,9 +95,9 @@ def skipping() -> str:
 def peers() -> str:
     """Times less CPU than the peers at equal error."""
     return markdown(HEAD, [
-        (f"{one.scene}, {one.quantity}: {one.aim:g} of {one.peer}", f"{_times(one.least)} to {_times(one.most)}",
-         _met(one.least >= one.aim), "`make bench-work-precision`")
-        for one in table.comparisons(_points()) if isinstance(one, table.Comparison)
+        (f"{row.scene}, {row.quantity}: {row.aim:g} of {row.peer}", f"{_times(row.least)} to {_times(row.most)}",
+         _met(row.least >= row.aim), "`make bench-work-precision`")
+        for row in table.comparisons(_points()) if isinstance(row, table.Comparison)
     ])  # fmt: skip
 
 
@@ -107,8 +108,8 @@ def _times(ratio: float) -> str:
 def agreement() -> str:
     """Whether the methods agree within their error bars."""
     return markdown(HEAD, [
-        (f"{one.scene}, {one.quantity}: box and staggered agree within their error bars", "; ".join(one.shown),
-         _met(one.met), "`make bench-work-precision`") for one in table.agreements(_points())
+        (f"{row.scene}, {row.quantity}: box and staggered agree within their error bars", "; ".join(row.shown),
+         _met(row.met), "`make bench-work-precision`") for row in table.agreements(_points())
     ])  # fmt: skip
 
 

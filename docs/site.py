@@ -69,8 +69,8 @@ def gallery() -> str:
 
     parts = ["# Gallery\n\nThe cases that come with hockle, as `hockle plot` draws them. `hockle run NAME` runs one.\n"]
     for name, title in shipped_cases().items():
-        told = load_case(name).get("description", "")
-        parts.append(f"## {name}\n\n{title}. {told}\n")
+        description = load_case(name).get("description", "")
+        parts.append(f"## {name}\n\n{title}. {description}\n")
         if (HERE / "pictures/cases" / f"{name}.png").exists():
             parts.append(f"![{title}](pictures/cases/{name}.png)\n")
     return "\n".join(parts)

@@ -92,11 +92,11 @@ def rows() -> list[Row]:
     """At N = 100 and 100 steps a period: within 3e-4. Extrapolated from 100 and 200 of both: a tenth of that."""
     references = {f"bending {i + 1}": omega for i, omega in enumerate(BENDING)}
     references |= {f"torsion {i + 1}": omega for i, omega in enumerate(TORSION)} | {"in water": IN_WATER}
-    found = []
+    table = []
     for kind, omega in references.items():
         coarse, fine = measured(kind, 100, 100), measured(kind, 200, 200)
         if kind in ("bending 1", "in water"):
-            found.append(relative(f"cantilever {kind}, rad/s, N=100, T/100", coarse, omega, 3e-4))
-        found.append(relative(f"cantilever {kind}, rad/s, extrapolated", (4 * fine - coarse) / 3, omega, 3e-5))
-    return found
+            table.append(relative(f"cantilever {kind}, rad/s, N=100, T/100", coarse, omega, 3e-4))
+        table.append(relative(f"cantilever {kind}, rad/s, extrapolated", (4 * fine - coarse) / 3, omega, 3e-5))
+    return table
 

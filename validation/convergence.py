@@ -77,8 +77,8 @@ def pressed_loop(intervals: int, dt: float, rho_inf: float) -> Scene:
     """
     initial, zero = Initial(looped, a1=(0.0, 0.0, 1.0)), Curve.constant(0.0)
     fine = np.linspace(0.0, LOOP, 2001)
-    one, two, three = (Curve.table(fine, column, "cubic") for column in nodes_at_rest(initial, fine)[2].T)
-    rod = replace(Rod.circular(LOOP, 0.004, 5e7, 2e7, DENSITY), kappa0=(one, two, three))
+    kappa1, kappa2, kappa3 = (Curve.table(fine, column, "cubic") for column in nodes_at_rest(initial, fine)[2].T)
+    rod = replace(Rod.circular(LOOP, 0.004, 5e7, 2e7, DENSITY), kappa0=(kappa1, kappa2, kappa3))
     growth = Curve.table([0.0, PRESSED], [0.0, 1.0], "smoothstep")
     force = DistributedLoad((zero, zero, lambda s: 1.5 * np.sin(2 * np.pi * s / LOOP)), schedule=growth)
     contact = Contact(
@@ -104,21 +104,21 @@ def pressing(scene: Scene) -> list[Frame]:
 def orders(name: str, runs: list[list[Frame]]) -> list[Row]:
     """Rows for each field from the frames of three runs, coarse to fine."""
     intervals = min(len(run[0].r) for run in runs) - 1
-    found = []
+    table = []
     for field in FIELDS:
         values = [np.array([getattr(f, field)[:: (len(f.r) - 1) // intervals] for f in run]) for run in runs]
         errors = [float(np.abs(a - b).max()) for a, b in pairwise(values)]
-        found.append(observed_order(f"order {name}, {field}", *errors))
-    return found
+        table.append(observed_order(f"order {name}, {field}", *errors))
+    return table
 
 
 def rows() -> list[Row]:
     """2.0 +- 0.1 for every field: smooth motion with rho_inf 1 and 0.5, and through contact."""
-    found = orders("in ds, smooth load", [last(smooth_motion(n, 0.01, 1.0)) for n in (50, 100, 200)])
+    table = orders("in ds, smooth load", [last(smooth_motion(n, 0.01, 1.0)) for n in (50, 100, 200)])
     for rho_inf in (1.0, 0.5):
         name = f"in dt, smooth load, rho_inf={rho_inf:g}"
-        found += orders(name, [last(smooth_motion(100, dt, rho_inf)) for dt in (0.01, 0.005, 0.0025)])
+        table += orders(name, [last(smooth_motion(100, dt, rho_inf)) for dt in (0.01, 0.005, 0.0025)])
     # f has a term of order 4 besides, from the arcs between the nodes: 2.13 at 120 to 480 intervals
-    found += orders("in ds, through contact", [pressing(pressed_loop(n, 1e-3, 0.5)) for n in (240, 480, 960)])
-    found += orders("in dt, through contact", [pressing(pressed_loop(120, dt, 0.5)) for dt in (1e-3, 5e-4, 2.5e-4)])
-    return found
+    table += orders("in ds, through contact", [pressing(pressed_loop(n, 1e-3, 0.5)) for n in (240, 480, 960)])
+    table += orders("in dt, through contact", [pressing(pressed_loop(120, dt, 0.5)) for dt in (1e-3, 5e-4, 2.5e-4)])
+    return table

@@ -60,19 +60,19 @@ def at_rest(alpha: float, numerics: Numerics) -> tuple[float, float, float]:
 
 def rows() -> list[Row]:
     """Each quantity extrapolated from N = 100 and 200 to the six digits of the table, and its order in ds."""
-    found = []
+    table = []
     for alpha in ALPHAS:
         runs = {n: at_rest(alpha, fixed_steps(n, STEP, rho_inf=0.5)) for n in (25, 50, 100, 200)}
         reference = exact(alpha)
         for i, name in enumerate(NAMES):
             label = f"elastica alpha={alpha:g} {name}"
             limit = (4 * runs[200][i] - runs[100][i]) / 3
-            found.append(against(f"{label}, extrapolated", limit, TABLE[alpha][i], 1e-6))
+            table.append(against(f"{label}, extrapolated", limit, TABLE[alpha][i], 1e-6))
             errors = [abs(runs[n][i] - reference[i]) for n in (25, 50, 100, 200)]
             for n, coarse, fine in zip((25, 50, 100), errors, errors[1:], strict=False):
-                found.append(observed_order(f"{label}, order N={n}/{2 * n}", coarse, fine))
-        found.append(_with_step_control(alpha, runs[25][0]))
-    return found
+                table.append(observed_order(f"{label}, order N={n}/{2 * n}", coarse, fine))
+        table.append(_with_step_control(alpha, runs[25][0]))
+    return table
 
 
 def _with_step_control(alpha: float, deflection: float) -> Row:

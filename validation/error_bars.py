@@ -52,26 +52,26 @@ OF_EQUILIBRIA = ("r", "orientation", "f", "kappa", "q", "energy_bending", "energ
 
 def scene(case: str, settings: dict[str, Any]) -> Scene:
     """A shipped case, verified."""
-    told = {"numerics.method": "staggered", "numerics.verify": True, **settings}
-    return build_scene(parse_case(apply_settings(load_case(case), told)))
+    changes = {"numerics.method": "staggered", "numerics.verify": True, **settings}
+    return build_scene(parse_case(apply_settings(load_case(case), changes)))
 
 
-def run(told: Scene) -> tuple[Scene, list[VerifiedFrame]]:
+def run(scene: Scene) -> tuple[Scene, list[VerifiedFrame]]:
     """The frames of a verified run, and its scene with the intervals and steps that it had."""
-    begun = simulate(told)
+    begun = simulate(scene)
     frames = [frame for frame in begun if isinstance(frame, VerifiedFrame)]
-    return begun.chosen if isinstance(begun, Refined) else told, frames
+    return begun.chosen if isinstance(begun, Refined) else scene, frames
 
 
-def true(told: Scene) -> list[VerifiedFrame]:
+def true(scene: Scene) -> list[VerifiedFrame]:
     """The frames with a quarter of the spacing and steps."""
-    return run(refine(refine(told)))[1]
+    return run(refine(refine(scene)))[1]
 
 
 def equilibrium(case: str, intervals: int) -> Frame:
     """The equilibrium of a shipped case by statics."""
-    told = {"analysis": "static", "numerics": {"intervals": intervals}, "t_end": 1.0, "output.interval": 1.0}
-    *_, last = simulate(build_scene(parse_case(apply_settings(load_case(case), told))))
+    changes = {"analysis": "static", "numerics": {"intervals": intervals}, "t_end": 1.0, "output.interval": 1.0}
+    *_, last = simulate(build_scene(parse_case(apply_settings(load_case(case), changes))))
     return last
 
 
@@ -87,7 +87,7 @@ def misses(
     """By variable: how many values lie farther from the truth than 3 times the estimate, and of how many."""
     intervals = min(len(frames[0].r), len(truth[0].r)) - 1
     energy = float(np.nanmax([np.abs(series(truth, name, intervals)).max() for name in ENERGIES]))  # works NaN at rest
-    found = {}
+    by_variable = {}
     for name in names:
         values, exact = series(frames, name, intervals), series(truth, name, intervals)
         estimate = series([frame.error for frame in frames], name, intervals)
@@ -97,60 +97,60 @@ def misses(
         scale = energy if name in ENERGIES else max(float(np.abs(exact).max()), least)
         error = np.abs(values - exact)
         counts = np.maximum(error, estimate) > ROUNDING * scale
-        found[name] = (int(np.sum(counts & ~(error <= WITHIN * estimate))), int(np.sum(counts)))
-    return found
+        by_variable[name] = (int(np.sum(counts & ~(error <= WITHIN * estimate))), int(np.sum(counts)))
+    return by_variable
 
 
-def missed(found: dict[str, tuple[int, int]]) -> float:
+def missed(by_variable: dict[str, tuple[int, int]]) -> float:
     """The part of all values that lie farther off."""
-    far, all_ = np.sum(list(found.values()), axis=0)
+    far, all_ = np.sum(list(by_variable.values()), axis=0)
     return float(far / all_)
 
 
-def gain(told: Scene, frames: list[VerifiedFrame], truth: list[VerifiedFrame]) -> float:
+def gain(scene: Scene, frames: list[VerifiedFrame], truth: list[VerifiedFrame]) -> float:
     """The error of r of the finer run alone, over that of the extrapolated solution."""
-    intervals = told.numerics.intervals
-    fine = refine(replace(told, numerics=replace(told.numerics, verify=False)))
+    intervals = scene.numerics.intervals
+    fine = refine(replace(scene, numerics=replace(scene.numerics, verify=False)))
     exact = series(truth, "r", intervals)
-    alone, both = (np.abs(series(list(x), "r", intervals) - exact).max() for x in (simulate(fine), frames))
-    return float(alone / both)
+    alone, extrapolated = (np.abs(series(list(x), "r", intervals) - exact).max() for x in (simulate(fine), frames))
+    return float(alone / extrapolated)
 
 
 def elastica_rows(label: str, last: VerifiedFrame) -> list[Row]:
     """The tip at rest against the closed form, alpha = 5: within 3 times its error bar."""
     across, along, _ = TABLE[5.0]
-    found = []
+    table = []
     for axis, exact, name in ((0, across, "across"), (2, 1.0 - along, "along")):
         bar = WITHIN * float(last.error.r[-1, axis]) / exact + 1e-6 / exact  # the table has six digits
-        found.append(relative(f"error bars, {label}: tip {name} at rest", float(last.r[-1, axis]), exact, bar))
-    return found
+        table.append(relative(f"error bars, {label}: tip {name} at rest", float(last.r[-1, axis]), exact, bar))
+    return table
 
 
-def outside(label: str, told: Scene, by_variable: dict[str, tuple[int, int]]) -> Row:
+def outside(label: str, scene: Scene, by_variable: dict[str, tuple[int, int]]) -> Row:
     """The row of a scene; which variables lie outside is printed."""
     far = {name: f"{part / all_:.3f}" for name, (part, all_) in by_variable.items() if part}
     counts = sum(all_ for _, all_ in by_variable.values())
-    print(f"      {label}: {told.numerics.intervals} intervals, {counts} values; parts outside {far}")
+    print(f"      {label}: {scene.numerics.intervals} intervals, {counts} values; parts outside {far}")
     return at_most(f"error bars, {label}: part outside", missed(by_variable), MISSED)
 
 
 def hung() -> Row:
     """The hanging cable at rest against its equilibrium."""
     case, settings = HUNG
-    told, frames = run(scene(case, settings))
-    exact = equilibrium(case, 8 * told.numerics.intervals)
-    return outside(f"{case} at rest, N=25", told, misses(frames[-1:], [exact], OF_EQUILIBRIA))
+    chosen, frames = run(scene(case, settings))
+    exact = equilibrium(case, 8 * chosen.numerics.intervals)
+    return outside(f"{case} at rest, N=25", chosen, misses(frames[-1:], [exact], OF_EQUILIBRIA))
 
 
 def rows() -> list[Row]:
     """At least 95 % of the values within 3 times their error bars, in each scene."""
-    found = [hung()]
+    table = [hung()]
     for label, (case, settings) in SCENES.items():
-        told, frames = run(scene(case, settings))
-        truth = true(told)
-        found.append(outside(label, told, misses(frames, truth)))
+        chosen, frames = run(scene(case, settings))
+        truth = true(chosen)
+        table.append(outside(label, chosen, misses(frames, truth)))
         if case.endswith("elastica"):
-            found += elastica_rows(label, frames[-1])
+            table += elastica_rows(label, frames[-1])
         if case == "elastica":
-            print(f"      Richardson's gain in r over the finer run alone: {gain(told, frames, truth):.0f}")
-    return found
+            print(f"      Richardson's gain in r over the finer run alone: {gain(chosen, frames, truth):.0f}")
+    return table

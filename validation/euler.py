@@ -29,8 +29,8 @@ def elastica(brought: float) -> tuple[float, float]:
     """Deflection of the middle (m) and force (N) where the clamps have come together by `brought` (m)."""
 
     def missing(k: float) -> float:
-        K, whole = ellipk(k * k), ellipe(k * k)
-        return float(2.0 * LENGTH * (1.0 - whole / K) + 16.0 * K * K * EJ / LENGTH**2 * LENGTH / EA - brought)
+        K, E_k = ellipk(k * k), ellipe(k * k)
+        return float(2.0 * LENGTH * (1.0 - E_k / K) + 16.0 * K * K * EJ / LENGTH**2 * LENGTH / EA - brought)
 
     k = float(brentq(missing, 1e-6, 0.95, xtol=1e-14))
     K = float(ellipk(k * k))
@@ -58,14 +58,14 @@ def rows() -> list[Row]:
     """By motion, damped, from a seed, and by statics."""
     moving = scene(0.1)
     still = replace(moving, analysis="static", numerics=Numerics(intervals=200, verify=True))
-    found = []
-    for label, told in (("dynamic", moving), ("static", still)):
-        frames = list(simulate(told))
+    table = []
+    for label, problem in (("dynamic", moving), ("static", still)):
+        frames = list(simulate(problem))
         for brought, frame in zip(BROUGHT, frames[2::2], strict=True):
             middle = float(np.abs(frame.r[len(frame.r) // 2, 0]))
             error = abs(middle - elastica(brought * LENGTH)[0]) / LENGTH
-            found.append(at_most(f"Euler {label}, clamps {brought:g} L nearer: deflection off", error, AIM))
+            table.append(at_most(f"Euler {label}, clamps {brought:g} L nearer: deflection off", error, AIM))
             force = float(-frame.f[len(frame.f) // 2] @ [0.0, 0.0, 1.0])
             off = abs(force / elastica(brought * LENGTH)[1] - 1.0)
-            found.append(at_most(f"Euler {label}, clamps {brought:g} L nearer: force off", off, 1e-3))
-    return found
+            table.append(at_most(f"Euler {label}, clamps {brought:g} L nearer: force off", off, 1e-3))
+    return table

@@ -93,53 +93,53 @@ def _tolerance(quantity: str, t: int) -> float:
 
 
 def _values(frames: tuple[Frame, ...]) -> list[Row]:
-    values, found = REFERENCE["values"], []
+    values, table = REFERENCE["values"], []
     for quantity in ("Wr", "Tw", "z_at_sL_m"):
         for t, value in values[quantity].items():
             frame = at(frames, float(t))
             measured = frame.r[-1, 2] if quantity == "z_at_sL_m" else getattr(frame, quantity)
-            found.append(against(f"goyal {quantity} at {t} s", float(measured), value, _tolerance(quantity, int(t))))
+            table.append(against(f"goyal {quantity} at {t} s", float(measured), value, _tolerance(quantity, int(t))))
     for t, aim in (("25", "midspan_position_m at 25 s"), ("32", "at 32 s")):
         frame, tolerance = at(frames, float(t)), values["tolerances"][aim]
         for axis, value in enumerate(values["midspan_position_m"][t]):
             position = float(frame.r[len(frame.r) // 2, axis])
-            found.append(against(f"goyal mid-span e{axis + 1} at {t} s", position, value, tolerance))
+            table.append(against(f"goyal mid-span e{axis + 1} at {t} s", position, value, tolerance))
     for t, value in values["Lk"].items():
-        found.append(against(f"goyal Lk at {t} s", at(frames, float(t)).Lk, value, 1e-4))
+        table.append(against(f"goyal Lk at {t} s", at(frames, float(t)).Lk, value, 1e-4))
     for quantity in ("bending", "torsion", "kinetic"):
         key = "energy_kinetic_rod_J" if quantity == "kinetic" else f"energy_{quantity}_J"
         for t, value in values[key].items():
             measured = getattr(at(frames, float(t)), f"energy_{quantity}")
-            found.append(relative(f"goyal {quantity} energy at {t} s", measured, value, 3e-3))
-    return found
+            table.append(relative(f"goyal {quantity} energy at {t} s", measured, value, 3e-3))
+    return table
 
 
 def fine_rows() -> list[Row]:
     """Every value of the reference at N = 400, dt <= 0.0125 s."""
     frames = run(**{key.replace(".", "__"): value for key, value in FINE.items()})
-    found, events = [], milestones(frames)
+    table, events = [], milestones(frames)
     for name, event in REFERENCE["milestones"].items():
-        found.append(against(f"goyal {name}", events[name], event["value"], event["tol"]))
+        table.append(against(f"goyal {name}", events[name], event["value"], event["tol"]))
     largest = float(series(frames, "energy_torsion").max())
-    found.append(relative("goyal largest torsional energy", largest, 5.7523e-6, 3e-3))
-    return [*found, *_values(frames), at_most("goyal |Tw+Wr-Lk| to 32 s", mismatch(frames, 32.0), 3e-4)]
+    table.append(relative("goyal largest torsional energy", largest, 5.7523e-6, 3e-3))
+    return [*table, *_values(frames), at_most("goyal |Tw+Wr-Lk| to 32 s", mismatch(frames, 32.0), 3e-4)]
 
 
 def shipped_rows() -> list[Row]:
     """The shipped settings, run to 60 s: milestones to 0.1 s, Wr(32 s) to 0.05, no failure, no jump."""
     frames = run(t_end=60.0)
     events = milestones(frames)
-    found = [
+    table = [
         against(f"goyal shipped settings, {name}", events[name], event["value"], 0.1)
         for name, event in REFERENCE["milestones"].items()
     ]
     Wr = REFERENCE["values"]["Wr"]["32"]
-    found.append(against("goyal shipped settings, Wr at 32 s", at(frames, 32.0).Wr, Wr, 0.05))
-    found.append(against("goyal shipped settings, last time reached", frames[-1].t, 60.0, 1e-9))
+    table.append(against("goyal shipped settings, Wr at 32 s", at(frames, 32.0).Wr, Wr, 0.05))
+    table.append(against("goyal shipped settings, last time reached", frames[-1].t, 60.0, 1e-9))
     twist = series(frames, "Tw") + series(frames, "Wr") - series(frames, "Lk")
     jump = float(np.abs(np.diff(twist)).max())
-    found.append(at_most("goyal to 60 s, largest change of Tw+Wr-Lk in 0.1 s (a crossing is 2)", jump, 0.5))
-    return found
+    table.append(at_most("goyal to 60 s, largest change of Tw+Wr-Lk in 0.1 s (a crossing is 2)", jump, 0.5))
+    return table
 
 
 def rows() -> list[Row]:

@@ -25,4 +25,4 @@ def keep(scene: str, rows: Sequence[Row]) -> None:
 def kept() -> dict[str, list[Row]]:
     """The rows by scene."""
     scenes = json.loads(FILE.read_text(encoding="utf-8"))
-    return {scene: [Row(**row) for row in one["rows"]] for scene, one in scenes.items()}
+    return {scene: [Row(**row) for row in entry["rows"]] for scene, entry in scenes.items()}

@@ -96,15 +96,15 @@ def missed_outcome(diameter: float, dt: float) -> float:
 def rows() -> list[Row]:
     """The worst backward error for each N, shooting's worst difference, and its failure where growth is 1e71."""
     clamped = (End.clamp(), End.free())
-    found = []
+    table = []
     for N in INTERVALS:
         worst = max(backward_error(disturbed(D, N, dt, clamped)) for D in DIAMETERS for dt in STEPS)
-        found.append(at_most(f"block elimination, backward error, N={N}, D .5-10 mm, dt 1e-4-.1 s", worst, 1e-14))
+        table.append(at_most(f"block elimination, backward error, N={N}, D .5-10 mm, dt 1e-4-.1 s", worst, 1e-14))
     compared = [shooting_difference(disturbed(D, 100, dt, clamped)) for D in DIAMETERS for dt in STEPS]
     agreeing = [difference for difference, growth in compared if growth < GROWTH]
-    found.append(at_most(f"shooting, difference where growth < 1e8 ({len(agreeing)} systems)", max(agreeing), 1e-7))
-    found.append(runs_differ(10e-3, 0.1))
-    found.append(at_most("shooting fails by name, D .67 mm, dt 3 ms", missed_outcome(0.67e-3, 3e-3), 0.0))
-    return found
+    table.append(at_most(f"shooting, difference where growth < 1e8 ({len(agreeing)} systems)", max(agreeing), 1e-7))
+    table.append(runs_differ(10e-3, 0.1))
+    table.append(at_most("shooting fails by name, D .67 mm, dt 3 ms", missed_outcome(0.67e-3, 3e-3), 0.0))
+    return table
 
 

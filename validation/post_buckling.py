@@ -71,21 +71,21 @@ def at_rest(z: float, Lk: float, intervals: int) -> Frame:
 
 def without_thrust(z: float, intervals: int, near: float) -> dict[str, float]:
     """The state of a rod of so many intervals at end distance z L whose axial force is zero, its Lk sought `near`."""
-    found: dict[float, Frame] = {}
+    frames: dict[float, Frame] = {}
 
     def thrust(Lk: float) -> float:
-        found[Lk] = at_rest(z, Lk, intervals)
-        return float(found[Lk].f[-1, 2])
+        frames[Lk] = at_rest(z, Lk, intervals)
+        return float(frames[Lk].f[-1, 2])
 
     Lk = root_scalar(thrust, x0=near, x1=near + 1e-3, xtol=1e-9, method="secant").root
-    frame = found.get(Lk) or at_rest(z, Lk, intervals)
+    frame = frames.get(Lk) or at_rest(z, Lk, intervals)
     offset = float(np.hypot(*frame.r[intervals // 2, :2])) / LENGTH
     return dict(zip(QUANTITIES, (Lk, frame.Tw, frame.Wr, offset), strict=True))
 
 
 def rows() -> list[Row]:
     """Each quantity extrapolated twice, from three meshes, to 1e-6, and its order where its error is largest."""
-    found = []
+    table = []
     for i, z in enumerate(REFERENCE["z_L"]):
         states: list[dict[str, float]] = []
         for n in MESHES:
@@ -94,7 +94,7 @@ def rows() -> list[Row]:
             reference, label = REFERENCE[name][i], f"post-buckling z/L={z:g} {name}"
             coarse, middle, fine = (state[name] for state in states)
             once = (4 * middle - coarse) / 3, (4 * fine - middle) / 3
-            found.append(against(f"{label}, extrapolated", (16 * once[1] - once[0]) / 15, reference, 1e-6))
+            table.append(against(f"{label}, extrapolated", (16 * once[1] - once[0]) / 15, reference, 1e-6))
             if z == LARGEST_ERRORS:
-                found.append(observed_order(f"{label}, order", abs(middle - reference), abs(fine - reference)))
-    return found
+                table.append(observed_order(f"{label}, order", abs(middle - reference), abs(fine - reference)))
+    return table

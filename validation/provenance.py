@@ -18,8 +18,8 @@ def commit() -> str:
     """The short name of the commit that is checked out."""
     folder = Path(__file__).parent.parent
     name, changed = (
-        subprocess.run(["git", "-C", str(folder), *told], capture_output=True, text=True, check=False).stdout.strip()
-        for told in (["rev-parse", "--short", "HEAD"], ["status", "--porcelain", "-uno", "solver"])
+        subprocess.run(["git", "-C", str(folder), *command], capture_output=True, text=True, check=False).stdout.strip()
+        for command in (["rev-parse", "--short", "HEAD"], ["status", "--porcelain", "-uno", "solver"])
     )
     return (name or "unknown") + (" with changes in solver/" if changed else "")
 

@@ -38,20 +38,20 @@ def goyal_rows() -> list[Row]:
     """Exactness, balance, and agreement with the reference and with the box method."""
     frames = frames_of(400)
     box = run(**{key.replace(".", "__"): value for key, value in FINE.items()})
-    found = [
+    table = [
         at_most("staggered goyal |Tw+Wr-Lk| before contact", mismatch(frames, CONTACT_AT), 1e-8),
         at_most("staggered goyal |Tw+Wr-Lk| to 34 s", mismatch(frames, 34.0), 1e-6),
         at_most("staggered goyal energy balance of the input, before contact", imbalance(frames, 1, CONTACT_AT), 1e-5),
         at_most("staggered goyal energy balance of the input, to 34 s", imbalance(frames, CONTACT_AT, 34), 2e-3),
     ]
     for t, aim in ((25, 5e-4), (32, 5e-3)):
-        found.append(against(f"both methods, goyal Wr at {t} s", at(frames, t).Wr, at(box, t).Wr, aim))
+        table.append(against(f"both methods, goyal Wr at {t} s", at(frames, t).Wr, at(box, t).Wr, aim))
     for t, aim in ((25, 1e-3), (32, 1e-2), (34, 2e-2)):
         value = REFERENCE["values"]["Wr"][str(t)]
-        found.append(against(f"staggered goyal Wr at {t} s", at(frames, t).Wr, value, aim))
+        table.append(against(f"staggered goyal Wr at {t} s", at(frames, t).Wr, value, aim))
         better = at(frames, t).Wr + (at(frames, t).Wr - at(frames_of(200), t).Wr) / 3.0
-        found.append(against(f"staggered goyal Wr at {t} s, from N = 200 and 400", better, value, aim))
-    return found
+        table.append(against(f"staggered goyal Wr at {t} s, from N = 200 and 400", better, value, aim))
+    return table
 
 
 def momenta(method: StaggeredMethod) -> tuple[Array, Array]:

@@ -23,9 +23,9 @@ FOLDED = 10.0
 
 
 def _static(intervals: int, **changes: object) -> Scene:
-    told = {"rod": rod_R(), "initial": Initial.straight(), "start": End.clamp(), "end": End.free(), "t_end": 1.0,
+    fields = {"rod": rod_R(), "initial": Initial.straight(), "start": End.clamp(), "end": End.free(), "t_end": 1.0,
             "output_interval": 1.0, "topology": False, "analysis": "static"} | changes  # fmt: skip
-    return Scene(numerics=Numerics(intervals=intervals), **told)  # type: ignore[arg-type]
+    return Scene(numerics=Numerics(intervals=intervals), **fields)  # type: ignore[arg-type]
 
 
 def elastica(alpha: float, intervals: int) -> tuple[float, float, float]:
@@ -67,9 +67,9 @@ def arch(condition: Condition) -> list[Frame]:
 def _arch_rows() -> list[Row]:
     """Under a given load the arch must pass its folds, on the branch on which its displacement is given."""
     loaded = arch(Condition("load", Curve.table([0.0, FOLDED], [0.0, -FOLDED * EJ / LENGTH**2])))
-    held = arch(Condition("rate"))[0].r[-1, 0]
+    start = arch(Condition("rate"))[0].r[-1, 0]
     times = [frame.t for frame in loaded]
-    crown = Curve.table(times, [0.0, *(frame.r[-1, 0] - held for frame in loaded[1:])])
+    crown = Curve.table(times, [0.0, *(frame.r[-1, 0] - start for frame in loaded[1:])])
     driven = arch(Condition("position", crown))
     force = [-rotate(frame.orientation, frame.f)[-1, 0] / (EJ / LENGTH**2) for frame in driven]
     pairs = list(zip(loaded, driven, force, strict=True))[1:]
@@ -87,20 +87,20 @@ def _arch_rows() -> list[Row]:
 
 def rows() -> list[Row]:
     """The table of solver.md 6 by statics: orders, six digits by extrapolation, and the folds."""
-    found = []
+    table = []
     for alpha in ALPHAS:
         runs, reference = {n: elastica(alpha, n) for n in (50, 100, 200)}, exact(alpha)
         for i, name in enumerate(NAMES):
             label = f"static elastica alpha={alpha:g} {name}"
             limit = (4 * runs[200][i] - runs[100][i]) / 3
-            found.append(against(f"{label}, extrapolated", limit, TABLE[alpha][i], 1e-6))
+            table.append(against(f"{label}, extrapolated", limit, TABLE[alpha][i], 1e-6))
             errors = [abs(runs[n][i] - reference[i]) for n in (50, 100, 200)]
             for n, coarse, fine in zip((50, 100), errors, errors[1:], strict=False):
-                found.append(observed_order(f"{label}, order N={n}/{2 * n}", coarse, fine))
+                table.append(observed_order(f"{label}, order N={n}/{2 * n}", coarse, fine))
     coarse, fine = critical_torque(80), critical_torque(160)
-    found += [
+    table += [
         against("stability is lost at M L/EJ, N=160", fine, CRITICAL, 1e-4 * CRITICAL),
         observed_order("its order in ds", abs(coarse - CRITICAL), abs(fine - CRITICAL)),
         against("stability is lost at M L/EJ, extrapolated", (4 * fine - coarse) / 3, CRITICAL, 1e-6),
     ]
-    return found + _arch_rows()
+    return table + _arch_rows()

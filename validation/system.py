@@ -100,8 +100,8 @@ class NewtonSystem:
 
 
 @kernel
-def _assemble(given: Reference, old: State, new: State, c0: float, h: float, ends: EndValues) -> None:
-    section, loads, _, _, work = given.records
+def _assemble(reference: Reference, old: State, new: State, c0: float, h: float, ends: EndValues) -> None:
+    section, loads, _, _, work = reference.records
     balance_nodes(old, new, work.past, c0, section, loads, work.nodes)
     form_residuals(new, work.past, c0, h, section, ends, work.nodes, work.feedback, work.system)
 
@@ -140,32 +140,32 @@ class StagesSystem:
 
 
 @kernel
-def _move(given: Reference, state: Record, dt: float) -> None:
-    chain, _, _, scheme, stages, _, _ = given.records
+def _move(reference: Reference, state: Record, dt: float) -> None:
+    chain, _, _, scheme, stages, _, _ = reference.records
     move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
 
 
 @kernel
-def _evaluate(given: Reference) -> None:
-    chain, loads, driven, _, stages, _, work = given.records
+def _evaluate(reference: Reference) -> None:
+    chain, loads, driven, _, stages, _, work = reference.records
     evaluate(chain, loads, driven, stages, work.residuals)
 
 
 @kernel
-def _factor(given: Reference, dt: float) -> bool:
-    chain, loads, driven, scheme, stages, _, work = given.records
+def _factor(reference: Reference, dt: float) -> bool:
+    chain, loads, driven, scheme, stages, _, work = reference.records
     return factor_both(chain, loads, driven, scheme, dt, stages, work.tangents, work.real, work.pair)
 
 
 @kernel
-def _solve(given: Reference, dt: float) -> None:
-    chain, _, driven, scheme, stages, _, work = given.records
+def _solve(reference: Reference, dt: float) -> None:
+    chain, _, driven, scheme, stages, _, work = reference.records
     transform_residuals(driven, scheme, stages, work.tangents, work.residuals, work.transformed)
     solve_stages(chain, driven, work.tangents, scheme.gamma / dt, scheme.pair / dt, work.transformed, work.real,
                  work.pair)  # fmt: skip
 
 
 @kernel
-def _update(given: Reference) -> None:
-    chain, _, _, scheme, stages, _, work = given.records
+def _update(reference: Reference) -> None:
+    chain, _, _, scheme, stages, _, work = reference.records
     update(chain, scheme.transform, 1.0, 1e-30, stages, work.tangents, work.real, work.pair)

@@ -28,17 +28,17 @@ LAST = 0.5
 
 def case(**settings: Any) -> dict[str, Any]:
     """The case, with some settings changed (dots written as __)."""
-    told = load_case("goyal-2003")
+    case = load_case("goyal-2003")
     scale = DIAMETER / LARGEST_DIAMETER
-    profile, seed = told["rod"]["diameter"], told["loads"]["distributed"][0]["force"][0]
+    profile, seed = case["rod"]["diameter"], case["loads"]["distributed"][0]["force"][0]
     profile["value"] = [scale * d for d in profile["value"]]
     seed["value"] = [scale**2 * f for f in seed["value"]]
     rate = -2.0 * pi * TURNS / (BY - 0.5 * LAST)
-    told["ends"]["start"]["omega3"] = {
+    case["ends"]["start"]["omega3"] = {
         "t": [0.0, LAST, BY, BY + LAST], "value": [0.0, rate, rate, -2.0 * pi * THEN], "interpolation": "smoothstep",
     }  # fmt: skip
     changed = {key.replace("__", "."): value for key, value in settings.items()}
-    return apply_settings(told, NUMERICS | CONTACT | changed)
+    return apply_settings(case, NUMERICS | CONTACT | changed)
 
 
 def run() -> tuple[Run, float, float]:
@@ -56,11 +56,11 @@ def run() -> tuple[Run, float, float]:
 def rows() -> list[Row]:
     """Whether it gets to the end, at what cost, and whether it settles."""
     simulation, worst, moving = run()
-    told, name = simulation.statistics, "thick cable (D = 10 mm) to 36 s, N = 200"
+    statistics, name = simulation.statistics, "thick cable (D = 10 mm) to 36 s, N = 200"
     return [
         at_most(f"{name}, what is left of 36 s", 36.0 - simulation.t, 1e-9),
-        at_most(f"{name}, CPU s", told.cpu_time, 10.0),
-        at_most(f"{name}, failed steps", told.failed_steps, 4),
+        at_most(f"{name}, CPU s", statistics.cpu_time, 10.0),
+        at_most(f"{name}, failed steps", statistics.failed_steps, 4),
         at_most(f"{name}, |Tw+Wr-Lk|", worst, 1e-6),
         at_most(f"{name}, kinetic energy in the end, J", moving, 1e-4),
     ]

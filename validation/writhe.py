@@ -33,11 +33,11 @@ def rows() -> list[Row]:
     e3 = (0.0, 0.0, 1.0)
     straight = {n: writhe(open_curve(n), e3, e3) for n in (100, 200, 400, 800)}
     knot = {n: writhe_closed(trefoil(n)) for n in (100, 200, 400, 800)}
-    found = [against(f"writhe trefoil, polygon of {n}", knot[n], w, 5e-10) for n, w in TREFOIL_POLYGONS.items()]
+    table = [against(f"writhe trefoil, polygon of {n}", knot[n], w, 5e-10) for n, w in TREFOIL_POLYGONS.items()]
     for name, runs, exact in (("open curve", straight, OPEN), ("trefoil", knot, TREFOIL)):
         for n in (100, 200, 400):
             errors = abs(runs[n] - exact), abs(runs[2 * n] - exact)
-            found.append(observed_order(f"writhe {name}, order N={n}/{2 * n}", *errors))
+            table.append(observed_order(f"writhe {name}, order N={n}/{2 * n}", *errors))
         limit = (4 * runs[800] - runs[400]) / 3
-        found.append(against(f"writhe {name}, extrapolated", limit, exact, 1e-6))
-    return found
+        table.append(against(f"writhe {name}, extrapolated", limit, exact, 1e-6))
+    return table

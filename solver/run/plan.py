@@ -42,6 +42,9 @@ SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
 BY_STEPS = 1.5
 """How much more work steps of a quarter of the error are expected to be, before it has shown."""
+DEAR, FAR_OFF = 2.5, 10.0
+"""How many times the work shorter steps took, and how many times the tolerance their error is, where the second mesh
+has the longer ones."""
 CHEAP = 0.1
 """Part of MOST_WORK that an attempt may always take."""
 HOPELESS = {"kappa": 4.0}
@@ -151,8 +154,7 @@ def _wishes(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals
             yield Trial(mesh, steps + 1)
         yield Trial(max(mesh - 1, 0), steps - 1)  # if it can, the last one is to tell all
     if len(meshes) == 1:
-        by_steps = max(excess.steps for excess in errors)
-        yield from _second_mesh(history, complete, by_steps, most_intervals)
+        yield from _second_mesh(history, complete, errors, most_intervals)
         return
     for excess in sorted(errors, key=lambda excess: -excess.total):
         if excess.total <= 1.0 or not history[-1].complete:
@@ -166,14 +168,14 @@ def _finest(complete: Sequence[Attempt]) -> Attempt:
     return max(complete, key=lambda attempt: (attempt.mesh, attempt.steps))
 
 
-def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], by_steps: float,
+def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], errors: Sequence[Excess],
                  most_intervals: int) -> Iterator[Trial | None]:  # fmt: skip
-    """A finer one, with the longer steps of two if their error is small enough; else a coarser one.
-
-    `by_steps`: the largest error by the steps, over the tolerance."""
+    """A finer one, with the longer steps of two if their error is small enough, or if shorter ones cost several times
+    the work and are far from enough: the mesh, at least, is then told; else a coarser one."""
     mesh, steps = complete[0].mesh, sorted(attempt.steps for attempt in complete)
     # by two kinds of steps the error of the shorter is told as 2 / 3 of their difference, which is that of the longer
-    longer = len(steps) > 1 and 1.5 * by_steps <= STEP_SHARE
+    longer = len(steps) > 1 and 1.5 * max(excess.steps for excess in errors) <= STEP_SHARE
+    longer = longer or _steps_are_dear(complete, errors)
     wanted = steps[-2] if longer else steps[-1]
     finer = Trial(max(attempt.mesh for attempt in history) + 1, wanted)
     if not longer and len(steps) > 1 and not _is_for(history, finer, most_intervals):
@@ -181,6 +183,13 @@ def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], by_ste
     if mesh > 0 and not _is_for(history, finer, most_intervals):
         yield Trial(mesh - 1, steps[-1])
     yield finer if finer.mesh <= mesh + 2 and intervals_of(finer.mesh) <= most_intervals else None
+
+
+def _steps_are_dear(complete: Sequence[Attempt], errors: Sequence[Excess]) -> bool:
+    """Whether shorter steps took several times the work, as where they follow waves, and more of them would be wanted
+    for what is not soon given up."""
+    growth = _growth(complete, Trial(0, 1)) or 1.0
+    return growth >= DEAR and any(excess.steps > FAR_OFF for excess in errors if excess.hopeless == inf)
 
 
 def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Trial]:

@@ -33,6 +33,9 @@ def slow(mesh: int, steps: int) -> Attempt:
         ([ran(0, 0, 0.9 * MOST_WORK)], Excess(), Trial(0, -1)),  # shorter steps are not to be had
         ([ran(0, 0), ran(0, 1)], Excess(inf, 5.0), Trial(1, 1)),
         ([ran(0, 0), ran(0, 1)], Excess(inf, 0.2), Trial(1, 0)),
+        ([ran(0, 0), ran(0, 1, 4.0 * SMALL)], Excess(inf, 12.0), Trial(1, 0)),  # shorter steps are dear
+        ([ran(0, 0), ran(0, 1, 4.0 * SMALL)], Excess(inf, 2.0), Trial(1, 1)),  # and nearly enough
+        ([ran(0, 0), ran(0, 1, 4.0 * SMALL)], Excess(inf, 12.0, hopeless=4.0), Trial(1, 1)),  # of what is given up soon
         ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.1, 9.0), None),
         ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(2.0, 0.1, 9.0), Trial(2, 0)),
         ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.9, 9.0), Trial(1, 1)),

@@ -36,45 +36,45 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="name", help=f"one of: {', '.join(names)}")
     parser.add_argument("--random", type=int, default=10_000, help="random cases")
     parser.add_argument("--seed", type=int, default=1)
-    asked = parser.parse_args()
-    unknown = [name for name in asked.names if name not in names]
+    arguments = parser.parse_args()
+    unknown = [name for name in arguments.names if name not in names]
     if unknown:
         parser.error(f"unknown name {unknown[0]!r}: must be one of {', '.join(names)}")
     for method in METHODS:
         warm(method)  # compiled once, not in every process
-    kept, failed = Kept(RESULTS), False
-    for name in asked.names or names:
+    store, failed = Kept(RESULTS), False
+    for name in arguments.names or names:
         began = monotonic()
-        found = swept(next(sweep for sweep in ALL if sweep.name == name)) if name != drawn.GROUP else \
-            follow(drawn.tasks(asked.random, asked.seed), drawn.draw_and_run)  # fmt: skip
-        seed = [f"hypothesis {version('hypothesis')}, seed {asked.seed}"] if name == drawn.GROUP else []
+        runs = swept(next(sweep for sweep in ALL if sweep.name == name)) if name != drawn.GROUP else \
+            follow(drawn.tasks(arguments.random, arguments.seed), drawn.draw_and_run)  # fmt: skip
+        seed = [f"hypothesis {version('hypothesis')}, seed {arguments.seed}"] if name == drawn.GROUP else []
         took = f"{monotonic() - began:.0f} s on the clock, {PROCESSES} processes"
-        kept.keep(name, [*provenance(), *seed, took], found)
-        bad = sum(result.ending in FAILURES for result in found)
-        print(f"{name}: {len(found)} runs, {bad} failed, {took}", flush=True)
+        store.keep(name, [*provenance(), *seed, took], runs)
+        bad = sum(result.ending in FAILURES for result in runs)
+        print(f"{name}: {len(runs)} runs, {bad} failed, {took}", flush=True)
         failed |= bad > 0
-    print(kept.text())
+    print(store.text())
     return 1 if failed else 0
 
 
 def swept(sweep: Sweep) -> list[Result]:
     """The runs of a sweep or map, with their errors against the references."""
     tasks = list(sweep.tasks())
-    found = {result.at: result for result in follow(tasks)}
-    pairs = [(task, found[task.at]) for task in tasks]
-    known = references.found(pairs, follow)
-    return [known.measured(task, result) for task, result in pairs]
+    by_place = {result.at: result for result in follow(tasks)}
+    pairs = [(task, by_place[task.at]) for task in tasks]
+    converged = references.converged(pairs, follow)
+    return [converged.measured(task, result) for task, result in pairs]
 
 
 def follow(tasks: Sequence[Task], work: Work = run) -> list[Result]:
     """Run the tasks, and tell of those that failed."""
-    found = []
+    finished = []
     for _, result in results(work, tasks):
-        found.append(result)
+        finished.append(result)
         if result.ending in FAILURES and result.group != references.GROUP:
-            told = f"{result.ending.value} {result.detail.strip()[-100:]}"
-            print(f"  {result.group} {list(result.at)}: {told}", flush=True)
-    return found
+            text = f"{result.ending.value} {result.detail.strip()[-100:]}"
+            print(f"  {result.group} {list(result.at)}: {text}", flush=True)
+    return finished
 
 
 if __name__ == "__main__":

@@ -61,7 +61,7 @@ class Books:
         """Judge the next frame."""
         wrong = self._not_finite(frame)
         if wrong:
-            self._found(Ending.NOT_FINITE, f"{wrong} at t = {frame.t:g} s")
+            self._report(Ending.NOT_FINITE, f"{wrong} at t = {frame.t:g} s")
             return
         ds = self._length / (len(frame.r) - 1)
         bend: Array = ds * np.hypot(frame.kappa[:, 0], frame.kappa[:, 1])
@@ -77,22 +77,22 @@ class Books:
         """Judge the whole."""
         if abs(self.balance) > BALANCE:
             ending = Ending.MADE_ENERGY if self.balance > 0 else Ending.LOST_ENERGY
-            self._found(ending, f"{self.balance:.2g} of the turnover")
+            self._report(ending, f"{self.balance:.2g} of the turnover")
 
-    def _found(self, ending: Ending, detail: str) -> None:
+    def _report(self, ending: Ending, detail: str) -> None:
         if self.fault is None or (ending is Ending.NOT_FINITE and self.fault[0] is not ending):
             self.fault = ending, detail
 
     def _not_finite(self, frame: Frame) -> str:
         lacking = MAY_LACK + (STATIC_LACKS if self._scene.analysis == "static" else ())
-        for one in fields(frame):
-            value = getattr(frame, one.name)
+        for field in fields(frame):
+            value = getattr(frame, field.name)
             if isinstance(value, np.ndarray):
                 good = bool(np.isfinite(value).all())
             else:
-                good = isfinite(value) or (one.name in lacking and isnan(value))
+                good = isfinite(value) or (field.name in lacking and isnan(value))
             if not good:
-                return one.name
+                return field.name
         return ""
 
     def _enter_length(self, frame: Frame, bend: Array) -> None:
@@ -100,7 +100,7 @@ class Books:
         beyond = np.maximum(chords - 1.0, 1.0 - chords - np.maximum(bend[1:], bend[:-1]) ** 2 / 8)
         self.stretch = max(self.stretch, float(beyond.max()))
         if self.stretch > STRETCH:
-            self._found(Ending.STRETCHED, f"by {self.stretch:.2g} at t = {frame.t:g} s")
+            self._report(Ending.STRETCHED, f"by {self.stretch:.2g} at t = {frame.t:g} s")
 
     def _enter_turns(self, frame: Frame, bend: Array) -> None:
         if not self._turning or isnan(frame.Lk) or _has_passed(frame):
@@ -112,13 +112,13 @@ class Books:
         if jump and self._scene.contact is None:  # then it may pass through itself: each time Wr jumps by 2
             defect -= 2.0 * round((defect - self._defect) / 2.0)
         elif jump:
-            self._found(Ending.CROSSED, f"Tw + Wr - Lk jumped to {defect:.3g} by t = {frame.t:g} s")
+            self._report(Ending.CROSSED, f"Tw + Wr - Lk jumped to {defect:.3g} by t = {frame.t:g} s")
         missed = abs(defect - self._defect)
         self.turns = max(self.turns, missed)
         ds = self._length / (len(frame.r) - 1)
         turning = np.abs(frame.kappa).sum(axis=1) * ds / (2 * pi)
         if missed > TURNS + float((bend**2 / 8 * turning).sum()):
-            self._found(Ending.TURNS_LOST, f"|Tw + Wr - Lk| = {missed:.2g} at t = {frame.t:g} s")
+            self._report(Ending.TURNS_LOST, f"|Tw + Wr - Lk| = {missed:.2g} at t = {frame.t:g} s")
 
     def _enter_energy(self, frame: Frame) -> None:
         if self._before is None:
@@ -154,7 +154,7 @@ class Books:
         off = worst / (largest + NOISE / FORCE * self._force)
         turned = max(float(np.linalg.norm(frame.kappa[[0, -1]] * ds, axis=1).max()), self._turned_at_start(ds))
         if off > FORCE + turned**2:
-            self._found(Ending.OUT_OF_BALANCE, f"by {off:.2g} of the largest force at {frame.parameter:g} s")
+            self._report(Ending.OUT_OF_BALANCE, f"by {off:.2g} of the largest force at {frame.parameter:g} s")
 
     def _turned_at_start(self, ds: float) -> float:
         """The larger angle (rad) by which the initial shape turns within an interval at its ends."""

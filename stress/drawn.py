@@ -78,38 +78,38 @@ def rod(draw: Draw) -> tuple[Part, Units]:
     diameter = length * draw(decades(-3.5, -1))
     E, ratio, density = draw(decades(4, 12)), draw(decades(-3, 3)), draw(decades(2, 4))
     EJ, mass = E * pi * diameter**4 / 64, density * pi * diameter**2 / 4
-    told: Part = {"length": length, "diameter": diameter, "youngs_modulus": E, "shear_modulus": 0.4 * E,
+    part: Part = {"length": length, "diameter": diameter, "youngs_modulus": E, "shear_modulus": 0.4 * E,
                   "density": density}  # fmt: skip
     kind = draw(st.sampled_from(["plain", "plain", "direct", "tapered", "stepped"]))
     if kind == "direct":
-        del told["youngs_modulus"], told["shear_modulus"]
-        told |= {"bending_stiffness": [EJ, EJ * draw(decades(-3, 3))], "torsional_stiffness": EJ * ratio}
+        del part["youngs_modulus"], part["shear_modulus"]
+        part |= {"bending_stiffness": [EJ, EJ * draw(decades(-3, 3))], "torsional_stiffness": EJ * ratio}
     elif kind == "tapered":
         thinner = diameter * draw(decades(-1, 0))
-        told["diameter"] = {"s": [0.0, length], "value": [diameter, thinner], "interpolation": "linear"}
+        part["diameter"] = {"s": [0.0, length], "value": [diameter, thinner], "interpolation": "linear"}
     elif kind == "stepped":
-        del told["youngs_modulus"]
-        told["bending_stiffness"] = {"s": [0.45 * length, 0.55 * length], "value": [EJ, EJ * ratio],
+        del part["youngs_modulus"]
+        part["bending_stiffness"] = {"s": [0.45 * length, 0.55 * length], "value": [EJ, EJ * ratio],
                                      "interpolation": "smoothstep"}  # fmt: skip
-    return told, Units(length, diameter, length**2 * sqrt(mass / EJ), EJ / length**2, mass)
+    return part, Units(length, diameter, length**2 * sqrt(mass / EJ), EJ / length**2, mass)
 
 
 def shape(draw: Draw, units: Units) -> Part:
     """A straight rod, an arc or a coil."""
     kind = draw(st.sampled_from(["straight", "straight", "arc", "coil"]))
-    told: Part = {"a1": [1.0, 0.0, 0.0]}
+    part: Part = {"a1": [1.0, 0.0, 0.0]}
     if chance(draw, 0.2):
         turns = draw(st.floats(-6.0, 6.0))
-        told["twist"] = {"s": [0.0, units.length], "value": [0.0, turns], "interpolation": "linear"}
+        part["twist"] = {"s": [0.0, units.length], "value": [0.0, turns], "interpolation": "linear"}
     if kind == "straight":
-        return told | {"shape": "straight", "direction": [0.0, draw(st.sampled_from([0.0, 0.5])), 1.0]}
+        return part | {"shape": "straight", "direction": [0.0, draw(st.sampled_from([0.0, 0.5])), 1.0]}
     turn, rise = draw(st.floats(0.3, MOST_TURN)), 0.0
     if kind == "coil" or turn > 5.5:
         rise = draw(st.floats(0.15, 0.9))  # of the length: no part starts within another one
     count, radius = 81, units.length * sqrt(1.0 - rise**2) / turn
     at = [i / (count - 1) for i in range(count)]
     points = [[radius * cos(turn * x), radius * sin(turn * x), rise * units.length * x] for x in at]
-    return told | {"shape": "centreline", "points": points}
+    return part | {"shape": "centreline", "points": points}
 
 
 def fewest_intervals(shape: Part) -> int:
@@ -127,35 +127,35 @@ def end(draw: Draw, units: Units, t_end: float, static: bool) -> Any:
     if kind == "preset" or (kind == "switched" and static):
         return preset
     axis = draw(st.integers(1, 3))
-    told: Part = {"preset": preset, "frame": draw(st.sampled_from(["material", "lab"]))}
+    part: Part = {"preset": preset, "frame": draw(st.sampled_from(["material", "lab"]))}
     sizes = {"x": units.length, "v": units.length / t_end, "theta": 1.0, "omega": 1.0 / t_end,
              "f": units.force, "q": units.force * units.length}  # fmt: skip
     names = {"driven": ["x", "v", "theta", "omega", "theta", "omega"], "loaded": ["f", "q"], "switched": ["v", "omega"]}
     name = draw(st.sampled_from(names[kind]))
     size = sizes[name] * draw(decades(-2, 0.5 if name in "xv" else 1.5))
     if kind != "switched":
-        return told | {f"{name}{axis}": schedule(draw, size, t_end)}
+        return part | {f"{name}{axis}": schedule(draw, size, t_end)}
     at = t_end * draw(st.floats(0.1, 0.9))
     sudden = draw(st.sampled_from([0.0, {"stop_within": 0.1 * t_end}, {"stop_within": 1e-6 * t_end}]))
     free = dict.fromkeys(("f1", "f2", "f3", "q1", "q2", "q3"), 0.0)
-    return told | {"switches": [{"at": at, **(free if chance(draw, 0.5) else {f"{name}{axis}": sudden})}]}
+    return part | {"switches": [{"at": at, **(free if chance(draw, 0.5) else {f"{name}{axis}": sudden})}]}
 
 
 def loads(draw: Draw, units: Units, t_end: float) -> Part:
     """Weight, distributed and point loads, damping."""
-    told: Part = {}
+    part: Part = {}
     if chance(draw, 0.4):
-        told["gravity"] = vector(draw, units.force / units.length / units.mass * draw(decades(-2, 2)))
+        part["gravity"] = vector(draw, units.force / units.length / units.mass * draw(decades(-2, 2)))
     if chance(draw, 0.4):
         force = vector(draw, units.force / units.length * draw(decades(-3, 2)))
-        told["distributed"] = [{"force": force, "frame": draw(st.sampled_from(["lab", "material"])),
+        part["distributed"] = [{"force": force, "frame": draw(st.sampled_from(["lab", "material"])),
                                 "schedule": schedule(draw, 1.0, t_end)}]  # fmt: skip
     if chance(draw, 0.3):
         force = [schedule(draw, units.force * draw(decades(-2, 2)), t_end), 0.0, 0.0]
-        told["point"] = [{"s": units.length * draw(st.floats(0.0, 1.0)), "force": force}]
+        part["point"] = [{"s": units.length * draw(st.floats(0.0, 1.0)), "force": force}]
     if chance(draw, 0.4):
-        told["damping"] = draw(decades(-2, 3)) / units.time
-    return told
+        part["damping"] = draw(decades(-2, 3)) / units.time
+    return part
 
 
 def fluid(draw: Draw, units: Units) -> Part:
@@ -179,12 +179,12 @@ def contact(draw: Draw, units: Units, rod: Part) -> Part:
 def numerics(draw: Draw, t_end: float, static: bool, fewest: int) -> Part:
     """Either method, coarse or fine."""
     method = draw(st.sampled_from(["box", "staggered"]))
-    told: Part = {"method": method, "intervals": max(fewest, draw(st.integers(3, 30))),
+    part: Part = {"method": method, "intervals": max(fewest, draw(st.integers(3, 30))),
                   "dt_max": t_end * draw(decades(-2, 1)), "rho_inf": draw(st.sampled_from([0.0, 0.3, 0.5, 0.9, 1.0])),
                   "increment_tolerance": draw(st.sampled_from([0.1, 0.1, 0.1, 0.01, 1e-3]))}  # fmt: skip
     if method == "box" and not static and chance(draw, 0.2):
-        told |= draw(st.sampled_from([{"linear_solver": "shooting"}, {"rho_inf_space": 0.9}, {"rho_inf_space": 0.0}]))
-    return told
+        part |= draw(st.sampled_from([{"linear_solver": "shooting"}, {"rho_inf_space": 0.9}, {"rho_inf_space": 0.0}]))
+    return part
 
 
 @st.composite
@@ -234,14 +234,14 @@ def draw_and_run(task: Task) -> Result:
 
 def drawn(at: tuple[int, int]) -> Part:
     """The case of a seed and a number. One at a time: of several hypothesis makes most by small changes to others."""
-    found: list[Part] = []
+    cases_drawn: list[Part] = []
 
     @seed(f"{at[0]}-{at[1]}")
     @settings(max_examples=2, phases=[Phase.generate], database=None, deadline=None,
               suppress_health_check=list(HealthCheck))  # fmt: skip
     @given(cases())
     def keep(case: Part) -> None:
-        found.append(case)
+        cases_drawn.append(case)
 
     keep()  # first the simplest case that there is, then a random one
-    return found[-1]
+    return cases_drawn[-1]

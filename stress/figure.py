@@ -52,8 +52,8 @@ def draw_sweeps(sweeps: Sequence[Sweep], results: Sequence[Result], file: Path) 
     figure = Figure(figsize=(12.0, 1.2 + 0.42 * sum(heights) + 0.75 * len(sweeps)), layout="constrained")
     all_axes = figure.subplots(len(sweeps), 1, height_ratios=[h + 0.2 for h in heights], squeeze=False)[:, 0]
     for axis, sweep in zip(all_axes, sweeps, strict=True):
-        mine = [result for result in results if result.group == sweep.name]
-        _paint(axis, [[_find(mine, (method, x, None)) for x in sweep.along.values] for method in sweep.methods])
+        of_sweep = [result for result in results if result.group == sweep.name]
+        _paint(axis, [[_find(of_sweep, (method, x, None)) for x in sweep.along.values] for method in sweep.methods])
         _label(axis, sweep.along, list(sweep.methods), "")
         axis.set_title(f"{sweep.along.name} (scene: {sweep.scene})", fontsize=9, loc="left")
         axis.set_xlabel("")
@@ -75,14 +75,14 @@ def _paint(axis: Axes, cells: list[list[Result | None]]) -> None:
         for j, cell in enumerate(row):
             if cell is not None:
                 dark = cell.ending not in (Ending.CORRECT, Ending.NAMED, Ending.OUT_OF_BUDGET, Ending.LOST_ENERGY)
-                axis.text(j, i, _told(cell), ha="center", va="center", fontsize=6.5, color="w" if dark else "k")
+                axis.text(j, i, _cell_text(cell), ha="center", va="center", fontsize=6.5, color="w" if dark else "k")
     axis.set_xticks(np.arange(len(cells[0]) + 1) - 0.5, minor=True)
     axis.set_yticks(np.arange(len(cells) + 1) - 0.5, minor=True)
     axis.grid(which="minor", color="w", linewidth=1.2)
     axis.tick_params(which="minor", length=0)
 
 
-def _told(result: Result) -> str:
+def _cell_text(result: Result) -> str:
     if result.ending is Ending.NAMED:
         return SHORT.get(result.outcome, result.outcome)
     if result.ending in (Ending.LOST_ENERGY, Ending.MADE_ENERGY):

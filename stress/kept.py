@@ -22,9 +22,9 @@ class Kept:
 
     def __init__(self, folder: Path) -> None:
         self._folder, self._file = folder, folder / f"{STEM}.json"
-        told = json.loads(self._file.read_text(encoding="utf-8")) if self._file.is_file() else {}
-        self.made_with: dict[str, list[str]] = {name: group["made with"] for name, group in told.items()}
-        self.results = {name: [_read(run) for run in group["runs"]] for name, group in told.items()}
+        groups = json.loads(self._file.read_text(encoding="utf-8")) if self._file.is_file() else {}
+        self.made_with: dict[str, list[str]] = {name: group["made with"] for name, group in groups.items()}
+        self.results = {name: [_read(run) for run in group["runs"]] for name, group in groups.items()}
 
     def keep(self, name: str, made_with: list[str], results: Sequence[Result]) -> None:
         """Put a group in the place of what was kept of it, and bring tables and figures up to date."""
@@ -38,8 +38,8 @@ class Kept:
                 figure.draw_map(sweep, results, self._folder / f"{stem}.png")
         shown = [sweep for sweep in SWEEPS if sweep.name in self.results]
         if name in (sweep.name for sweep in shown):
-            found = [result for sweep in shown for result in self.results[sweep.name]]
-            figure.draw_sweeps(shown, found, self._folder / "sweeps.png")
+            runs = [result for sweep in shown for result in self.results[sweep.name]]
+            figure.draw_sweeps(shown, runs, self._folder / "sweeps.png")
 
     def text(self) -> str:
         """The tables."""
@@ -48,13 +48,13 @@ class Kept:
     def _data(self) -> str:
         groups = []
         for name, results in self.results.items():
-            runs = ",\n".join(json.dumps(_told(result)) for result in results)
+            runs = ",\n".join(json.dumps(_plain(result)) for result in results)
             made_with = json.dumps(self.made_with[name])
             groups.append(f'{json.dumps(name)}: {{"made with": {made_with}, "runs": [\n{runs}]}}')
         return "{\n" + ",\n".join(groups) + "\n}\n"
 
 
-def _told(result: Result) -> dict[str, Any]:
+def _plain(result: Result) -> dict[str, Any]:
     """A result as plain data, without what says nothing: NaN, empty and the centreline."""
     out: dict[str, Any] = {}
     for key, value in asdict(result).items():

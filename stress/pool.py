@@ -50,10 +50,10 @@ class Child:
 
     def _start(self) -> None:
         context = get_context("spawn")
-        self.line, theirs = context.Pipe()
-        self._process: SpawnProcess = context.Process(target=_serve, args=(self._work, theirs), daemon=True)
+        self.line, child_line = context.Pipe()
+        self._process: SpawnProcess = context.Process(target=_serve, args=(self._work, child_line), daemon=True)
         self._process.start()
-        theirs.close()
+        child_line.close()
         self.line.recv()  # what it takes to start is not the task's
 
     def give(self, task: Task) -> None:
@@ -86,8 +86,8 @@ class Child:
 
     def _used(self) -> float:
         """CPU seconds that the process has used."""
-        told = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()
-        return (int(told[11]) + int(told[12])) / TICKS  # utime, stime
+        fields = Path(f"/proc/{self._process.pid}/stat").read_text().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / TICKS  # utime, stime
 
     def _hangs(self, task: Task, detail: str) -> Result:
         self.close()

@@ -35,24 +35,24 @@ def physics(task: Task) -> str:
     return json.dumps({key: part for key, part in task.case.items() if key != "numerics"}, sort_keys=True)
 
 
-def found(pairs: Iterable[tuple[Task, Result]], follow: Callable[[Sequence[Task]], list[Result]]) -> References:
+def converged(pairs: Iterable[tuple[Task, Result]], follow: Callable[[Sequence[Task]], list[Result]]) -> References:
     """The references of the physics that some run came to the end of; `follow` runs tasks.
 
     The second of two fine runs is made where the first one came to its end.
     """
-    wanted = dict.fromkeys(physics(task) for task, result in pairs if result.ending is Ending.CORRECT)
-    first = follow([_fine(known, 0) for known in wanted])
+    keys = dict.fromkeys(physics(task) for task, result in pairs if result.ending is Ending.CORRECT)
+    first = follow([_fine(key, 0) for key in keys])
     second = follow([_fine(result.at[0], 1) for result in first if result.ending is Ending.CORRECT])
     return References([*first, *second])
 
 
-def _fine(known: str, which: int) -> Task:
+def _fine(key: str, index: int) -> Task:
     """One of the two fine runs of some physics."""
-    case = json.loads(known)
+    case = json.loads(key)
     static = case.get("analysis") == "static"
     steps = {} if static else {"dt_max": case["t_end"] / 100}
-    fine = case | {"numerics": {**steps, **FINE["static" if static else "dynamic"][which]}}
-    return Task(GROUP, (known, which), apply_settings(fine, {"output.topology": False}), 20_000, BUDGET)
+    fine = case | {"numerics": {**steps, **FINE["static" if static else "dynamic"][index]}}
+    return Task(GROUP, (key, index), apply_settings(fine, {"output.topology": False}), 20_000, BUDGET)
 
 
 class References:
@@ -62,11 +62,11 @@ class References:
         pairs: dict[str, dict[int, Result]] = {}
         for result in results:
             pairs.setdefault(result.at[0], {})[result.at[1]] = result
-        self._known = {known: np.array(pair[1].r) for known, pair in pairs.items() if _agree(pair)}
+        self._places = {key: np.array(pair[1].r) for key, pair in pairs.items() if _agree(pair)}
 
     def measured(self, task: Task, result: Result) -> Result:
         """The result with its distance from the reference over the rod's length, if both came to the end."""
-        reference = self._known.get(physics(task))
+        reference = self._places.get(physics(task))
         if reference is None or result.ending is not Ending.CORRECT:
             return result
         return replace(result, error=_apart(np.array(result.r), reference) / task.case["rod"]["length"])

@@ -20,30 +20,30 @@ def text(made_with: dict[str, list[str]], results: dict[str, list[Result]]) -> s
              "Endings are defined in `stress/ending.py`, what a run must show to be correct in `stress/books.py`.", "",
              "## How the runs ended", "", *endings(results), "", "## Named outcomes", ""]  # fmt: skip
     everything = [result for group in results.values() for result in group]
-    named = Counter(result.outcome for result in everything if result.ending is Ending.NAMED)
-    lines += [f"- `{name}`: {count}" for name, count in named.most_common()]
+    outcomes = Counter(result.outcome for result in everything if result.ending is Ending.NAMED)
+    lines += [f"- `{name}`: {count}" for name, count in outcomes.most_common()]
     lines += ["", "## How well the books of correct runs close", "", "Median / 99th percentile / largest.", ""]
     lines += [*closeness(results), "", "## Failures", ""]
     failed = {name: [result for result in group if result.ending in FAILURES] for name, group in results.items()}
     lines += [f"{sum(map(len, failed.values()))} of {len(everything)} runs.", ""]
-    for name, mine in failed.items():
-        lines += [f"- {name} {list(one.at)}: {one.ending.value}, {_first(one.detail)}" for one in mine[:SHOWN]]
-        if len(mine) > SHOWN:
-            lines.append(f"- {name}: {len(mine) - SHOWN} more, in the data")
+    for name, runs in failed.items():
+        lines += [f"- {name} {list(run.at)}: {run.ending.value}, {_first(run.detail)}" for run in runs[:SHOWN]]
+        if len(runs) > SHOWN:
+            lines.append(f"- {name}: {len(runs) - SHOWN} more, in the data")
     lines += ["", "## What it was run with", ""]
-    lines += [f"- {name}: {'; '.join(told)}" for name, told in made_with.items()]
+    lines += [f"- {name}: {'; '.join(facts)}" for name, facts in made_with.items()]
     return "\n".join(lines) + "\n"
 
 
 def endings(results: dict[str, list[Result]]) -> list[str]:
     """Runs by group and ending, and their CPU time."""
     everything = [result for group in results.values() for result in group]
-    seen = [ending for ending in Ending if any(result.ending is ending for result in everything)]
+    occurring = [ending for ending in Ending if any(result.ending is ending for result in everything)]
     rows = []
-    for name, mine in [*results.items(), ("all", everything)]:
-        counts = Counter(result.ending for result in mine)
-        rows.append([name, len(mine), *(counts[ending] for ending in seen), f"{sum(r.cpu for r in mine):.0f}"])
-    return table(["runs of", "runs", *(ending.value for ending in seen), "CPU s"], rows)
+    for name, runs in [*results.items(), ("all", everything)]:
+        counts = Counter(result.ending for result in runs)
+        rows.append([name, len(runs), *(counts[ending] for ending in occurring), f"{sum(r.cpu for r in runs):.0f}"])
+    return table(["runs of", "runs", *(ending.value for ending in occurring), "CPU s"], rows)
 
 
 def closeness(results: dict[str, list[Result]]) -> list[str]:
@@ -51,13 +51,13 @@ def closeness(results: dict[str, list[Result]]) -> list[str]:
     names = ("balance", "stretch", "turns", "error")
     rows = []
     for name_of_group, group in results.items():
-        mine = [result for result in group if result.ending is Ending.CORRECT]
-        told = []
+        correct = [result for result in group if result.ending is Ending.CORRECT]
+        cells = []
         for name in names:
-            values = np.array([abs(getattr(result, name)) for result in mine])
+            values = np.array([abs(getattr(result, name)) for result in correct])
             values = values[np.isfinite(values)]
-            told.append(" / ".join(f"{np.quantile(values, q):.0e}" for q in (0.5, 0.99, 1.0)) if len(values) else "")
-        rows.append([name_of_group, *told])
+            cells.append(" / ".join(f"{np.quantile(values, q):.0e}" for q in (0.5, 0.99, 1.0)) if len(values) else "")
+        rows.append([name_of_group, *cells])
     return table(["runs of", "energy / turnover", "stretch", "Tw+Wr-Lk", "error / L"], rows)
 
 

@@ -43,9 +43,9 @@ def run(task: Task) -> Result:
             ending, detail = fault[0], f"{detail} {fault[1]}".strip()
     if watch is None:
         return Result(task.group, task.at, ending, outcome, detail, cpu=process_time() - started, case=task.case)
-    told, books = watch.simulation.statistics, watch.books
+    statistics, books = watch.simulation.statistics, watch.books
     return Result(
-        task.group, task.at, ending, outcome, detail, watch.simulation.t, told.steps, told.failed_steps,
+        task.group, task.at, ending, outcome, detail, watch.simulation.t, statistics.steps, statistics.failed_steps,
         process_time() - started, books.balance, books.stretch, books.turns, r=watch.centreline(),
         case=task.case if ending in FAILURES else None,
     )  # fmt: skip
@@ -64,8 +64,8 @@ def _excused(ending: Ending, fault: Ending) -> bool:
 
 def _named(failure: RunFailed) -> tuple[Ending, str, str]:
     """A failure that says what it is and what to do is a good ending."""
-    told = isfinite(failure.t) and failure.outcome is not Outcome.COMPLETED and failure.outcome.remedy != ""
-    return Ending.NAMED if told else Ending.EXCEPTION, failure.outcome.value, failure.detail
+    complete = isfinite(failure.t) and failure.outcome is not Outcome.COMPLETED and failure.outcome.remedy != ""
+    return Ending.NAMED if complete else Ending.EXCEPTION, failure.outcome.value, failure.detail
 
 
 class Watch:

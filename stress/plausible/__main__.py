@@ -28,17 +28,17 @@ def main() -> int:
     parser.add_argument("--each", type=int, default=EACH, help="scenes of each kind")
     parser.add_argument("--kinds", default=",".join(KINDS), help="by name, with commas")
     parser.add_argument("--cpu", type=float, default=CPU, help="seconds of CPU time that a scene may take")
-    told = parser.parse_args()
-    tasks = [(kind, number, told.cpu) for kind in told.kinds.split(",") for number in range(told.each)]
+    arguments = parser.parse_args()
+    tasks = [(kind, number, arguments.cpu) for kind in arguments.kinds.split(",") for number in range(arguments.each)]
     reports = []
     with ProcessPoolExecutor(PROCESSES, get_context("spawn")) as pool:
-        for done in as_completed([pool.submit(run, *task) for task in tasks]):
-            reports.append(done.result())
-            one = reports[-1]
-            told_of = f"{one.kind:16} {one.number:3} {one.ending:12} {one.outcome:24} {one.cpu:6.2f} s  {one.notes}"
-            print(told_of, flush=True)
+        for future in as_completed([pool.submit(run, *task) for task in tasks]):
+            reports.append(future.result())
+            report = reports[-1]
+            print(f"{report.kind:16} {report.number:3} {report.ending:12} {report.outcome:24} {report.cpu:6.2f} s  "
+                  f"{report.notes}", flush=True)  # fmt: skip
     reports.sort(key=lambda report: (report.kind, report.number))
-    made_with = f"Measured with {'; '.join(provenance())}; at most {told.cpu:g} s of CPU time a scene."
+    made_with = f"Measured with {'; '.join(provenance())}; at most {arguments.cpu:g} s of CPU time a scene."
     text = "\n".join([made_with, "", *written(reports)])
     print(text)
     (RESULTS / "plausible.md").write_text(f"# Plausible scenes in the default mode\n\n{text}\n")

@@ -61,32 +61,32 @@ class Verdict:
 
 def judge(kind: str, number: int) -> Verdict:
     """Run a scene, its truth and fixed runs."""
-    told = build_scene(parse_case(scene(kind, number)))
+    built = build_scene(parse_case(scene(kind, number)))
     verdict = Verdict(kind, number)
-    if not told.numerics.tolerance or told.analysis == "static":
+    if not built.numerics.tolerance or built.analysis == "static":
         verdict.unjudged = "statics have no tolerance"
         return verdict
     try:
-        answer, verdict.cpu, _ = _refined(told)
-        truth, _, verdict.error_of_truth = _true(told)
+        answer, verdict.cpu, _ = _refined(built)
+        truth, _, verdict.error_of_truth = _true(built)
     except (RunFailed, TimeoutError) as error:
         verdict.unjudged = str(error)[:80]
         return verdict
-    found = misses(answer, truth)
-    verdict.outside = missed(found)
-    verdict.by_variable = {name: round(far / many, 3) for name, (far, many) in found.items() if far > MISSED * many}
-    verdict.error = _error(told, answer, truth)
+    counts = misses(answer, truth)
+    verdict.outside = missed(counts)
+    verdict.by_variable = {name: round(far / many, 3) for name, (far, many) in counts.items() if far > MISSED * many}
+    verdict.error = _error(built, answer, truth)
     for fixed in FIXED:
         with suppress(RunFailed, TimeoutError):
-            frames, cpu = _fixed(told, *fixed, np.nanmin([verdict.fixed, DEAR * verdict.cpu]))
-            if _error(told, frames, truth) <= max(verdict.error, SMALL):
+            frames, cpu = _fixed(built, *fixed, np.nanmin([verdict.fixed, DEAR * verdict.cpu]))
+            if _error(built, frames, truth) <= max(verdict.error, SMALL):
                 verdict.fixed = cpu
     return verdict
 
 
-def _refined(told: Scene) -> tuple[list[VerifiedFrame], float, float]:
+def _refined(scene: Scene) -> tuple[list[VerifiedFrame], float, float]:
     """Its frames, its CPU time (s), and its error over the tolerance as it tells it."""
-    begun = Refined(told)
+    begun = Refined(scene)
     begun.warm()
     started, frames = process_time(), []
     while not begun.finished:
@@ -99,21 +99,21 @@ def _refined(told: Scene) -> tuple[list[VerifiedFrame], float, float]:
     return frames, process_time() - started, max(accuracy.errors.values()) / accuracy.target if accuracy else np.nan
 
 
-def _true(told: Scene) -> tuple[list[VerifiedFrame], float, float]:
-    tolerance, work = told.numerics.tolerance or 0.0, plan.MOST_WORK
+def _true(scene: Scene) -> tuple[list[VerifiedFrame], float, float]:
+    tolerance, work = scene.numerics.tolerance or 0.0, plan.MOST_WORK
     plan.MOST_WORK = WORK * work
     try:
-        frames, cpu, error = _refined(replace(told, numerics=replace(told.numerics, tolerance=TRUTH * tolerance)))
+        frames, cpu, error = _refined(replace(scene, numerics=replace(scene.numerics, tolerance=TRUTH * tolerance)))
     finally:
         plan.MOST_WORK = work
     return frames, cpu, TRUTH * error
 
 
-def _fixed(told: Scene, intervals: int, tolerated: float, most: float) -> tuple[list[Frame], float]:
+def _fixed(scene: Scene, intervals: int, tolerated: float, most: float) -> tuple[list[Frame], float]:
     """The frames of a fixed run and its CPU time (s). Raises TimeoutError after `most` s."""
-    numerics = replace(told.numerics, tolerance=None, method="staggered", intervals=intervals,
-                       dt_max=told.output_interval, increment_tolerance=tolerated)  # fmt: skip
-    begun = Simulation(replace(told, numerics=numerics), goes_on=True)
+    numerics = replace(scene.numerics, tolerance=None, method="staggered", intervals=intervals,
+                       dt_max=scene.output_interval, increment_tolerance=tolerated)  # fmt: skip
+    begun = Simulation(replace(scene, numerics=numerics), goes_on=True)
     begun.warm()
     started, frames = process_time(), []
     while not begun.finished:
@@ -125,14 +125,14 @@ def _fixed(told: Scene, intervals: int, tolerated: float, most: float) -> tuple[
     return frames, process_time() - started
 
 
-def _error(told: Scene, frames: Sequence[Frame], truth: Sequence[Frame]) -> float:
+def _error(scene: Scene, frames: Sequence[Frame], truth: Sequence[Frame]) -> float:
     """The true error over the tolerance."""
-    mine, exact = (columns_of([row_of(frame) for frame in series], judged=True) for series in (frames, truth))
-    many = [columns.along.shape[1] - 1 for columns in (mine, exact)]
-    strides = [each // min(many) for each in many]
-    along = mine.along[:, :: strides[0]] - exact.along[:, :: strides[1]]
-    apart = Columns(np.abs(along), np.abs(mine.numbers - exact.numbers))
-    return float(excess(told.numerics.tolerance or 1.0, errors_of(apart, sizes(told, [exact]))).max())
+    answer, exact = (columns_of([row_of(frame) for frame in series], judged=True) for series in (frames, truth))
+    many = [columns.along.shape[1] - 1 for columns in (answer, exact)]
+    strides = [count // min(many) for count in many]
+    along = answer.along[:, :: strides[0]] - exact.along[:, :: strides[1]]
+    apart = Columns(np.abs(along), np.abs(answer.numbers - exact.numbers))
+    return float(excess(scene.numerics.tolerance or 1.0, errors_of(apart, sizes(scene, [exact]))).max())
 
 
 def main() -> int:
@@ -140,12 +140,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--each", type=int, default=3, help="scenes of each kind")
     parser.add_argument("--kinds", default=",".join(KINDS), help="by name, with commas")
-    told = parser.parse_args()
-    tasks = [(kind, number) for kind in told.kinds.split(",") for number in range(told.each)]
+    arguments = parser.parse_args()
+    tasks = [(kind, number) for kind in arguments.kinds.split(",") for number in range(arguments.each)]
     verdicts = []
     with ProcessPoolExecutor(PROCESSES, get_context("spawn")) as pool:
-        for done in as_completed([pool.submit(judge, *task) for task in tasks]):
-            verdicts.append(done.result())
+        for future in as_completed([pool.submit(judge, *task) for task in tasks]):
+            verdicts.append(future.result())
             print(json.dumps(asdict(verdicts[-1])), flush=True)
     verdicts.sort(key=lambda verdict: (verdict.kind, verdict.number))
     text = "\n".join([f"Measured with {'; '.join(provenance())}.", "", *written(verdicts)])
@@ -158,8 +158,9 @@ def main() -> int:
 def written(verdicts: Sequence[Verdict]) -> list[str]:
     """The table by kinds, and what all say."""
     judged = [verdict for verdict in verdicts if not verdict.unjudged]
-    rows = [_row(kind, [one for one in judged if one.kind == kind]) for kind in sorted({one.kind for one in judged})]
-    true = sum(one.outside <= MISSED for one in judged) / max(len(judged), 1)
+    kinds = sorted({verdict.kind for verdict in judged})
+    rows = [_row(kind, [verdict for verdict in judged if verdict.kind == kind]) for kind in kinds]
+    true = sum(verdict.outside <= MISSED for verdict in judged) / max(len(judged), 1)
     ratios = _ratios(judged)
     return [
         *table(HEADER, rows), "",
@@ -167,18 +168,20 @@ def written(verdicts: Sequence[Verdict]) -> list[str]:
         "(aim 95 %).",
         f"- CPU time over that of the cheapest fixed run with an error no larger, of {len(ratios)} scenes: median "
         f"{np.median(ratios):.2f} (aim 2), 95 % within {np.quantile(ratios, 0.95):.1f} (aim 6).",
-        *(f"- Not judged: {one.kind} {one.number}, {one.unjudged}" for one in verdicts if one.unjudged),
+        *(f"- Not judged: {verdict.kind} {verdict.number}, {verdict.unjudged}"
+          for verdict in verdicts if verdict.unjudged),
     ]  # fmt: skip
 
 
 def _ratios(verdicts: Sequence[Verdict]) -> list[float]:
-    return [one.cpu / one.fixed for one in verdicts if one.fixed > 0.0] or [float("nan")]
+    return [verdict.cpu / verdict.fixed for verdict in verdicts if verdict.fixed > 0.0] or [float("nan")]
 
 
 def _row(name: str, verdicts: Sequence[Verdict]) -> list[str]:
-    outside, ratios = [one.outside for one in verdicts], _ratios(verdicts)
-    return [name, str(len(verdicts)), f"{median(outside):.3f}", f"{max(outside):.3f}",
-            f"{median(one.cpu for one in verdicts):.2f}", f"{median(ratios):.2f}", f"{max(ratios):.1f}"]  # fmt: skip
+    outside, ratios = [verdict.outside for verdict in verdicts], _ratios(verdicts)
+    cpu = median(verdict.cpu for verdict in verdicts)
+    return [name, str(len(verdicts)), f"{median(outside):.3f}", f"{max(outside):.3f}", f"{cpu:.2f}",
+            f"{median(ratios):.2f}", f"{max(ratios):.1f}"]  # fmt: skip
 
 
 if __name__ == "__main__":

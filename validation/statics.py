@@ -24,7 +24,7 @@ FOLDED = 10.0
 
 def _static(intervals: int, **changes: object) -> Scene:
     fields = {"rod": rod_R(), "initial": Initial.straight(), "start": End.clamp(), "end": End.free(), "t_end": 1.0,
-            "output_interval": 1.0, "topology": False, "analysis": "static"} | changes  # fmt: skip
+              "output_interval": 1.0, "topology": False, "analysis": "static"} | changes  # fmt: skip
     return Scene(numerics=Numerics(intervals=intervals), **fields)  # type: ignore[arg-type]
 
 

@@ -39,7 +39,7 @@ def part_query(variables: Sequence[str], t_min: float | None = None, t_max: floa
                s_stride: int = 1) -> dict[str, Any]:
     """The query that asks for a part of a dataset."""
     query = {"variables": ",".join(variables), "t_min": t_min, "t_max": t_max, "s_min": s_min, "s_max": s_max,
-            "time_stride": time_stride, "s_stride": s_stride}
+             "time_stride": time_stride, "s_stride": s_stride}
     return {name: value for name, value in query.items() if value is not None}
 
 

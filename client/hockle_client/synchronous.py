@@ -103,7 +103,7 @@ class Client:
         """All jobs that meet these conditions, newest first; `since` and `until` are aware times, `ensemble` is the id
         of the ensemble whose members are listed. Raises Problem."""
         filters = {"limit": "200", "status": status, "label": label, "owner": owner, "ensemble": ensemble,
-                "since": since and since.isoformat(), "until": until and until.isoformat()}
+                   "since": since and since.isoformat(), "until": until and until.isoformat()}
         query = {name: value for name, value in filters.items() if value is not None}
         page = (self._ask("GET", "/v1/jobs", params=query)).json()
         while True:

@@ -58,9 +58,9 @@ def main() -> None:
     print("\n".join(text))
     RESULTS.mkdir(exist_ok=True)
     (RESULTS / "last.md").write_text("\n".join(text), encoding="utf-8")
-    kept = {"made with": provenance(), "iteration_us": iterations, "staggered_us": staggered,
-            "scene_s": scenes, "writhe_us": writhes, "compilation_s": compiling}  # fmt: skip
-    (RESULTS / "last.json").write_text(json.dumps(kept, indent=1).replace("NaN", "null") + "\n", encoding="utf-8")
+    results = {"made with": provenance(), "iteration_us": iterations, "staggered_us": staggered,
+               "scene_s": scenes, "writhe_us": writhes, "compilation_s": compiling}  # fmt: skip
+    (RESULTS / "last.json").write_text(json.dumps(results, indent=1).replace("NaN", "null") + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -56,10 +56,10 @@ def serve() -> None:
     from validation.provenance import provenance
 
     answers, sys.stdout = sys.stdout, sys.stderr
-    known = groups()
-    print(json.dumps([provenance(), list(known)]), file=answers, flush=True)
+    measures = groups()
+    print(json.dumps([provenance(), list(measures)]), file=answers, flush=True)
     for line in sys.stdin:
-        print(json.dumps(known[line.strip()]()), file=answers, flush=True)
+        print(json.dumps(measures[line.strip()]()), file=answers, flush=True)
 
 
 def groups() -> dict[str, Callable[[], Costs]]:
@@ -70,20 +70,20 @@ def groups() -> dict[str, Callable[[], Costs]]:
     from benchmarks.work_precision.processes import SCENES as FIGURE
     from benchmarks.work_precision.processes import runs_of
 
-    found: dict[str, Callable[[], Costs]] = {}
+    measures: dict[str, Callable[[], Costs]] = {}
     for n in (100, 1000):
-        found[f"an iteration of the box method, N = {n}, us"] = partial(kernels.cost, n)
-        found[f"an iteration of the staggered method, N = {n}, us"] = partial(kernels.staggered_cost, n)
+        measures[f"an iteration of the box method, N = {n}, us"] = partial(kernels.cost, n)
+        measures[f"an iteration of the staggered method, N = {n}, us"] = partial(kernels.staggered_cost, n)
     for n in (100, 400):
-        found[f"goyal-2003 to 32 s, N = {n}, s"] = partial(_seconds, lambda n: scene.run(n)["CPU with frames"], n)
+        measures[f"goyal-2003 to 32 s, N = {n}, s"] = partial(_seconds, lambda n: scene.run(n)["CPU with frames"], n)
     for name, make in (SCENES | ONE_AXIS).items():
         for method in ("box", "staggered"):
-            found[f"{name}, {method}, s"] = partial(_simulated, make, method)
+            measures[f"{name}, {method}, s"] = partial(_simulated, make, method)
     for scene_name in FIGURE:
         for i, run in enumerate(runs_of(scene_name)):
             if run.solver in METHODS:
-                found[f"{scene_name}, {run.solver}, {run.resolution}, s"] = partial(_figured, runs_of, scene_name, i)
-    return found
+                measures[f"{scene_name}, {run.solver}, {run.resolution}, s"] = partial(_figured, runs_of, scene_name, i)
+    return measures
 
 
 def _seconds(measure: Callable[[Any], float], of: Any) -> Costs:
@@ -112,7 +112,7 @@ def compared(before: Checkout, after: Checkout, group: str) -> list[tuple[str, f
     """The least cost of each row of a group that both have, before and after."""
     measured = [(before.costs(group), after.costs(group)) for _ in range(REPEATS)]
     rows = [name for name in measured[0][0] if name in measured[0][1] and name != "intervals"]
-    return [(name, *(min(one[side][name] for one in measured) for side in (0, 1))) for name in rows]
+    return [(name, *(min(costs[side][name] for costs in measured) for side in (0, 1))) for name in rows]
 
 
 def main(other: Path) -> None:
@@ -123,17 +123,17 @@ def main(other: Path) -> None:
              f"Both in turn, the least of {REPEATS}. Aim: no ratio above {SLOWER}.", "",
              "| | before | after | ratio |", "| --- | ---: | ---: | ---: |"]  # fmt: skip
     print("\n".join(lines), flush=True)
-    kept = []
+    records = []
     for group in (name for name in after.groups if name in before.groups):
         for name, old, new in compared(before, after, group):
-            kept.append({"group": group, "row": name, "before": old, "after": new})
+            records.append({"group": group, "row": name, "before": old, "after": new})
             shown = group if name == "CPU" else f"{group}: {name}"
             lines.append(f"| {shown} | {old:.3g} | {new:.3g} | {new / old:.2f} |")
             print(lines[-1], flush=True)
     before.close()
     after.close()
     (RESULTS / "in_turn.md").write_text("\n".join([*lines, ""]), encoding="utf-8")
-    (RESULTS / "in_turn.json").write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    (RESULTS / "in_turn.json").write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

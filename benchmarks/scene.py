@@ -48,8 +48,8 @@ def compilation() -> dict[str, float]:
     with tempfile.TemporaryDirectory() as cache:
         environment = {k: v for k, v in os.environ.items() if k != "NUMBA_CACHE_DIR"} | {"XDG_CACHE_HOME": cache}
         for _ in range(2):
-            done = subprocess.run([sys.executable, "-c", program], cwd=Path(__file__).parent.parent, env=environment,
-                                  capture_output=True, text=True, check=True)  # fmt: skip
-            times.append(float(done.stdout.splitlines()[-1]))
+            process = subprocess.run([sys.executable, "-c", program], cwd=Path(__file__).parent.parent, env=environment,
+                                     capture_output=True, text=True, check=True)  # fmt: skip
+            times.append(float(process.stdout.splitlines()[-1]))
     return {"first process": times[0], "second process": times[1], "compilation": times[0] - times[1],
             "aim": SECOND_START_AIM_S}

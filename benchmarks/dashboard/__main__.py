@@ -91,7 +91,7 @@ def _pages(page: Any, address: str, run: Callable[..., str]) -> dict[str, str]:
 
 
 def _write(path: Path, title: str, fact: str, table: list[str]) -> None:
-    lines = [f"# {title}", "", *(f"- {one}" for one in (*provenance(), fact)), "", *table, ""]
+    lines = [f"# {title}", "", *(f"- {line}" for line in (*provenance(), fact)), "", *table, ""]
     path.write_text("\n".join(lines), encoding="utf-8")
     print("\n".join(lines))
 
@@ -130,14 +130,14 @@ def _films(page: Any, address: str, run: Callable[..., str]) -> list[str]:
     return [f"| {frames} frames of N = 400: from the request of the page to the picture | {ready:.2f} s | < 3 s |",
             f"| N = 1000, {SCRUBS} times scrubbed: a picture, median | {median(waits):.0f} ms | |",
             f"| the slowest of them | {max(waits):.0f} ms | no stall |",
-            *(f"| CPU time a picture, {what} | {1000 * cpu[kind] / SCRUBS:.1f} ms | |" for kind, what in WORK.items())]
+            *(f"| CPU time a picture, {part} | {1000 * cpu[kind] / SCRUBS:.1f} ms | |" for kind, part in WORK.items())]
 
 
 def _with_cpu(work: Callable[[], Any]) -> tuple[Any, dict[str, float]]:
     """What the work gives, and the CPU time (s) that it took each kind of the browser's processes."""
     before = {kind: cpu_time(f"--type={kind}") for kind in WORK}
-    done = work()
-    return done, {kind: cpu_time(f"--type={kind}") - spent for kind, spent in before.items()}
+    result = work()
+    return result, {kind: cpu_time(f"--type={kind}") - spent for kind, spent in before.items()}
 
 
 def _table(page: Any, address: str, registry: Any) -> list[str]:

@@ -13,28 +13,28 @@ SCHEMES = ("light", "dark")
 
 
 @dataclass(frozen=True)
-class Found:
+class Audit:
     """How many rules held, and which did not, each with its element."""
 
-    held: int
+    passed: int
     violations: list[str]
 
 
-def axe(page: Any) -> Found:
+def axe(page: Any) -> Audit:
     """Of the page as it is shown."""
     from axe_playwright_python.sync_playwright import Axe
 
-    told = Axe().run(page).response
-    broken = [f"{rule['id']}: {node['target']}" for rule in told["violations"] for node in rule["nodes"]]
-    return Found(len(told["passes"]), broken)
+    results = Axe().run(page).response
+    broken = [f"{rule['id']}: {node['target']}" for rule in results["violations"] for node in rule["nodes"]]
+    return Audit(len(results["passes"]), broken)
 
 
 def version() -> str:
     """Of the rules."""
     from axe_playwright_python.sync_playwright import Axe
 
-    found = re.search(r"axe v([\d.]+)", Axe().axe_script[:200])
-    return found[1] if found else "of unknown version"
+    match = re.search(r"axe v([\d.]+)", Axe().axe_script[:200])
+    return match[1] if match else "of unknown version"
 
 
 def documentation() -> list[str]:
@@ -46,16 +46,17 @@ def documentation() -> list[str]:
 
 
 def rows(page: Any, address: str, ready: Mapping[str, str]) -> list[str]:
-    """A row of a table for each page of `ready`, which names what is on it when it is filled."""
-    made = []
-    for path, there in ready.items():
-        found = []
+    """A row of a table for each page of `ready`, which has a selector of what is on it when it is filled."""
+    table = []
+    for path, selector in ready.items():
+        audits = []
         for scheme in SCHEMES:
             page.emulate_media(color_scheme=scheme)
             page.goto(address + path)
-            page.wait_for_selector(there, state="attached")
-            found.append(axe(page))
+            page.wait_for_selector(selector, state="attached")
+            audits.append(axe(page))
         shown = re.sub(r"/01\w+", "/ID", path.split("?")[0])
-        made.append(f"| `{shown}` | {found[0].held} | " + " | ".join(str(len(one.violations)) for one in found) + " |")
+        broken = " | ".join(str(len(audit.violations)) for audit in audits)
+        table.append(f"| `{shown}` | {audits[0].passed} | {broken} |")
     page.emulate_media(color_scheme="light")
-    return made
+    return table

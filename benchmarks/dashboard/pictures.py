@@ -10,7 +10,7 @@ from typing import Any
 from PIL import Image
 
 from benchmarks.dashboard.browser import browsing
-from benchmarks.load.service import whole
+from benchmarks.load.service import with_workers
 from hockle_client import Client
 
 PLACE = Path(__file__).parent.parent.parent / "docs" / "pictures"
@@ -24,7 +24,7 @@ DRAWN = "() => new Promise(done => requestAnimationFrame(() => requestAnimationF
 
 def take() -> None:
     """Take all of them, on `hockle serve` with a worker."""
-    with whole() as (host, port, _), browsing() as opened:
+    with with_workers() as (host, port, _), browsing() as opened:
         _take(opened(), Service(f"http://{host}:{port}"))
 
 
@@ -90,8 +90,8 @@ def _ensemble(page: Any, open_: Callable[[str, str], None], service: Service) ->
             "set": {"t_end": 4, "numerics.intervals": 20}, "sample": {"method": "sobol", "size": 32, "seed": 3},
             "parameters": {"stiffness": {"path": "rod.youngs_modulus", "low": 5e6, "high": 5e7, "scale": "log"},
                            "damping": {"path": "loads.damping", "low": 0.0, "high": 2.0}}}  # fmt: skip
-    made = page.request.post(f"{service.address}/v1/ensembles", data=body).json()["id"]
-    open_(f"ensembles/{made}", "#page figure")
+    ensemble_id = page.request.post(f"{service.address}/v1/ensembles", data=body).json()["id"]
+    open_(f"ensembles/{ensemble_id}", "#page figure")
     page.wait_for_selector("#page > div > .status.successful", timeout=300_000)
     _keep(page, "dashboard-ensemble")
 
@@ -104,10 +104,10 @@ def _paper(page: Any) -> None:
         page.evaluate(DRAWN)
         parts.append(Image.open(BytesIO(page.locator(".stage").screenshot())).convert("RGB"))
     wide, tall = parts[0].size
-    whole = Image.new("RGB", (2 * wide, 2 * tall))
+    sheet = Image.new("RGB", (2 * wide, 2 * tall))
     for k, part in enumerate(parts):
-        whole.paste(part, (wide * (k % 2), tall * (k // 2)))
-    _save(whole.resize((wide, tall)), "dashboard-figure-6")
+        sheet.paste(part, (wide * (k % 2), tall * (k // 2)))
+    _save(sheet.resize((wide, tall)), "dashboard-figure-6")
 
 
 def _keep(page: Any, name: str) -> None:

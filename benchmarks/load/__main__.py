@@ -15,7 +15,7 @@ import uvloop
 
 from benchmarks.load.backlog import backlog
 from benchmarks.load.scenes import SUBMITTERS, choices, events, first_step, statuses, submissions
-from benchmarks.load.service import whole, without_workers
+from benchmarks.load.service import with_workers, without_workers
 from benchmarks.load.table import Row, table
 from service.settings import Settings
 from validation.provenance import provenance
@@ -65,8 +65,8 @@ async def of_worker(host: str, port: int, settings: Settings) -> list[Row]:
     ]
 
 
-def told(rows: Sequence[Row], queued: str = "", controls: Sequence[Row] = ()) -> list[Row]:
-    """The rows, each with how many jobs were queued and its control; shown at once to who waits for the table."""
+def labelled(rows: Sequence[Row], queued: str = "", controls: Sequence[Row] = ()) -> list[Row]:
+    """The rows, each with how many jobs were queued and its control; printed at once."""
     of_each = controls or [None] * len(rows)
     rows = [replace(row, what=row.what + queued, control=control)
             for row, control in zip(rows, of_each, strict=True)]  # fmt: skip
@@ -78,15 +78,15 @@ def told(rows: Sequence[Row], queued: str = "", controls: Sequence[Row] = ()) ->
 async def measure() -> list[Row]:
     """Every scene with its queues."""
     with without_workers() as place:
-        none = told(await of_api(*place))
+        none = labelled(await of_api(*place))
         await submissions(*place[:2], clients=SUBMITTERS[-1], many=QUEUED)
-        many = told(await of_api(*place), f", {QUEUED:,} queued", none)
-    with whole() as place:
-        idle = told(await of_worker(*place))
+        many = labelled(await of_api(*place), f", {QUEUED:,} queued", none)
+    with with_workers() as place:
+        idle = labelled(await of_worker(*place))
         async with backlog(*place, FEW):
-            short = told(await of_worker(*place), f", busy, {FEW} queued")
+            short = labelled(await of_worker(*place), f", busy, {FEW} queued")
         async with backlog(*place, QUEUED):
-            long = told(await of_worker(*place), f", busy, {QUEUED:,} queued", short)
+            long = labelled(await of_worker(*place), f", busy, {QUEUED:,} queued", short)
     return [*none, *many, *idle, *short, *long]
 
 

@@ -35,7 +35,7 @@ async def submit_all(
     ids: list[str] = []
     latencies: list[float] = []
 
-    async def one(connection: Connection) -> None:
+    async def submit(connection: Connection) -> None:
         for text in waiting:
             answer = await connection.ask(text)
             if answer.status != 202:
@@ -43,7 +43,7 @@ async def submit_all(
             ids.append(json.loads(answer.body)["id"])
             latencies.append(answer.seconds)
 
-    await asyncio.gather(*map(one, connections))
+    await asyncio.gather(*map(submit, connections))
     return ids, latencies
 
 
@@ -63,7 +63,7 @@ async def poll(connections: Sequence[Connection], ids: Sequence[str], seconds: f
         texts.append(connection.text("GET", path, **etag))
     end = time.perf_counter() + seconds
 
-    async def one(connection: Connection, text: bytes) -> None:
+    async def ask(connection: Connection, text: bytes) -> None:
         await asyncio.sleep(random.random())
         while time.perf_counter() < end:
             due = time.perf_counter() + 1.0
@@ -73,7 +73,7 @@ async def poll(connections: Sequence[Connection], ids: Sequence[str], seconds: f
             latencies.append(answer.seconds)
             await asyncio.sleep(max(0.0, due - time.perf_counter()))
 
-    await asyncio.gather(*map(one, connections, texts))
+    await asyncio.gather(*map(ask, connections, texts))
     return latencies
 
 

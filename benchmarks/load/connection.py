@@ -31,7 +31,7 @@ class Connection(asyncio.Protocol):
 
     def __init__(self, host: str, port: int) -> None:
         self._where = f"{host}:{port}"
-        self._got = b""
+        self._received = b""
         self._waiting: asyncio.Future[Answer] | None = None
         self._transport: asyncio.Transport
         self._sent = 0.0
@@ -78,18 +78,18 @@ class Connection(asyncio.Protocol):
 
     def data_received(self, data: bytes) -> None:
         """Collect until the answer is whole."""
-        self._got += data
+        self._received += data
         if self.on_line is not None:
-            *lines, self._got = self._got.split(b"\n")
+            *lines, self._received = self._received.split(b"\n")
             for line in lines:
                 self.on_line(line, time.time())
             return
-        head, end, body = self._got.partition(b"\r\n\r\n")
-        told = LENGTH.search(head)
-        if not end or len(body) < (int(told[1]) if told else 0) or self._waiting is None:
+        head, end, body = self._received.partition(b"\r\n\r\n")
+        length = LENGTH.search(head)
+        if not end or len(body) < (int(length[1]) if length else 0) or self._waiting is None:
             return
         tag = TAG.search(head)
-        self._got = b""
+        self._received = b""
         waiting, self._waiting = self._waiting, None
         waiting.set_result(Answer(int(head[9:12]), tag[1].decode() if tag else "", body,
                                   time.perf_counter() - self._sent))

@@ -78,13 +78,13 @@ async def first_step(host: str, port: int, settings: Settings) -> tuple[list[flo
     The first job is not counted: the worker may still compile or load its kernels.
     """
     connection = await Connection.open(host, port)
-    sent: dict[str, float] = {}
+    sent_at: dict[str, float] = {}
     jobs = []
     for number in range(TIMES + 1):
         text = connection.text("POST", "/v1/jobs", json.dumps(case(number)).encode())
         now = time.time()
         job = json.loads((await connection.ask(text)).body)
-        sent[job["id"]] = now
+        sent_at[job["id"]] = now
         while job["status"] in ("accepted", "running"):
             await asyncio.sleep(0.02)
             job = json.loads((await connection.ask(connection.text("GET", f"/v1/jobs/{job['id']}"))).body)
@@ -92,8 +92,8 @@ async def first_step(host: str, port: int, settings: Settings) -> tuple[list[flo
         await _pause()
     connection.close()
     stepped = under_way(settings.data / "logs" / "worker.log")
-    claimed, ended = ([_unix(job[name]) - sent[job["id"]] for job in jobs[1:]] for name in ("started", "finished"))
-    return claimed, [stepped[job["id"]] - sent[job["id"]] for job in jobs[1:]], ended
+    claimed, ended = ([_unix(job[name]) - sent_at[job["id"]] for job in jobs[1:]] for name in ("started", "finished"))
+    return claimed, [stepped[job["id"]] - sent_at[job["id"]] for job in jobs[1:]], ended
 
 
 def under_way(log: Path) -> dict[str, float]:

@@ -18,43 +18,43 @@ from hockle.supervisor import ENVIRONMENT
 from service.api.listening import listen
 from service.settings import Settings
 
-TOLD = ENVIRONMENT | {"REDIS_URL": "", "HOCKLE_QUOTA": "1000000"}
+VARIABLES = ENVIRONMENT | {"REDIS_URL": "", "HOCKLE_QUOTA": "1000000"}
 APIS = 2
 
 
-def cpu_time(called: str = "") -> float:
+def cpu_time(word: str = "") -> float:
     """CPU time (s) that the processes have taken that this one has started, and those that they have; of those alone
     that have `called` in their command."""
     seconds = 0.0
-    for pid in started(called):
+    for pid in started(word):
         with suppress(OSError):  # it has just ended
             fields = Path("/proc", str(pid), "stat").read_text().rpartition(")")[2].split()
             seconds += sum(map(int, fields[11:13])) / os.sysconf("SC_CLK_TCK")
     return seconds
 
 
-def started(called: str = "") -> set[int]:
+def started(word: str = "") -> set[int]:
     """The processes that this one has started, and those that they have, which have `called` in their command."""
-    parents, meant = {}, set()
+    parents, matching = {}, set()
     for entry in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
             pid = int(entry.parent.name)
             parents[pid] = int(entry.read_text().rpartition(")")[2].split()[1])
-            if called.encode() in entry.with_name("cmdline").read_bytes():
-                meant.add(pid)
-    ours = {os.getpid()}
-    while more := {pid for pid, parent in parents.items() if parent in ours} - ours:
-        ours |= more
-    return (ours - {os.getpid()}) & meant
+            if word.encode() in entry.with_name("cmdline").read_bytes():
+                matching.add(pid)
+    family = {os.getpid()}
+    while more := {pid for pid, parent in parents.items() if parent in family} - family:
+        family |= more
+    return (family - {os.getpid()}) & matching
 
 
 @contextmanager
-def whole(workers: int = 1) -> Iterator[tuple[str, int, Settings]]:
+def with_workers(workers: int = 1) -> Iterator[tuple[str, int, Settings]]:
     """`hockle serve` with so many workers; host and port, and its settings."""
     with tempfile.TemporaryDirectory(prefix="hockle-load-") as data:
         command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", str(workers)]
         command += ["--data", data]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | TOLD)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | VARIABLES)
         try:
             assert process.stdout is not None
             address = urlsplit(process.stdout.readline().split()[3].rstrip(","))
@@ -72,7 +72,7 @@ def without_workers() -> Iterator[tuple[str, int, Settings]]:
         sockets = [cleanup.enter_context(listening) for listening in listen("127.0.0.1", 0, many=APIS)]
         for listening in sockets:
             command = [sys.executable, "-m", "hockle", "api", "--fd", str(listening.fileno())]
-            process = subprocess.Popen(command, env=os.environ | TOLD | {"HOCKLE_DATA": data},
+            process = subprocess.Popen(command, env=os.environ | VARIABLES | {"HOCKLE_DATA": data},
                                        pass_fds=[listening.fileno()])  # fmt: skip
             cleanup.callback(process.wait, 60)
             cleanup.callback(process.terminate)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import httpx
 
-from benchmarks.load.service import whole, without_workers
+from benchmarks.load.service import with_workers, without_workers
 from benchmarks.load.table import Row, table
 from benchmarks.reading.large import lines, of_a_large_dataset
 from benchmarks.reading.members import WORKERS, of_members
@@ -25,10 +25,12 @@ def main() -> None:
     """Measure, print the table, and keep it."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--members", type=int, default=100, help="run an ensemble of so many to its end")
-    told = parser.parse_args()
+    arguments = parser.parse_args()
     before = os.getloadavg()
     rows: list[Row] = []
-    with whole() as (host, port, settings), httpx.Client(base_url=f"http://{host}:{port}", timeout=600.0) as client:
+    with with_workers() as (host, port, settings), httpx.Client(
+        base_url=f"http://{host}:{port}", timeout=600.0
+    ) as client:
         rows += of_a_dataset(client, settings)
     for scene in (of_many_jobs, of_an_ensemble):
         with without_workers() as (host, port, settings), httpx.Client(
@@ -37,8 +39,10 @@ def main() -> None:
             rows += scene(client, settings)
     with without_workers() as (host, port, settings):
         large = lines(*of_a_large_dataset(f"http://{host}:{port}", settings))
-    with whole(WORKERS) as (host, port, _), httpx.Client(base_url=f"http://{host}:{port}", timeout=600.0) as client:
-        members = of_members(client, told.members)
+    with with_workers(WORKERS) as (host, port, _), httpx.Client(
+        base_url=f"http://{host}:{port}", timeout=600.0
+    ) as client:
+        members = of_members(client, arguments.members)
     text = [*(f"- {line}" for line in provenance()),
             f"- load average of the machine before {before[0]:.1f}, after {os.getloadavg()[0]:.1f}", "", HOW, "",
             *table(rows), *large, *members]  # fmt: skip

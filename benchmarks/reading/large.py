@@ -71,35 +71,35 @@ def of_a_large_dataset(address: str, settings: Settings) -> tuple[float, list[He
     """The size (bytes) of the file, and what publishing and reading it took."""
     with httpx.Client(base_url=address, timeout=600.0) as client:
         job = client.post("/v1/jobs", json={"case": "cantilever-vibration", "set": CASE}).raise_for_status().json()
-        told = client.get(job["links"]["case"]).raise_for_status().json()
+        case = client.get(job["links"]["case"]).raise_for_status().json()
     job_id = str(job["id"])
-    path, published = _published(job_id, parse_case(told), settings)
+    path, published = _published(job_id, parse_case(case), settings)
     servers = started_here("api")
     return path.stat().st_size, [published, *(_read(address, job_id, what, servers) for what in READS)]
 
 
 def _read(address: str, job_id: str, what: str, servers: list[int]) -> Held:
-    told: list[float] = []
+    figures: list[float] = []
     with tempfile.TemporaryDirectory() as directory:
         command = [sys.executable, "-c", CLIENT, address, job_id, f"{directory}/run.nc", READS[what]]
-        server = peak_of(servers, lambda: told.extend(json.loads(subprocess.check_output(command))))
-    return Held(what, told[0], server, told[1])
+        server = peak_of(servers, lambda: figures.extend(json.loads(subprocess.check_output(command))))
+    return Held(what, figures[0], server, figures[1])
 
 
 def _published(job_id: str, spec: CaseSpec, settings: Settings) -> tuple[Path, Held]:
     """The job ended, with a dataset of chance numbers, which cannot be packed; as a worker does it."""
-    path, took, done = settings.datasets / f"{job_id}.1.nc", [0.0], []
+    path, took, published = settings.datasets / f"{job_id}.1.nc", [0.0], []
     with tempfile.TemporaryDirectory(dir=settings.data) as directory:
         segments = list(_segments(Path(directory), stored_variables(spec)))
 
         def publish() -> None:
             began = time.perf_counter()
             with DatasetWriter(path, spec, Path(directory), segments) as writer:
-                done.append(writer.publish("completed", "", simulate(build_scene(spec))))
+                published.append(writer.publish("completed", "", simulate(build_scene(spec))))
             took[0] = time.perf_counter() - began
 
         grown = peak_of([os.getpid()], publish)
-    _end(job_id, Dataset(path.name, done[0].sha256, done[0].bytes), settings)
+    _end(job_id, Dataset(path.name, published[0].sha256, published[0].bytes), settings)
     return path, Held("put together, verified and published, from its segments", took[0], None, grown)
 
 
@@ -112,11 +112,12 @@ def _end(job_id: str, dataset: Dataset, settings: Settings) -> None:
 
 
 def _segments(directory: Path, variables: tuple[Variable, ...]) -> Iterator[Segment]:
-    rng, sizes = np.random.default_rng(1), {"s": INTERVALS + 1, **{name: len(told) for name, told in LABELS.items()}}
+    rng = np.random.default_rng(1)
+    sizes = {"s": INTERVALS + 1, **{name: len(labels) for name, labels in LABELS.items()}}
     shapes = {variable.name: tuple(sizes[name] for name in variable.dimensions[1:]) for variable in variables}
     frame = sum(8 * prod(shape) for shape in shapes.values())
     for first in range(0, int(BYTES / frame) + 1, IN_BLOCK):
-        block: Block = {one.name: _chance(rng, one, shapes[one.name]) for one in variables}
+        block: Block = {variable.name: _chance(rng, variable, shapes[variable.name]) for variable in variables}
         block["time"] = 1e-3 * np.arange(first, first + IN_BLOCK)
         yield write_segment(directory, first, "benchmark", block)
 

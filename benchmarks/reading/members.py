@@ -44,7 +44,7 @@ class Waited:
     @property
     def seconds(self) -> float:
         """So far."""
-        return sum(told - self.first[pid] for pid, told in self.last.items()) / 1e9
+        return sum(waited - self.first[pid] for pid, waited in self.last.items()) / 1e9
 
 
 def of_members(client: httpx.Client, members: int) -> list[str]:
@@ -65,10 +65,10 @@ def of_members(client: httpx.Client, members: int) -> list[str]:
     runs, busy = _runs(client, ensemble)
     alone = runs * _with_datasets(values[:: max(1, members // ALONE)])
     free = wall - waited.seconds / WORKERS
-    taken = {"CPU time of the workers, by 2": workers / 2,
-             "CPU time of all processes of the service, by 2": service / 2,
-             "wall clock": wall,
-             "wall clock, less the time that a worker had no core": free}  # fmt: skip
+    durations = {"CPU time of the workers, by 2": workers / 2,
+                 "CPU time of all processes of the service, by 2": service / 2,
+                 "wall clock": wall,
+                 "wall clock, less the time that a worker had no core": free}  # fmt: skip
     return ["", f"{members} members of {CASE} with {INTERVALS} intervals, {WORKERS} workers on 2 cores. Aim: 1.1 times",
             "their CPU time by 2: the solver's, or that of `hockle run` in a warm process, with its dataset.",
             "",
@@ -76,14 +76,14 @@ def of_members(client: httpx.Client, members: int) -> list[str]:
             f"| CPU time of the solver, as the datasets tell | {runs:.1f} |  |  |",
             f"| CPU time of `hockle run` | {alone:.1f} |  |  |",
             *(f"| {what} | {seconds:.1f} | {2 * seconds / runs:.3f} | {2 * seconds / alone:.3f} |"
-              for what, seconds in taken.items()), "",
+              for what, seconds in durations.items()), "",
             f"A worker had a member in hand for {100 * busy / WORKERS / wall:.1f} % of the wall clock."]  # fmt: skip
 
 
 def _with_datasets(values: Sequence[float]) -> float:
     """CPU time of runs by the command line in this process, by that of their solver."""
-    told = list(_by_the_command_line([values[0], *values]))[1:]  # the first one loads what all need
-    return sum(cpu for cpu, _ in told) / sum(solver for _, solver in told)
+    runs = list(_by_the_command_line([values[0], *values]))[1:]  # the first one loads what all need
+    return sum(cpu for cpu, _ in runs) / sum(solver for _, solver in runs)
 
 
 def _by_the_command_line(values: Sequence[float]) -> Iterator[tuple[float, float]]:

@@ -9,10 +9,10 @@ from contextlib import suppress
 from pathlib import Path
 
 
-def started_here(called: str) -> list[int]:
+def started_here(word: str) -> list[int]:
     """The processes that this one has started whose command has the word `called`."""
-    told = Path("/proc/self/task", str(os.getpid()), "children").read_text().split()
-    return [int(pid) for pid in told if called.encode() in Path("/proc", pid, "cmdline").read_bytes().split(b"\0")]
+    pids = Path("/proc/self/task", str(os.getpid()), "children").read_text().split()
+    return [int(pid) for pid in pids if word.encode() in Path("/proc", pid, "cmdline").read_bytes().split(b"\0")]
 
 
 def peak_of(pids: Sequence[int], do: Callable[[], object]) -> float:
@@ -20,16 +20,16 @@ def peak_of(pids: Sequence[int], do: Callable[[], object]) -> float:
     before = {}
     for pid in pids:
         Path("/proc", str(pid), "clear_refs").write_text("5")  # the peak is counted anew
-        before[pid] = _told(pid, "VmRSS")
+        before[pid] = _count(pid, "VmRSS")
     do()
     grown = [0.0]
     for pid in pids:
         with suppress(OSError):
-            grown.append(_told(pid, "VmHWM") - before[pid])
+            grown.append(_count(pid, "VmHWM") - before[pid])
     return max(grown) / 1e3
 
 
-def _told(pid: int, name: str) -> float:
+def _count(pid: int, name: str) -> float:
     """A count of kB."""
-    found = re.search(rf"{name}:\s+(\d+) kB", Path("/proc", str(pid), "status").read_text())
-    return float(found[1]) if found else 0.0
+    match = re.search(rf"{name}:\s+(\d+) kB", Path("/proc", str(pid), "status").read_text())
+    return float(match[1]) if match else 0.0

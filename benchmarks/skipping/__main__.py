@@ -30,14 +30,14 @@ and a ratio below 1 is what is saved."""
 def ratio(whole: Build, without: Build, scene: str, method: str) -> tuple[float, float]:
     """CPU time (s) of a run by the whole build, and its ratio to that of the build without the feature."""
     times = [(whole.cpu(scene, method), without.cpu(scene, method)) for _ in range(REPEATS + 1)][1:]
-    mine, other = (min(series) for series in zip(*times, strict=True))
-    return mine, mine / other
+    with_it, without_it = (min(series) for series in zip(*times, strict=True))
+    return with_it, with_it / without_it
 
 
 def warm(builds: list[Build]) -> None:
     """Have each build compile its kernels, as many at once as there are cores."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        list(pool.map(lambda one: [one.cpu(next(iter(SCENES)), method) for method in BOTH], builds))
+        list(pool.map(lambda build: [build.cpu(next(iter(SCENES)), method) for method in BOTH], builds))
 
 
 def main() -> None:
@@ -59,8 +59,8 @@ def main() -> None:
     origin = [f"- {line}" for line in provenance()]
     text = "\n".join(["# What is not needed", "", *origin, "", HOW, "", *lines, ""])
     (RESULTS / "skipping.md").write_text(text, encoding="utf-8")
-    kept = {"made with": provenance(), "rows": rows}
-    (RESULTS / "skipping.json").write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
+    results = {"made with": provenance(), "rows": rows}
+    (RESULTS / "skipping.json").write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

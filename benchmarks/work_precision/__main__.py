@@ -22,13 +22,13 @@ RESULTS = Path(__file__).parent.parent / "results"
 STEM = "work_precision"
 
 
-def main(asked: list[str]) -> None:
+def main(names: list[str]) -> None:
     """Measure scene by scene and keep each; those that were not asked for stay as they were last measured."""
     file = RESULTS / f"{STEM}.json"
-    if not asked:
+    if not names:
         file.unlink(missing_ok=True)
     kept: dict[str, Any] = {}
-    for scene, points in measure(asked or list(SCENES)):
+    for scene, points in measure(names or list(SCENES)):
         kept = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
         kept[scene] = {"made with": made_with(), "points": [asdict(p) for p in points]}
         file.write_text(json.dumps(kept, indent=1) + "\n", encoding="utf-8")
@@ -57,8 +57,8 @@ def report(kept: dict[str, Any]) -> list[str]:
     text += table.summary(points) + table.at_equal_error(points) + table.agreement(points)
     text += ["## What is solved, and what it was measured with", ""]
     for name in (name for name in SCENES if name in kept):
-        told = " ".join((SCENES[name].__doc__ or "").split())
-        text += [f"**{SCENES[name].SCENE}.** {told} *{'; '.join(kept[name]['made with'])}.*", ""]
+        description = " ".join((SCENES[name].__doc__ or "").split())
+        text += [f"**{SCENES[name].SCENE}.** {description} *{'; '.join(kept[name]['made with'])}.*", ""]
     return text + table.results(points)
 
 

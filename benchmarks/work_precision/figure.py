@@ -27,13 +27,13 @@ def draw(points: Iterable[Point], file: Path) -> None:
     handles = {}
     for axis, ((scene, quantity), all_points) in zip(axes, shown.items(), strict=False):
         for solver, style in styles.items():
-            theirs = sorted((p.cpu, p.error) for p in all_points if p.solver == solver and not p.missing)
-            if theirs:
-                handles[solver] = axis.loglog(*zip(*theirs, strict=True), **style)[0]
-        for one in (axis.xaxis, axis.yaxis):  # whole decades, and only they are named
-            low, high = (log10(value) for value in one.get_data_interval())
-            one.axes.set(**{f"{one.axis_name}lim": (10.0 ** floor(low), 10.0 ** ceil(high))})
-            one.set_minor_formatter(NullFormatter())
+            curve = sorted((p.cpu, p.error) for p in all_points if p.solver == solver and not p.missing)
+            if curve:
+                handles[solver] = axis.loglog(*zip(*curve, strict=True), **style)[0]
+        for line in (axis.xaxis, axis.yaxis):  # whole decades, and only they are named
+            low, high = (log10(value) for value in line.get_data_interval())
+            line.axes.set(**{f"{line.axis_name}lim": (10.0 ** floor(low), 10.0 ** ceil(high))})
+            line.set_minor_formatter(NullFormatter())
         axis.set_title(f"{scene}: {quantity}", fontsize=10)
         axis.set_xlabel("CPU s")
         axis.set_ylabel("error")
@@ -46,11 +46,11 @@ def draw(points: Iterable[Point], file: Path) -> None:
 
 def _styles(points: Iterable[Point]) -> dict[str, dict[str, object]]:
     solvers = dict.fromkeys(p.solver for p in points)
-    others = [s for s in solvers if s.removesuffix(AS_IT_COMES) not in STYLE and not s.endswith(AS_IT_COMES)]
-    known = STYLE | dict(zip(others, MUJOCO_STYLE, strict=False))
+    peers = [s for s in solvers if s.removesuffix(AS_IT_COMES) not in STYLE and not s.endswith(AS_IT_COMES)]
+    styles = STYLE | dict(zip(peers, MUJOCO_STYLE, strict=False))
     drawn = {}
     for solver in [*METHODS, *(s for s in solvers if s not in METHODS)]:
-        colour, marker = known[solver.removesuffix(AS_IT_COMES)]
+        colour, marker = styles[solver.removesuffix(AS_IT_COMES)]
         raw = solver.endswith(AS_IT_COMES)
         drawn[solver] = {"color": colour, "marker": marker, "linestyle": ":" if raw else "-",
                          "fillstyle": "none" if raw else "full", "markersize": 5}  # fmt: skip

@@ -59,10 +59,10 @@ class Point:
 
 def cheapest(go: Callable[[], dict[str, Measured]]) -> dict[str, Measured]:
     """The cheapest of a few repetitions; a costly run is made once."""
-    found = [go()]
-    while max(m.cpu for m in found[0].values()) < CHEAP and len(found) < REPEATS:
-        found.append(go())
-    return {name: min((one[name] for one in found), key=lambda m: m.cpu) for name in found[0]}
+    repeats = [go()]
+    while max(m.cpu for m in repeats[0].values()) < CHEAP and len(repeats) < REPEATS:
+        repeats.append(go())
+    return {name: min((measured[name] for measured in repeats), key=lambda m: m.cpu) for name in repeats[0]}
 
 
 class Stopwatch:

@@ -28,13 +28,13 @@ def points_of(place: tuple[str, int]) -> list[Point]:
     scene, index = place
     run = runs_of(scene)[index]
     try:
-        found = cheapest(run.go)
+        measured = cheapest(run.go)
     except Skipped as reason:
         return [Point(run.scene, "", run.solver, run.resolution, missing=str(reason))]
-    if not all(isfinite(m.error) for m in found.values()):
+    if not all(isfinite(m.error) for m in measured.values()):
         return [Point(run.scene, "", run.solver, run.resolution, missing="diverged")]
     return [Point(run.scene, quantity, run.solver, run.resolution, m.cpu, m.error, m.value)
-            for quantity, m in found.items()]  # fmt: skip
+            for quantity, m in measured.items()]  # fmt: skip
 
 
 def measure(scenes: list[str]) -> Iterator[tuple[str, list[Point]]]:
@@ -43,8 +43,8 @@ def measure(scenes: list[str]) -> Iterator[tuple[str, list[Point]]]:
         for scene in scenes:
             places = [(scene, i) for i in range(len(SCENES[scene].runs()))]
             points = []
-            for found in pool.imap(points_of, places):
-                for p in found:
+            for measured_points in pool.imap(points_of, places):
+                for p in measured_points:
                     points.append(p)
                     measured = p.missing or f"{p.cpu:.3g} s, error {p.error:.2e}"
                     print(f"{p.scene}, {p.quantity}, {p.solver}, {p.resolution}: {measured}", flush=True)

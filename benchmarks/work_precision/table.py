@@ -58,12 +58,12 @@ def comparisons(points: Iterable[Point]) -> Iterator[Comparison | tuple[str, str
     """Every peer in every scene that it was run in; its names only, where no run of it was within the bound."""
     for (scene, quantity), all_points in panels(points).items():
         for peer in dict.fromkeys(p.solver for p in all_points if p.solver not in METHODS):
-            theirs = [p for p in all_points if p.solver == peer and not p.missing]
-            if not theirs:
+            peer_points = [p for p in all_points if p.solver == peer and not p.missing]
+            if not peer_points:
                 yield scene, quantity, peer
                 continue
-            ratios = [p.cpu / min(work(all_points, m, p.error) for m in OURS) for p in theirs]
-            best = min(theirs, key=lambda p: p.error)
+            ratios = [p.cpu / min(work(all_points, m, p.error) for m in OURS) for p in peer_points]
+            best = min(peer_points, key=lambda p: p.error)
             method = min(OURS, key=lambda m: work(all_points, m, best.error))
             cpu = work(all_points, method, best.error)
             yield Comparison(scene, quantity, peer, best, method, cpu, min(ratios), max(ratios))
@@ -76,12 +76,12 @@ def at_equal_error(points: Iterable[Point]) -> list[str]:
              "Against hockle's cheapest run whose error is no larger than the peer's; least and largest over its runs.",
              "", "| scene | quantity | peer | its smallest error | its CPU s | hockle | least | largest | aim |",
              "| --- | --- | --- | ---: | ---: | --- | ---: | ---: | ---: |"]  # fmt: skip
-    for one in comparisons(points):
-        if not isinstance(one, Comparison):
-            lines.append(f"| {' | '.join(one)} | no run in the bound | | | | | |")
+    for row in comparisons(points):
+        if not isinstance(row, Comparison):
+            lines.append(f"| {' | '.join(row)} | no run in the bound | | | | | |")
             continue
-        lines.append(f"| {one.scene} | {one.quantity} | {one.peer} | {one.best.error:.1e} | {one.best.cpu:.3g} | "
-                     f"{one.method}, {one.cpu:.3g} s | {one.least:.3g} | {one.most:.3g} | {one.aim:g} |")  # fmt: skip
+        lines.append(f"| {row.scene} | {row.quantity} | {row.peer} | {row.best.error:.1e} | {row.best.cpu:.3g} | "
+                     f"{row.method}, {row.cpu:.3g} s | {row.least:.3g} | {row.most:.3g} | {row.aim:g} |")  # fmt: skip
     return [*lines, ""]
 
 
@@ -144,7 +144,7 @@ def agreement(points: Iterable[Point]) -> list[str]:
              "Error bar: what the last refinement changed.", "",
              "| scene | quantity | box | staggered | difference | within the bars |",
              "| --- | --- | ---: | ---: | ---: | --- |"]  # fmt: skip
-    for one in agreements(points):
-        within = "yes" if one.met else "no"
-        lines.append(f"| {one.scene} | {one.quantity} | {' | '.join(one.shown)} | {one.gap:.1e} | {within} |")
+    for row in agreements(points):
+        within = "yes" if row.met else "no"
+        lines.append(f"| {row.scene} | {row.quantity} | {' | '.join(row.shown)} | {row.gap:.1e} | {within} |")
     return [*lines, ""]

@@ -19,13 +19,13 @@ SOLVE: dict[str, Callable[[Cantilever, Elements], Motion]] = {
 def peers(scene: str, cantilever: Cantilever, judge: Callable[[Motion], dict[str, Measured]],
           counts: Sequence[int], as_they_come: Sequence[int]) -> list[Run]:  # fmt: skip
     """Runs of the peers with so many elements, their clamps corrected; of some also as they come."""
-    found = []
+    runs = []
     for name, solve in SOLVE.items():
         for corrected, numbers in ((True, counts), (False, as_they_come)):
             for n in numbers:
                 go = partial(_go, solve, cantilever, Elements(n, corrected), judge)
-                found.append(Run(scene, name if corrected else name + AS_IT_COMES, f"{n} elements", go))
-    return found
+                runs.append(Run(scene, name if corrected else name + AS_IT_COMES, f"{n} elements", go))
+    return runs
 
 
 def _go(solve: Callable[[Cantilever, Elements], Motion], cantilever: Cantilever, elements: Elements,

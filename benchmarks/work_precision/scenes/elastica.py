@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.work_precision.cantilever import Cantilever, Motion, solve
 from benchmarks.work_precision.measure import STATICS, Measured, Run, Stopwatch
 from benchmarks.work_precision.peers import peers
-from benchmarks.work_precision.scenes.ladder import box, or_outcome, ours, staggered
+from benchmarks.work_precision.scenes.ladder import box, hockle_runs, or_outcome, staggered
 from solver import Numerics
 from validation.elastica import exact
 from validation.rods import EJ, LENGTH
@@ -44,6 +44,6 @@ def runs() -> list[Run]:
                for n in (10, 20, 40, 80, 160)]  # fmt: skip
     return [
         *statics,
-        *ours(SCENE, boxes, staggereds, lambda numerics: judge(solve(CANTILEVER, numerics))),
+        *hockle_runs(SCENE, boxes, staggereds, lambda numerics: judge(solve(CANTILEVER, numerics))),
         *peers(SCENE, CANTILEVER, judge, (10, 20, 40, 80), (20,)),
     ]

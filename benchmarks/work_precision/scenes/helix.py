@@ -18,7 +18,7 @@ from scipy.optimize import fsolve
 
 from benchmarks.work_precision.measure import AS_IT_COMES, PYELASTICA, Measured, Run, Stopwatch
 from benchmarks.work_precision.peers import pyelastica_helix
-from benchmarks.work_precision.scenes.ladder import box, ours, staggered
+from benchmarks.work_precision.scenes.ladder import box, hockle_runs, staggered
 from solver import FIXED, Condition, Curve, End, Initial, Numerics, Rod, Scene, simulate
 from solver.arrays import Array
 
@@ -59,8 +59,8 @@ def judge(r: Array, first: float, cpu: float) -> dict[str, Measured]:
     cosine = steps[:, 2] / lengths
     s = first + np.cumsum(lengths) - 0.5 * lengths
     inside = (s >= 0.0) & (s <= LENGTH)
-    found = (cosine - cosine.min()) / (1.0 - cosine.min())
-    error = np.sqrt(np.mean((found - envelope(s))[inside] ** 2))
+    shape = (cosine - cosine.min()) / (1.0 - cosine.min())
+    error = np.sqrt(np.mean((shape - envelope(s))[inside] ** 2))
     return {"envelope": Measured(cpu, float(error), float(cosine.min()))}
 
 
@@ -107,7 +107,7 @@ def _by_pyelastica(elements: int, corrected: bool) -> dict[str, Measured]:
 def runs() -> list[Run]:
     """By hockle and PyElastica."""
     boxes = [box(n, 100.0 / n, 0.5, 0.1) for n in (100, 200, 400, 800, 1600)]
-    theirs = [(50, True), (100, True), (200, True), (100, False)]
+    resolutions = [(50, True), (100, True), (200, True), (100, False)]
     peers = [Run(SCENE, PYELASTICA + ("" if corrected else AS_IT_COMES), f"{n} elements",
-                 partial(_by_pyelastica, n, corrected)) for n, corrected in theirs]  # fmt: skip
-    return [*ours(SCENE, boxes, [staggered(n, 100.0, 1e-2) for n in (50, 100, 200, 400, 800)], _by_us), *peers]
+                 partial(_by_pyelastica, n, corrected)) for n, corrected in resolutions]  # fmt: skip
+    return [*hockle_runs(SCENE, boxes, [staggered(n, 100.0, 1e-2) for n in (50, 100, 200, 400, 800)], _by_us), *peers]

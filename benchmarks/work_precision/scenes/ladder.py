@@ -24,12 +24,12 @@ def staggered(intervals: int, dt: float, tolerance: float) -> Numerics:
     return Numerics("staggered", intervals=intervals, dt_max=dt, increment_tolerance=tolerance)
 
 
-def ours(scene: str, boxes: list[Numerics], staggereds: list[Numerics],
-         go: Callable[[Numerics], dict[str, Measured]]) -> list[Run]:  # fmt: skip
+def hockle_runs(scene: str, boxes: list[Numerics], staggereds: list[Numerics],
+                go: Callable[[Numerics], dict[str, Measured]]) -> list[Run]:  # fmt: skip
     """Runs of the three methods; the paper's takes the meshes and the steps of the box's."""
-    ladders = {BOX: boxes, STAGGERED: staggereds, PAPER: [paper(one) for one in boxes]}
-    return [Run(scene, solver, label(one), lambda one=one: or_outcome(go, one))  # type: ignore[misc]
-            for solver, ladder in ladders.items() for one in ladder]  # fmt: skip
+    ladders = {BOX: boxes, STAGGERED: staggereds, PAPER: [paper(numerics) for numerics in boxes]}
+    return [Run(scene, solver, label(numerics), lambda numerics=numerics: or_outcome(go, numerics))  # type: ignore[misc]
+            for solver, ladder in ladders.items() for numerics in ladder]  # fmt: skip
 
 
 def label(numerics: Numerics) -> str:

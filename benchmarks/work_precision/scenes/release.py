@@ -9,7 +9,7 @@ import numpy as np
 from benchmarks.work_precision.cantilever import Cantilever, Motion, solve
 from benchmarks.work_precision.measure import Measured, Run
 from benchmarks.work_precision.peers import peers
-from benchmarks.work_precision.scenes.ladder import box, ours, staggered
+from benchmarks.work_precision.scenes.ladder import box, hockle_runs, staggered
 from solver.arrays import Array
 from validation.free_flight import curled
 from validation.rods import LENGTH
@@ -36,6 +36,6 @@ def runs() -> list[Run]:
     boxes = [box(n, 1.0 / n, 0.9) for n in (10, 14, 20, 28, 40, 56, 80, 160)]
     staggereds = [staggered(n, 1.0, 0.1) for n in (10, 20, 40, 80, 160)]
     return [
-        *ours(SCENE, boxes, staggereds, lambda numerics: judge(solve(CANTILEVER, numerics))),
+        *hockle_runs(SCENE, boxes, staggereds, lambda numerics: judge(solve(CANTILEVER, numerics))),
         *peers(SCENE, CANTILEVER, judge, (10, 20, 30, 40, 60), (10, 20, 40)),
     ]

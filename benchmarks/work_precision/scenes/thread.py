@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.work_precision.measure import PYELASTICA, Measured, Run, Skipped, Stopwatch
 from benchmarks.work_precision.peers import pyelastica
-from benchmarks.work_precision.scenes.ladder import box, ours, staggered
+from benchmarks.work_precision.scenes.ladder import box, hockle_runs, staggered
 from solver import FIXED, FREE, Condition, Curve, End, Initial, Numerics, Rod, Scene, simulate
 from solver.arrays import Array
 
@@ -60,4 +60,4 @@ def runs() -> list[Run]:
     """By hockle; PyElastica's cost is foretold, not paid."""
     boxes = [box(n, dt, 0.5) for n, dt in ((20, 0.05), (40, 0.025), (80, 0.025), (160, 0.0125), (320, 0.0125))]
     staggereds = [staggered(n, 0.1, 1e-2) for n in (20, 40, 80, 160, 320)]
-    return [*ours(SCENE, boxes, staggereds, _judge), Run(SCENE, PYELASTICA, "100 elements", _too_long)]
+    return [*hockle_runs(SCENE, boxes, staggereds, _judge), Run(SCENE, PYELASTICA, "100 elements", _too_long)]

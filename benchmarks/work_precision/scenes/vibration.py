@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 from benchmarks.work_precision.cantilever import Cantilever, Motion, solve
 from benchmarks.work_precision.measure import Measured, Run
 from benchmarks.work_precision.peers import peers
-from benchmarks.work_precision.scenes.ladder import box, ours, staggered
+from benchmarks.work_precision.scenes.ladder import box, hockle_runs, staggered
 from solver import Numerics
 from validation.cantilever import BENDING, bent
 
@@ -44,4 +44,5 @@ def runs() -> list[Run]:
     boxes = [box(n, PERIOD / steps) for n, steps in ((10, 20), (20, 40), (40, 80), (80, 160), (160, 320))]
     steps = ((10, 8), (20, 12), (40, 16), (80, 24), (160, 32))
     staggereds = [staggered(n, PERIOD / each, FIXED) for n, each in steps]
-    return [*ours(SCENE, boxes, staggereds, _by_us), *peers(SCENE, cantilever(20), judge, (5, 10, 20, 30), (10,))]
+    return [*hockle_runs(SCENE, boxes, staggereds, _by_us),
+            *peers(SCENE, cantilever(20), judge, (5, 10, 20, 30), (10,))]  # fmt: skip

@@ -27,22 +27,23 @@ def main() -> int:
     parser.add_argument("--first", type=int, default=1, help="the first seed")
     parser.add_argument("--jobs", type=int, default=50, help="at least so many in each seed")
     parser.add_argument("--faults", type=int, default=50, help="at least so many in each seed")
-    told = parser.parse_args()
+    arguments = parser.parse_args()
     stop_on_signals()  # and clean up then
     os.environ |= ENVIRONMENT
-    known = with_halves(cases())
-    expected = {name: undisturbed(case) for name, case in known.items()}
-    kinds = KINDS if told.database == "both" else (told.database,)
+    named_cases = with_halves(cases())
+    expected = {name: undisturbed(case) for name, case in named_cases.items()}
+    kinds = KINDS if arguments.database == "both" else (arguments.database,)
     good = True
     for kind in kinds:
         if kind == "postgresql" and binaries() is None:
             print("postgresql: not on this machine, left out")
             continue
-        good &= campaign(kind, range(told.first, told.first + told.seeds), told.jobs, told.faults, known, expected)
+        seeds = range(arguments.first, arguments.first + arguments.seeds)
+        good &= campaign(kind, seeds, arguments.jobs, arguments.faults, named_cases, expected)
     return 0 if good else 1
 
 
-def campaign(kind: str, seeds: range, jobs: int, faults: int, known: dict[str, dict[str, object]],
+def campaign(kind: str, seeds: range, jobs: int, faults: int, named_cases: dict[str, dict[str, object]],
              expected: dict[str, str]) -> bool:
     """Run the seeds on one kind of database, keeping what is known after each; whether all went well."""
     report = Report(kind)
@@ -53,7 +54,7 @@ def campaign(kind: str, seeds: range, jobs: int, faults: int, known: dict[str, d
             tempfile.TemporaryDirectory(prefix="hockle-chaos-", ignore_cleanup_errors=True) as directory,
             environment(kind, Path(directory) / "data") as (settings, server, small),
         ):
-            record, watch = run_seed(seed, settings, server, small, known, jobs, faults)
+            record, watch = run_seed(seed, settings, server, small, named_cases, jobs, faults)
             verdict = judge(record, watch, settings, expected)
             if not verdict.good:
                 print(_logs(settings.data), file=sys.stderr)

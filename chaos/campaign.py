@@ -75,9 +75,9 @@ def run_seed(seed: int, settings: Settings, server: Any, small: bool, cases: Map
 
 def _make_trouble(target: Target, record: Record, count: int, faults: int, only: Sequence[Fault]) -> None:
     stopped = threading.Event()
-    others = [threading.Thread(target=keep_open, args=(target, min(QUEUED, count), stopped)),
-              threading.Thread(target=_poison, args=(target, record, stopped))]
-    for thread in others:
+    threads = [threading.Thread(target=keep_open, args=(target, min(QUEUED, count), stopped)),
+               threading.Thread(target=_poison, args=(target, record, stopped))]
+    for thread in threads:
         thread.start()
     weights, deadline = [WEIGHTS[fault] for fault in only], time.monotonic() + WITHIN
     try:
@@ -91,7 +91,7 @@ def _make_trouble(target: Target, record: Record, count: int, faults: int, only:
             let_run(target, target.random.expovariate(1 / STEPS_BETWEEN))
     finally:
         stopped.set()
-        for thread in others:
+        for thread in threads:
             thread.join()
 
 
@@ -101,10 +101,10 @@ def let_run(target: Target, steps: float) -> None:
     while time.monotonic() < deadline:
         time.sleep(0.05)
         with suppress(Exception):
-            taken = _steps_taken(target.database)
+            steps_taken = _steps_taken(target.database)
             if began is None:
-                began = taken
-            if taken - began >= steps:
+                began = steps_taken
+            if steps_taken - began >= steps:
                 return
 
 

@@ -38,15 +38,15 @@ def with_halves(cases: Mapping[str, dict[str, Any]]) -> dict[str, dict[str, Any]
 
 def digest(dataset: Path) -> str:
     """What is the same in equal runs: every value of every variable to the bit, how it ended, its steps."""
-    told = hashlib.sha256()
+    sha256 = hashlib.sha256()
     with open_dataset(dataset) as opened:
         for name in sorted(map(str, opened.variables)):
             values = opened[name].values
             plain = values.astype("U") if values.dtype.kind == "O" else values
-            told.update(name.encode() + np.ascontiguousarray(plain).tobytes())
+            sha256.update(name.encode() + np.ascontiguousarray(plain).tobytes())
         for name in ("outcome", "message", "steps", "failed_steps", "newton_iterations"):
-            told.update(f"{name} {opened.attrs[name]}".encode())
-    return told.hexdigest()
+            sha256.update(f"{name} {opened.attrs[name]}".encode())
+    return sha256.hexdigest()
 
 
 def undisturbed(case: dict[str, Any]) -> str:

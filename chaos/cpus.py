@@ -35,18 +35,19 @@ def tell() -> None:
 def digests(host: dict[str, str]) -> dict[str, str]:
     """The digest of each case's dataset as such a host makes it; its kernels are compiled first."""
     with tempfile.TemporaryDirectory(prefix="hockle-cpus-") as kernels:
-        told = {"XDG_CACHE_HOME": kernels, "OPENBLAS_CORETYPE": "Haswell", "PYTHONWARNINGS": "ignore"}
-        ran = subprocess.run([sys.executable, "-c", PROGRAM], env=os.environ | told | host, check=True,
+        environment = {"XDG_CACHE_HOME": kernels, "OPENBLAS_CORETYPE": "Haswell", "PYTHONWARNINGS": "ignore"}
+        ran = subprocess.run([sys.executable, "-c", PROGRAM], env=os.environ | environment | host, check=True,
                              stdout=subprocess.PIPE, text=True)  # fmt: skip
     return dict(json.loads(ran.stdout))
 
 
 def main() -> int:
     """Run all, print and keep the table."""
-    made = {name: digests(host) for name, host in HOSTS.items()}
-    same = {case: len({found[case] for found in made.values()}) == 1 for case in cases()}
-    rows = [("case", *made, "the same"), ("---",) * (len(made) + 2)]
-    rows += [(case, *(found[case][:12] for found in made.values()), "yes" if same[case] else "**no**") for case in same]
+    by_host = {name: digests(host) for name, host in HOSTS.items()}
+    same = {case: len({hashes[case] for hashes in by_host.values()}) == 1 for case in cases()}
+    rows = [("case", *by_host, "the same"), ("---",) * (len(by_host) + 2)]
+    rows += [(case, *(hashes[case][:12] for hashes in by_host.values()), "yes" if same[case] else "**no**")
+             for case in same]  # fmt: skip
     lines = ["# The same bits on every CPU", "", *(f"- {line}" for line in provenance()), ""]
     lines += [f"| {' | '.join(row)} |" for row in rows]
     text = "\n".join([*lines, ""])

@@ -45,14 +45,14 @@ class Growth:
 
     def sample(self) -> None:
         """Look some times, and keep the least of each."""
-        seen: dict[tuple[str, int], list[tuple[float, int, int]]] = {}
+        by_process: dict[tuple[str, int], list[tuple[float, int, int]]] = {}
         for _ in range(LOOKS):
             for role, pid in self._processes():
                 with suppress(OSError):
-                    seen.setdefault((role, pid), []).append(_held(pid))
+                    by_process.setdefault((role, pid), []).append(_usage(pid))
             time.sleep(BETWEEN)
         self.disk.append(_size(self.served.settings.data))
-        for process, looks in seen.items():
+        for process, looks in by_process.items():
             memory, descriptors, threads = (min(look[i] for look in looks) for i in range(3))
             self.samples.setdefault(process, []).append((memory, int(descriptors), int(threads)))
 
@@ -61,7 +61,7 @@ class Growth:
         """Whether every process lived all along, and neither one nor the disk holds more in the end than once it was
         warm."""
         longest = max(map(len, self.samples.values()))
-        return self.disk_flat and all(len(found) == longest and _is_flat(found) for found in self.samples.values())
+        return self.disk_flat and all(len(looks) == longest and _is_flat(looks) for looks in self.samples.values())
 
     @property
     def disk_flat(self) -> bool:
@@ -73,11 +73,11 @@ class Growth:
         """A table: means of memory over the second and the last quarter, most descriptors and threads in them."""
         lines = ["| process | samples | MB, 2nd quarter | MB, last | descriptors | threads | |",
                  "| --- | ---: | ---: | ---: | --- | --- | --- |"]  # fmt: skip
-        for (role, _), found in self.samples.items():
-            early, late = _quarters(found)
+        for (role, _), samples in self.samples.items():
+            early, late = _quarters(samples)
             memory = [f"{mean(m for m, _, _ in part):.1f}" for part in (early, late)]
-            held = [" → ".join(str(max(one[i] for one in part)) for part in (early, late)) for i in (1, 2)]
-            row = [role, str(len(found)), *memory, *held, "flat" if _is_flat(found) else "GROWS"]
+            counts = [" → ".join(str(max(sample[i] for sample in part)) for part in (early, late)) for i in (1, 2)]
+            row = [role, str(len(samples)), *memory, *counts, "flat" if _is_flat(samples) else "GROWS"]
             lines.append("| " + " | ".join(row) + " |")
         sizes = [f"{mean(part):.1f}" for part in _quarters(self.disk)]
         row = ["disk", str(len(self.disk)), *sizes, "", "", "flat" if self.disk_flat else "GROWS"]
@@ -85,15 +85,15 @@ class Growth:
 
     def _processes(self) -> list[tuple[str, int]]:
         served = self.served
-        found = [("supervisor", served.process.pid if served.process else None), ("worker", served.worker()),
-                 ("broker", served.broker()), *((f"API {n}", pid) for n, pid in enumerate(served.apis()))]  # fmt: skip
-        return [(role, pid) for role, pid in found if pid is not None]
+        pids = [("supervisor", served.process.pid if served.process else None), ("worker", served.worker()),
+                ("broker", served.broker()), *((f"API {n}", pid) for n, pid in enumerate(served.apis()))]  # fmt: skip
+        return [(role, pid) for role, pid in pids if pid is not None]
 
 
-def _held(pid: int) -> tuple[float, int, int]:
+def _usage(pid: int) -> tuple[float, int, int]:
     """MB, descriptors and threads of a process now. Raises OSError if there is none."""
     pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-    descriptors, threads = (len(os.listdir(f"/proc/{pid}/{what}")) for what in ("fd", "task"))  # noqa: PTH208
+    descriptors, threads = (len(os.listdir(f"/proc/{pid}/{name}")) for name in ("fd", "task"))  # noqa: PTH208
     return 1e-6 * pages * PAGE, descriptors, threads
 
 
@@ -107,12 +107,12 @@ def _size(directory: Path) -> float:
     return 1e-6 * total
 
 
-def _quarters(found: list[Sample]) -> tuple[list[Sample], list[Sample]]:
-    quarter = max(1, len(found) // 4)
-    return found[quarter : 2 * quarter] or found, found[-quarter:]
+def _quarters(samples: list[Sample]) -> tuple[list[Sample], list[Sample]]:
+    quarter = max(1, len(samples) // 4)
+    return samples[quarter : 2 * quarter] or samples, samples[-quarter:]
 
 
-def _is_flat(found: list[tuple[float, int, int]]) -> bool:
-    early, late = _quarters(found)
+def _is_flat(samples: list[tuple[float, int, int]]) -> bool:
+    early, late = _quarters(samples)
     memory = mean(m for m, _, _ in late) <= ROOM * mean(m for m, _, _ in early)
     return memory and all(max(x[i] for x in late) <= max(x[i] for x in early) + SPARE for i in (1, 2))

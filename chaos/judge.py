@@ -67,15 +67,15 @@ class Verdict:
 def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[str, str]) -> Verdict:
     """The verdict on one seed; `expected` are the digests of undisturbed runs by the name of their case."""
     database = Database(settings.database_url)
-    found = {job.id: job for job in _all_jobs(Registry(database))}
-    verdict = Verdict(jobs=len(found), faults=record.done, overlaps=watch.overlaps, looks=watch.looks)
-    gone = _deleted(database)
-    verdict.deleted = len(gone)
-    verdict.lost = sum(job_id not in found and job_id not in gone for job_id in record.accepted)
+    by_id = {job.id: job for job in _all_jobs(Registry(database))}
+    verdict = Verdict(jobs=len(by_id), faults=record.done, overlaps=watch.overlaps, looks=watch.looks)
+    deleted = _deleted(database)
+    verdict.deleted = len(deleted)
+    verdict.lost = sum(job_id not in by_id and job_id not in deleted for job_id in record.accepted)
     ensembles = Ensembles(database)
-    verdict.lost += sum(not ensembles.standing(one).ended for one in record.ensembles)
-    ends, submitted = _ends(database), Counter((job.label, job.case_sha256) for job in found.values())
-    for job in found.values():
+    verdict.lost += sum(not ensembles.standing(ensemble_id).ended for ensemble_id in record.ensembles)
+    ends, submitted = _ends(database), Counter((job.label, job.case_sha256) for job in by_id.values())
+    for job in by_id.values():
         verdict.lost += job.status not in ENDED
         verdict.duplicated += ends.get(job.id, 0) > 1 or submitted[job.label, job.case_sha256] > 1
         verdict.steps += job.reached.steps
@@ -87,13 +87,13 @@ def judge(record: Record, watch: Watch, settings: Settings, expected: Mapping[st
         if job.status is Status.SUCCESSFUL and job.dataset is not None:
             verdict.published += 1
             name = record.accepted.get(job.id)
-            made = digest(settings.datasets / job.dataset.file)
+            actual = digest(settings.datasets / job.dataset.file)
             reads = [read for read in record.reads if read.job == job.id]
             verdict.read_live += len(reads)
             verdict.not_as_read += sum(not read.is_of(settings.datasets / job.dataset.file) for read in reads)
-            verdict.not_identical += made not in ([expected[name]] if name else expected.values())
-    named = {job.dataset.file for job in found.values() if job.dataset}
-    verdict.left_over = len({path.name for path in settings.datasets.iterdir()} ^ named)
+            verdict.not_identical += actual not in ([expected[name]] if name else expected.values())
+    files = {job.dataset.file for job in by_id.values() if job.dataset}
+    verdict.left_over = len({path.name for path in settings.datasets.iterdir()} ^ files)
     verdict.miscounted = _miscounted(database)
     database.close()
     return verdict
@@ -112,11 +112,11 @@ def _explained(job: Job, record: Record) -> bool:
 
 def _all_jobs(registry: Registry) -> list[Job]:
     page = registry.page(200)
-    found = page.jobs
+    listed = page.jobs
     while page.next is not None:
         page = registry.page(200, Selection(after=page.next))
-        found += page.jobs
-    return found
+        listed += page.jobs
+    return listed
 
 
 def _deleted(database: Database) -> set[str]:

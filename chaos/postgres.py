@@ -23,9 +23,9 @@ OPTIONS: Mapping[str, str] = {"listen_addresses": "", "max_connections": "200", 
 
 def binaries() -> Path | None:
     """The directory of the newest initdb and postgres on this machine."""
-    found = sorted(Path("/usr/lib/postgresql").glob("*/bin/initdb"), key=lambda path: float(path.parts[-3]))
-    if found:
-        return found[-1].parent
+    installed = sorted(Path("/usr/lib/postgresql").glob("*/bin/initdb"), key=lambda path: float(path.parts[-3]))
+    if installed:
+        return installed[-1].parent
     on_path = shutil.which("initdb")
     return Path(on_path).resolve().parent if on_path else None
 
@@ -103,14 +103,14 @@ def postgres(disk: Callable[[Path], AbstractContextManager[object]] = nullcontex
 
     Raises FileNotFoundError where none is installed.
     """
-    found = binaries()
-    if found is None:
+    programs = binaries()
+    if programs is None:
         raise FileNotFoundError("no initdb: install PostgreSQL")
     # a socket's path must be short; and where another user runs it, TMPDIR may be closed to that user
     directory = Path(tempfile.mkdtemp(prefix="hockle-pg-", dir="/tmp" if os.geteuid() == 0 else None))
     try:
         with disk(directory):
-            server = Postgres(found, directory)
+            server = Postgres(programs, directory)
             try:
                 yield server
             finally:

@@ -26,11 +26,11 @@ class Read:
 
     def is_of(self, dataset: Path) -> bool:
         """Whether the dataset of the job has the same frames, to the bit."""
-        with open_dataset(dataset) as whole:
-            frames = np.searchsorted(whole.time, self.values["time"])
-            if frames.max(initial=-1) >= whole.sizes["time"]:
+        with open_dataset(dataset) as stored:
+            frames = np.searchsorted(stored.time, self.values["time"])
+            if frames.max(initial=-1) >= stored.sizes["time"]:
                 return False
-            same = {"time": whole.time[frames], "Tw": whole.Tw[frames], "r": whole.r[frames, ::STRIDE]}
+            same = {"time": stored.time[frames], "Tw": stored.Tw[frames], "r": stored.r[frames, ::STRIDE]}
             return all(np.array_equal(values, self.values[name], equal_nan=True) for name, values in same.items())
 
 
@@ -53,6 +53,6 @@ def _read(client: httpx.Client, job: str) -> list[Read]:
     answer = client.get(f"/v1/jobs/{job}/data?variables=Tw,r&s_stride={STRIDE}")
     if answer.status_code != 200 or answer.headers["job-status"] != "running":
         return []
-    told = answer.json()
-    arrays = {"time": told["coordinates"]["time"], **told["variables"]}
+    body = answer.json()
+    arrays = {"time": body["coordinates"]["time"], **body["variables"]}
     return [Read(job, {name: np.array(arrays[name]["values"], float) for name in ("time", "Tw", "r")})]

@@ -48,6 +48,6 @@ def _row(name: str, verdict: Verdict, seconds: str) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def _counts(what: str, counts: Counter[str]) -> list[str]:
+def _counts(title: str, counts: Counter[str]) -> list[str]:
     rows = [f"| {name} | {count} |" for name, count in counts.most_common()]
-    return [f"| {what} | n |", "| :--- | ---: |", *rows, ""]
+    return [f"| {title} | n |", "| :--- | ---: |", *rows, ""]

@@ -94,12 +94,12 @@ class Served:
 
     def below(self, pid: int) -> list[int]:
         """All processes that one has started, and those that they have."""
-        found = children(pid)
-        return found + [below for child in found for below in self.below(child)]
+        started = children(pid)
+        return started + [below for child in started for below in self.below(child)]
 
-    def _serves(self, process: subprocess.Popen[bytes], said: int) -> bool:
+    def _serves(self, process: subprocess.Popen[bytes], offset: int) -> bool:
         """Whether it comes to say so, beyond what was `said` before."""
-        wait_for(lambda: process.poll() is not None or b"serves at" in self.log.read_bytes()[said:])
+        wait_for(lambda: process.poll() is not None or b"serves at" in self.log.read_bytes()[offset:])
         return process.poll() is None
 
     def _services(self, words: str) -> list[int]:

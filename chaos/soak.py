@@ -66,7 +66,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m chaos.soak", description=__doc__)
     parser.add_argument("--minutes", type=float, default=60.0)
     parser.add_argument("--seed", type=int, default=1)
-    told = parser.parse_args()
+    arguments = parser.parse_args()
     code = provenance()
     os.environ |= ENVIRONMENT
     signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -74,44 +74,45 @@ def main() -> int:
         settings = Settings(data=Path(directory) / "data", lease=LEASE, checkpoint=CHECKPOINT, keep_bytes=KEEP,
                             log_bytes=LOG)  # fmt: skip
         settings.make_directories()
-        record, watch, served = Record(told.seed), Watch(settings), Served(settings, free_port())
-        database, known = Database(settings.database_url), cases()
-        submitter = Submitter(served, record, known)
-        target = Target(served, database, random.Random(told.seed), None, False, submitter.submit)  # no secret
+        record, watch, served = Record(arguments.seed), Watch(settings), Served(settings, free_port())
+        database, named_cases = Database(settings.database_url), cases()
+        submitter = Submitter(served, record, named_cases)
+        target = Target(served, database, random.Random(arguments.seed), None, False, submitter.submit)  # no secret
         served.start()
         began = time.monotonic()
         try:
             with watch.looking():
-                growth = _soak(target, record, 60.0 * told.minutes)
+                growth = _soak(target, record, 60.0 * arguments.minutes)
                 minutes = (time.monotonic() - began) / 60.0
                 record.all_ended = come_to_an_end(target)
-                wait_for(lambda: not _left(settings))
-                left = _left(settings)
+                wait_for(lambda: not _leftover(settings))
+                leftover = _leftover(settings)
         finally:
             served.stop()
             database.close()
-        verdict = judge(record, watch, settings, {name: undisturbed(case) for name, case in known.items()})
-    good = verdict.good and growth.flat and record.all_ended and not left
-    made_with = [*code, f"seed {told.seed}, {minutes:.0f} min"]
-    text = "\n".join(["# Soak", "", *(f"- {line}" for line in made_with), "", _told(record, verdict, growth, left), "",
-                      *growth.lines(), "", "good" if good else "BAD", ""])  # fmt: skip
+        verdict = judge(record, watch, settings, {name: undisturbed(case) for name, case in named_cases.items()})
+    good = verdict.good and growth.flat and record.all_ended and not leftover
+    made_with = [*code, f"seed {arguments.seed}, {minutes:.0f} min"]
+    text = "\n".join(["# Soak", "", *(f"- {line}" for line in made_with), "",
+                      _summary(record, verdict, growth, leftover), "", *growth.lines(), "",
+                      "good" if good else "BAD", ""])  # fmt: skip
     print(text)
     RESULTS.mkdir(exist_ok=True)
     (RESULTS / "soak.md").write_text(text, encoding="utf-8")
     return 0 if good else 1
 
 
-def _left(settings: Settings) -> list[str]:
+def _leftover(settings: Settings) -> list[str]:
     """Work directories and lock files of jobs."""
     locks = (path for path in settings.locks.glob("*.lock") if path.stem != "reconciler")
     return [path.name for path in (*settings.work.iterdir(), *locks)]
 
 
-def _told(record: Record, verdict: Verdict, growth: Growth, left: list[str]) -> str:
-    done, outcomes = (", ".join(f"{name} {count}" for name, count in counted.most_common())
-                      for counted in (record.faults, verdict.outcomes))  # fmt: skip
+def _summary(record: Record, verdict: Verdict, growth: Growth, left: list[str]) -> str:
+    faults, outcomes = (", ".join(f"{name} {count}" for name, count in counted.most_common())
+                        for counted in (record.faults, verdict.outcomes))  # fmt: skip
     return (f"{verdict.jobs} jobs ({outcomes}), {verdict.deleted} deleted, {verdict.published} datasets, "
-            f"{growth.requests} looks at a job, {verdict.faults} faults ({done}). Lost {verdict.lost}, ended twice "
+            f"{growth.requests} looks at a job, {verdict.faults} faults ({faults}). Lost {verdict.lost}, ended twice "
             f"{verdict.duplicated}, overlaps {verdict.overlaps}, differing {verdict.not_identical}, wrongly ended "
             f"{verdict.wrong_outcome}, stuck {'none' if record.all_ended else 'some'}, work directories and lock files "
             f"left {len(left)}, datasets {verdict.left_over}; {verdict.redone:.1%} of the steps redone.")  # fmt: skip
@@ -120,10 +121,10 @@ def _told(record: Record, verdict: Verdict, growth: Growth, left: list[str]) -> 
 def _soak(target: Target, record: Record, seconds: float) -> Growth:
     """Load and faults for so long, with a sample a minute."""
     growth, stopped = Growth(target.served), threading.Event()
-    others = [threading.Thread(target=keep_open, args=(target, OPEN, stopped)),
-              threading.Thread(target=_look, args=(target, record, growth, stopped)),
-              threading.Thread(target=_listen, args=(target, stopped))]  # fmt: skip
-    for thread in others:
+    threads = [threading.Thread(target=keep_open, args=(target, OPEN, stopped)),
+               threading.Thread(target=_look, args=(target, record, growth, stopped)),
+               threading.Thread(target=_listen, args=(target, stopped))]  # fmt: skip
+    for thread in threads:
         thread.start()
     end, due = time.monotonic() + seconds, time.monotonic()
     try:
@@ -141,7 +142,7 @@ def _soak(target: Target, record: Record, seconds: float) -> Growth:
         print("ended early", flush=True)
     finally:
         stopped.set()
-        for thread in (*others, *target.later):
+        for thread in (*threads, *target.later):
             thread.join()
     return growth
 

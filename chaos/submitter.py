@@ -44,7 +44,7 @@ class Submitter:
         if number % AMONG == ENSEMBLE and f"{name}{HALF}" in self._cases:
             self._submit_ensemble(name, body)
             return
-        starved, poisoned = (number % PERIOD == its for its in (STARVED, POISONED))
+        starved, poisoned = (number % PERIOD == remainder for remainder in (STARVED, POISONED))
         if starved:
             body |= {"case": GREEDY, "limits": {"memory": LEAST_MEMORY}}
         job_id = self._accepted("/v1/jobs", body)["id"]
@@ -55,23 +55,23 @@ class Submitter:
         self._record.accepted[job_id] = name
 
     def _submit_ensemble(self, name: str, body: dict[str, Any]) -> None:
-        ends = {self._cases[each]["t_end"]: each for each in (name, f"{name}{HALF}")}
+        ends = {self._cases[case]["t_end"]: case for case in (name, f"{name}{HALF}")}
         ensemble = self._accepted("/v1/ensembles", body | {"parameters": {"t_end": [*ends]}})
         self._record.ensembles.add(ensemble["id"])
-        for member in self._asked("GET", ensemble["links"]["members"])["members"]:
+        for member in self._ask("GET", ensemble["links"]["members"])["members"]:
             self._record.accepted[member["job"]] = ends[member["values"]["t_end"]]
 
     def _accepted(self, path: str, body: dict[str, Any]) -> dict[str, Any]:
         """Hand in until there is an answer: the key makes one of it, whatever became of answers before."""
-        return self._asked("POST", path, json=body, headers={"Idempotency-Key": body["label"]})
+        return self._ask("POST", path, json=body, headers={"Idempotency-Key": body["label"]})
 
-    def _asked(self, method: str, path: str, **more: Any) -> dict[str, Any]:
+    def _ask(self, method: str, path: str, **more: Any) -> dict[str, Any]:
         deadline = time.monotonic() + PATIENCE
         while time.monotonic() < deadline:
             with suppress(httpx.TransportError):
                 answer = httpx.request(method, f"{self._address}{path}", timeout=20.0, trust_env=False, **more)
                 if answer.is_success:
-                    found: dict[str, Any] = answer.json()
-                    return found
+                    body: dict[str, Any] = answer.json()
+                    return body
             time.sleep(0.1)
         raise TimeoutError(f"the API never answers {method} {path}")

@@ -24,20 +24,20 @@ class Watch:
         return repeated(EVERY, self._look)
 
     def _look(self) -> None:
-        holders = [job for pid in _holders() for job in self._held(pid)]
+        holders = [job for pid in _holders() for job in self._locked_by(pid)]
         self.looks += 1
         self.overlaps += len(holders) - len(set(holders))
 
-    def _held(self, pid: int) -> set[str]:
+    def _locked_by(self, pid: int) -> set[str]:
         """The jobs whose lock a process holds."""
-        held: set[str] = set()
+        jobs: set[str] = set()
         for descriptor in _descriptors(pid):
             with suppress(OSError):
                 name = str(Path(f"/proc/{pid}/fd/{descriptor}").readlink()).removesuffix(" (deleted)")
                 locked = "FLOCK" in Path(f"/proc/{pid}/fdinfo/{descriptor}").read_text()
                 if locked and name.startswith(self._locks) and name.endswith(".lock"):
-                    held.add(name)
-        return held
+                    jobs.add(name)
+        return jobs
 
 
 def _holders() -> set[int]:

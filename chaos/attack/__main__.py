@@ -39,20 +39,20 @@ def main() -> int:
     parser.add_argument("--clients", type=int, default=200, help="honest clients beside them")
     parser.add_argument("--seconds", type=float, default=400.0, help="of CPU for which each parser is tried")
     parser.add_argument("--minutes", type=float, default=180.0, help="for jobs and parsers at the most")
-    told = parser.parse_args()
+    arguments = parser.parse_args()
     stop_on_signals()  # and clean up then
     os.environ |= ENVIRONMENT
-    command = f"seed {told.seed}: `python -m chaos.attack " + " ".join(
-        f"--{name} {value:g}" for name, value in vars(told).items()) + "`"  # fmt: skip
+    command = f"seed {arguments.seed}: `python -m chaos.attack " + " ".join(
+        f"--{name} {value:g}" for name, value in vars(arguments).items()) + "`"  # fmt: skip
     print(command, flush=True)
     made_with = [*provenance(), command]
     rows: list[Row] = []
     with serving() as (port, job_id):
-        rows += slowloris(port, job_id, told.slow, told.clients, 30.0)
+        rows += slowloris(port, job_id, arguments.slow, arguments.clients, 30.0)
         rows += odd_requests(port)
     with ProcessPoolExecutor(1, get_context("spawn")) as beside:
-        tried = beside.submit(patient_parsers, told.seed, told.seconds, told.minutes)
-        rows += disturbed(told.seed, told.jobs, told.minutes)
+        tried = beside.submit(patient_parsers, arguments.seed, arguments.seconds, arguments.minutes)
+        rows += disturbed(arguments.seed, arguments.jobs, arguments.minutes)
         rows += tried.result()
     print(text(made_with, rows))
     keep(made_with, rows)

@@ -57,21 +57,21 @@ def slowloris(port: int, job_id: str, slow: int, clients: int, seconds: float) -
 
 async def _slowloris(port: int, job_id: str, slow: int, clients: int, seconds: float) -> list[Row]:
     alone = await _honest(port, job_id, clients, seconds / 3)
-    made, stopped = await _open(port, slow), asyncio.Event()
-    dripping = asyncio.create_task(_drip(made, stopped))
+    connections, stopped = await _open(port, slow), asyncio.Event()
+    dripping = asyncio.create_task(_drip(connections, stopped))
     besieged = await _honest(port, job_id, clients, seconds)
     await asyncio.sleep(2 * DRIP)
-    left = sum(one.open for one in made)
+    still_open = sum(connection.open for connection in connections)
     stopped.set()
     await dripping
-    for one in made:
-        one.close()
+    for connection in connections:
+        connection.close()
     p99, before = _p99(besieged), _p99(alone)
     return [
         Row(f"{slow} slow connections, {clients} honest clients",
             f"p99 of status {p99 * 1e3:.1f} ms (alone {before * 1e3:.1f} ms), {len(besieged)} answers",
             f"p99 <= {HONEST * 1e3:.0f} ms", p99 <= HONEST),
-        Row(f"the same connections after {seconds:.0f} s", f"{left} still open", "0", left == 0),
+        Row(f"the same connections after {seconds:.0f} s", f"{still_open} still open", "0", still_open == 0),
     ]  # fmt: skip
 
 
@@ -85,21 +85,21 @@ async def _honest(port: int, job_id: str, clients: int, seconds: float) -> list[
 
 
 async def _open(port: int, many: int) -> list[Slow]:
-    made: list[Slow] = []
+    opened: list[Slow] = []
     loop = asyncio.get_running_loop()
-    while len(made) < many:
-        few = [Slow(drips=(len(made) + number) % 2 == 0) for number in range(min(AT_ONCE, many - len(made)))]
-        made += few
+    while len(opened) < many:
+        few = [Slow(drips=(len(opened) + number) % 2 == 0) for number in range(min(AT_ONCE, many - len(opened)))]
+        opened += few
         with suppress(OSError):
-            await asyncio.gather(*(loop.create_connection(lambda one=one: one, "127.0.0.1", port)  # type: ignore[misc]
-                                   for one in few))  # fmt: skip
-    return made
+            await asyncio.gather(*(loop.create_connection(lambda slow=slow: slow, "127.0.0.1", port)  # type: ignore[misc]
+                                   for slow in few))  # fmt: skip
+    return opened
 
 
-async def _drip(made: Sequence[Slow], stopped: asyncio.Event) -> None:
+async def _drip(connections: Sequence[Slow], stopped: asyncio.Event) -> None:
     while not stopped.is_set():
-        for one in made:
-            one.drip()
+        for connection in connections:
+            connection.drip()
         with suppress(TimeoutError):
             await asyncio.wait_for(stopped.wait(), DRIP)
 

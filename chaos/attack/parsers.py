@@ -45,24 +45,25 @@ def _setting(part: tuple[str, str]) -> object:
 
 
 PARSERS: dict[str, tuple[Callable[[Any], object], Any, tuple[type[Exception], ...]]] = {
-    "body of a request": (parse, st.binary(max_size=400) | JSON.map(lambda told: repr(told).encode()), (Problem,)),
+    "body of a request": (parse, st.binary(max_size=400) | JSON.map(lambda value: repr(value).encode()), (Problem,)),
     "case": (parse_case, JSON, (CaseError,)),
     "field of a case": (_case, st.tuples(st.sampled_from(KEYS) | TEXT, JSON, st.sampled_from(CASES)), (CaseError,)),
-    "Authorization header": (lambda told: authenticate(told, lambda _: None, True, 0.0), TEXT | st.none(), (Refused,)),
-    "Range header": (lambda told: DatasetFile._parse_range_header(told, 1000), TEXT | TEXT.map("bytes={}".format),
+    "Authorization header": (lambda header: authenticate(header, lambda _: None, True, 0.0), TEXT | st.none(),
+                             (Refused,)),
+    "Range header": (lambda header: DatasetFile._parse_range_header(header, 1000), TEXT | TEXT.map("bytes={}".format),
                      (Problem,)),
     "Prefer header": (wait_preferred, TEXT | TEXT.map("wait={}".format), ()),
-    "Host header": (lambda told: _name_in(f"//{told}"), TEXT, ()),
+    "Host header": (lambda header: _name_in(f"//{header}"), TEXT, ()),
     "address of a webhook": (fault_of, TEXT | TEXT.map("http://{}/".format), ()),
     "setting": (_setting, st.tuples(st.sampled_from(SETTINGS), TEXT), (ValueError,)),
 }  # fmt: skip
-"""What reads, what it is given, and by what it says no."""
+"""The parser, its texts, and the exceptions by which it refuses them."""
 
 
 def parsers(first_seed: int, seconds: float, minutes: float) -> list[Row]:
     """Try each for so many seconds of CPU time, in so many minutes in all; the seeds go on from the first."""
-    each = 60.0 * minutes / len(PARSERS)
-    return [_row(name, first_seed, seconds, each) for name in PARSERS]
+    within = 60.0 * minutes / len(PARSERS)
+    return [_row(name, first_seed, seconds, within) for name in PARSERS]
 
 
 def patient_parsers(first_seed: int, seconds: float, minutes: float) -> list[Row]:
@@ -76,19 +77,19 @@ def _row(name: str, first_seed: int, seconds: float, within: float) -> Row:
     began, number, tried, fault = time.process_time(), first_seed, 0, ""
     end = time.monotonic() + within
 
-    def one(told: Any) -> None:
+    def try_text(text: Any) -> None:
         nonlocal tried
         tried += 1
         with suppress(*refusals):
-            read(told)
+            read(text)
 
     bounds = settings(max_examples=AT_ONCE, deadline=None, database=None, phases=[Phase.generate, Phase.shrink],
                       suppress_health_check=list(HealthCheck))  # fmt: skip
     while not fault and time.process_time() - began < seconds and time.monotonic() < end:
         try:
-            seed(number)(bounds(given(strategy)(one)))()  # type: ignore[no-untyped-call]
+            seed(number)(bounds(given(strategy)(try_text)))()  # type: ignore[no-untyped-call]
         except Exception as error:  # whatever it is, it was not promised
             fault = f"seed {number}: {type(error).__name__}: {str(error)[:200]}".replace("\n", " ").replace("|", "/")
         number += 1
-    told = f"{tried:,} texts, seeds {first_seed} to {number - 1}, {time.process_time() - began:.0f} s of CPU"
-    return Row(f"parser: {name}", fault or told, "yes, or the no that is promised", not fault)
+    text = f"{tried:,} texts, seeds {first_seed} to {number - 1}, {time.process_time() - began:.0f} s of CPU"
+    return Row(f"parser: {name}", fault or text, "yes, or the no that is promised", not fault)

@@ -45,8 +45,8 @@ CASES = ("short-loop", "free-flight")
 
 def disturbed(seed: int, count: int, minutes: float) -> list[Row]:
     """Disturb the service until so many jobs were accepted or so many minutes are over; then all must end, and soon."""
-    known = {name: case for name, case in cases().items() if name in CASES}
-    expected = {name: undisturbed(case) for name, case in known.items()}
+    named_cases = {name: case for name, case in cases().items() if name in CASES}
+    expected = {name: undisturbed(case) for name, case in named_cases.items()}
     with (
         tempfile.TemporaryDirectory(prefix="hockle-attack-", ignore_cleanup_errors=True) as directory,
         environment("sqlite", Path(directory) / "data", ROOM) as (settings, server, small),
@@ -54,7 +54,7 @@ def disturbed(seed: int, count: int, minutes: float) -> list[Row]:
         record, watch, served = Record(seed), Watch(settings), Served(settings, free_port())
         served.clock.write_text("0")
         database = Database(settings.database_url)
-        submitter = Submitter(served, record, known)
+        submitter = Submitter(served, record, named_cases)
         target = Target(served, database, random.Random(seed), server, small, submitter.submit)  # no secret
         served.start()
         try:

@@ -21,8 +21,8 @@ HEAD = b"GET /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1\r\n"
 
 
 def _posted(body: bytes) -> bytes:
-    told = f"POST /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}"
-    return told.encode() + b"\r\n\r\n" + body
+    head = f"POST /v1/jobs HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\nContent-Length: {len(body)}"
+    return head.encode() + b"\r\n\r\n" + body
 
 
 def _chunked(rest: bytes) -> bytes:
@@ -59,29 +59,29 @@ ODD: dict[str, tuple[bytes, tuple[int, ...]]] = {
 
 def odd_requests(port: int) -> list[Row]:
     """Send each, and see who else waits for how long meanwhile."""
-    return [_row(port, what, text, right) for what, (text, right) in ODD.items()]
+    return [_row(port, name, request, right) for name, (request, right) in ODD.items()]
 
 
-def _row(port: int, what: str, sent: bytes, right: tuple[int, ...]) -> Row:
+def _row(port: int, name: str, request: bytes, right: tuple[int, ...]) -> Row:
     over, longest = threading.Event(), [0.0]
-    other = threading.Thread(target=_ask_on, args=(port, over, longest))
-    other.start()
+    bystander = threading.Thread(target=_ask_on, args=(port, over, longest))
+    bystander.start()
     began = time.perf_counter()
-    status = _sent(port, sent)
+    status = _status_of(port, request)
     took = time.perf_counter() - began
     over.set()
-    other.join()
+    bystander.join()
     answer = str(status) if status else "hung up"
     good = (status in right or status == 0) and took <= SOON and longest[0] <= MEANWHILE
-    return Row(what, f"{answer} after {took:.2f} s, others wait {longest[0] * 1e3:.0f} ms",
+    return Row(name, f"{answer} after {took:.2f} s, others wait {longest[0] * 1e3:.0f} ms",
                f"{' or '.join(map(str, right))}, or hung up on; others <= {MEANWHILE * 1e3:.0f} ms", good)  # fmt: skip
 
 
-def _sent(port: int, text: bytes) -> int:
+def _status_of(port: int, request: bytes) -> int:
     """The status of the answer, 0 for none. An answer may come before all is sent."""
     with socket.create_connection(("127.0.0.1", port), timeout=SOON) as connection:
         with suppress(OSError):
-            connection.sendall(text)
+            connection.sendall(request)
         with suppress(OSError):
             answer = connection.recv(64)
             if answer.startswith(b"HTTP/1.1 "):

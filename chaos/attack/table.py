@@ -19,14 +19,14 @@ class Row:
     good: bool
 
 
-def text(told: Sequence[str], rows: Sequence[Row]) -> str:
+def text(made_with: Sequence[str], rows: Sequence[Row]) -> str:
     """The table, in Markdown, with what it was made with."""
-    lines = ["# Attacks", "", *(f"- {line}" for line in told), "",
+    lines = ["# Attacks", "", *(f"- {line}" for line in made_with), "",
              "| attack | seen | must be |  |", "| :--- | :--- | :--- | :--- |"]
     lines += [f"| {row.what} | {row.seen} | {row.must} | {'good' if row.good else 'BAD'} |" for row in rows]
     return "\n".join([*lines, ""])
 
 
-def keep(told: Sequence[str], rows: Sequence[Row]) -> None:
+def keep(made_with: Sequence[str], rows: Sequence[Row]) -> None:
     """Write the table into the results."""
-    RESULT.write_text(text(told, rows), encoding="utf-8")
+    RESULT.write_text(text(made_with, rows), encoding="utf-8")

@@ -31,12 +31,12 @@ def stall_broker(target: Target) -> bool:
     return True
 
 
-def _with_broker(target: Target, what: Callable[[redis.Redis], object]) -> bool:
+def _with_broker(target: Target, command: Callable[[redis.Redis], object]) -> bool:
     client = target.served.redis()
     if client is None:
         return False
     with suppress(redis.RedisError, OSError):
-        what(client)
+        command(client)
         return True
     return False
 
@@ -74,9 +74,9 @@ def double_messages(target: Target) -> bool:
 
 def delay_message(target: Target) -> bool:
     """A message comes seconds late."""
-    taken: list[Any] = []
-    _with_broker(target, lambda client: taken.append(client.rpop(QUEUE)))
-    if taken in ([], [None]):
+    messages: list[Any] = []
+    _with_broker(target, lambda client: messages.append(client.rpop(QUEUE)))
+    if messages in ([], [None]):
         return False
-    target.in_a_while(2.0, lambda: _with_broker(target, lambda client: client.lpush(QUEUE, *taken)))
+    target.in_a_while(2.0, lambda: _with_broker(target, lambda client: client.lpush(QUEUE, *messages)))
     return True

@@ -60,10 +60,10 @@ def cancel_job(target: Target) -> bool:
     """A job is cancelled, whatever its state."""
     query = select(jobs.c.id).where(jobs.c.status.in_([Status.ACCEPTED, Status.RUNNING]))
     with target.database.reading() as connection:
-        found = list(connection.scalars(query))
-    if not found:
+        open_jobs = list(connection.scalars(query))
+    if not open_jobs:
         return False
-    Registry(target.database).cancel(target.random.choice(found))
+    Registry(target.database).cancel(target.random.choice(open_jobs))
     return True
 
 

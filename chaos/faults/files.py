@@ -19,11 +19,11 @@ def tear_checkpoint(target: Target) -> bool:
     picked = target.pick()
     if picked is None:
         return False
-    found = sorted((target.served.settings.work / picked[0]).glob("checkpoint-*"))
-    if not found or not send(picked[1], signal.SIGKILL):
+    checkpoints = sorted((target.served.settings.work / picked[0]).glob("checkpoint-*"))
+    if not checkpoints or not send(picked[1], signal.SIGKILL):
         return False
     with suppress(OSError):
-        os.truncate(found[-1], target.random.randrange(found[-1].stat().st_size))
+        os.truncate(checkpoints[-1], target.random.randrange(checkpoints[-1].stat().st_size))
         return True
     return False
 

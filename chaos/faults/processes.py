@@ -27,8 +27,8 @@ def kill_worker(target: Target) -> bool:
 
 def kill_api(target: Target) -> bool:
     """kill -9 of one of the API's processes, whatever it does."""
-    found = target.served.apis()
-    return bool(found) and send(target.random.choice(found), signal.SIGKILL)
+    apis = target.served.apis()
+    return bool(apis) and send(target.random.choice(apis), signal.SIGKILL)
 
 
 def kill_api_before_commit(target: Target) -> bool:
@@ -94,8 +94,8 @@ def stop_worker_past_its_lease(target: Target) -> bool:
 
 def stop_api_past_its_lease(target: Target) -> bool:
     """The same of one of the API's processes, which may be the one that leads."""
-    found = target.served.apis()
-    if not found or not send(pid := target.random.choice(found), signal.SIGSTOP):
+    apis = target.served.apis()
+    if not apis or not send(pid := target.random.choice(apis), signal.SIGSTOP):
         return False
     target.in_a_while(target.lease * target.random.uniform(1.2, 2.0), lambda: send(pid, signal.SIGCONT))
     return True

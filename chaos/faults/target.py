@@ -43,18 +43,18 @@ class Target:
         """The jobs that run, and the processes that run them."""
         query = select(jobs.c.id, jobs.c.worker).where(jobs.c.status == Status.RUNNING)
         with self.database.reading() as connection:
-            found = [(row.id, int(row.worker.rsplit(":", 1)[1])) for row in connection.execute(query)]
+            claims = [(row.id, int(row.worker.rsplit(":", 1)[1])) for row in connection.execute(query)]
         alive = set(self.served.children())
-        return [(job_id, pid) for job_id, pid in found if pid in alive]
+        return [(job_id, pid) for job_id, pid in claims if pid in alive]
 
     def pick(self) -> tuple[str, int] | None:
         """One of those."""
-        found = self.running()
-        return self.random.choice(found) if found else None
+        running = self.running()
+        return self.random.choice(running) if running else None
 
-    def in_a_while(self, seconds: float, what: Callable[[], object]) -> None:
+    def in_a_while(self, seconds: float, action: Callable[[], object]) -> None:
         """Do something later, while other faults are done."""
-        timer = threading.Timer(seconds, what)
+        timer = threading.Timer(seconds, action)
         timer.start()
         self.later.append(timer)
 

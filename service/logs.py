@@ -11,18 +11,18 @@ from datetime import UTC, datetime
 from typing import Any
 
 USUAL = frozenset(vars(logging.makeLogRecord({}))) | {"message", "asctime", "taskName", "color_message"}
-_told: dict[str, Any] = {}
+_context: dict[str, Any] = {}
 
 
 @contextmanager
-def about(**told: Any) -> Iterator[None]:
-    """Have every line that this process writes while the block runs tell this too: a worker has one job at a time."""
-    _told.update(told)
+def about(**fields: Any) -> Iterator[None]:
+    """Add these fields to every line that this process writes while the block runs: a worker has one job at a time."""
+    _context.update(fields)
     try:
         yield
     finally:
-        for name in told:
-            _told.pop(name, None)
+        for name in fields:
+            _context.pop(name, None)
 
 
 class Json(logging.Formatter):
@@ -30,12 +30,12 @@ class Json(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         """One line."""
-        told = {"time": datetime.fromtimestamp(record.created, UTC).isoformat(), "level": record.levelname.lower(),
-                "logger": record.name, "message": record.getMessage(), **_told}  # fmt: skip
-        told |= {name: value for name, value in vars(record).items() if name not in USUAL}
+        entry = {"time": datetime.fromtimestamp(record.created, UTC).isoformat(), "level": record.levelname.lower(),
+                 "logger": record.name, "message": record.getMessage(), **_context}  # fmt: skip
+        entry |= {name: value for name, value in vars(record).items() if name not in USUAL}
         if record.exc_info:
-            told["exception"] = self.formatException(record.exc_info)
-        return json.dumps(told, default=str)
+            entry["exception"] = self.formatException(record.exc_info)
+        return json.dumps(entry, default=str)
 
 
 def write_json(level: int = logging.INFO) -> None:

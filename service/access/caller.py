@@ -51,10 +51,10 @@ def authenticate(authorization: str | None, find: Callable[[str], ApiKey | None]
             raise Refused("an API key is required: send Authorization: Bearer hk_...")
         return LOCAL
     scheme, _, text = authorization.partition(" ")
-    told = split(text.strip())
-    if scheme.lower() != "bearer" or told is None:
+    parts = split(text.strip())
+    if scheme.lower() != "bearer" or parts is None:
         raise Refused("this is no API key: send Authorization: Bearer hk_..., as hockle keys create prints it")
-    prefix, secret = told
+    prefix, secret = parts
     key = find(prefix)
     if not (key or NOBODY).opens(secret, now) or key is None:
         raise Refused("this API key is not good: it is unknown, expired or revoked")

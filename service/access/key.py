@@ -69,8 +69,8 @@ class NewKey:
 
 def split(text: str) -> tuple[str, str] | None:
     """Prefix and secret of a key's text; None if it is not one."""
-    found = SPELLING.fullmatch(text)
-    return (found[1], found[2]) if found else None
+    match = SPELLING.fullmatch(text)
+    return (match[1], match[2]) if match else None
 
 
 def sha256(secret: str) -> str:

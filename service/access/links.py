@@ -65,12 +65,12 @@ class LinkStore:
     def revoke(self, job_id: str, link_id: str, actor: Actor) -> bool:
         """Make a link useless from now on; whether the job has such a link."""
         with self._database.writing() as transaction:
-            this = (links.c.job_id == job_id, links.c.id == link_id)
-            good = update(links).where(*this, links.c.revoked.is_(None)).values(revoked=transaction.now)
+            conditions = (links.c.job_id == job_id, links.c.id == link_id)
+            good = update(links).where(*conditions, links.c.revoked.is_(None)).values(revoked=transaction.now)
             if transaction.connection.execute(good).rowcount:
                 note(transaction, actor, "link_revoked", job_id)
                 return True
-            return transaction.connection.execute(select(links.c.id).where(*this)).first() is not None
+            return transaction.connection.execute(select(links.c.id).where(*conditions)).first() is not None
 
 
 def _link(row: Mapping[Any, Any]) -> Link:

@@ -54,8 +54,8 @@ class KeyStore:
     def revoke(self, prefix: str) -> None:
         """Make a key useless from now on. Raises UnknownKey."""
         with self._database.writing() as transaction:
-            this = update(api_keys).where(api_keys.c.prefix == prefix, api_keys.c.revoked.is_(None))
-            if transaction.connection.execute(this.values(revoked=transaction.now)).rowcount:
+            statement = update(api_keys).where(api_keys.c.prefix == prefix, api_keys.c.revoked.is_(None))
+            if transaction.connection.execute(statement.values(revoked=transaction.now)).rowcount:
                 note(transaction, CONSOLE, "key_revoked", prefix)
                 return
         if self.find(prefix) is None:

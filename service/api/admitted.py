@@ -20,7 +20,7 @@ class Admitted:
 
     def __init__(self, keys: KeyStore) -> None:
         self._keys = keys
-        self._seen: dict[str, tuple[float, bool]] = {}
+        self._checks: dict[str, tuple[float, bool]] = {}
         """When each key was looked at (time.monotonic), and whether it was good."""
 
     async def while_good(self, caller: Caller, stream: AsyncGenerator[str, None]) -> AsyncIterator[str]:
@@ -31,11 +31,11 @@ class Admitted:
                 step = step or asyncio.ensure_future(anext(stream, None))
                 await asyncio.wait({step}, timeout=LOOK)
                 if step.done():
-                    told = step.result()
-                    if told is None:
+                    event = step.result()
+                    if event is None:
                         return
                     step = None
-                    yield told
+                    yield event
         finally:
             if step is not None:
                 step.cancel()
@@ -46,12 +46,12 @@ class Admitted:
     async def _good(self, prefix: str) -> bool:
         if not prefix:
             return True
-        seen, good = self._seen.get(prefix, (0.0, True))
-        if time.monotonic() - seen < LOOK:
+        checked, good = self._checks.get(prefix, (0.0, True))
+        if time.monotonic() - checked < LOOK:
             return good
         with suppress(SQLAlchemyError):  # while the database is away nobody knows
             key = await asyncio.to_thread(self._keys.find, prefix)
             good = key is not None and key.is_good(time.time())
-        self._seen = {one: told for one, told in self._seen.items() if time.monotonic() - told[0] < LOOK}
-        self._seen[prefix] = time.monotonic(), good
+        self._checks = {key: check for key, check in self._checks.items() if time.monotonic() - check[0] < LOOK}
+        self._checks[prefix] = time.monotonic(), good
         return good

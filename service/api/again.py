@@ -29,15 +29,15 @@ class Again:
     def of(cls, body: dict[str, Any], jobs: Registry) -> Again:
         """Raises CaseError, UnknownJob, DeletedJob."""
         try:
-            asked = JobRequest.model_validate(body)
+            request = JobRequest.model_validate(body)
         except ValidationError as error:
             raise suggested(CaseError.of(error), JobRequest) from None
-        if asked.job is None or asked.case is not None:
-            raise CaseError([FieldError("/job", asked.job, "must name a job, and stand instead of case")])
-        case = jobs.case(jobs.get(asked.job).id)
-        told = {**body, "case": case if asked.fork is None else asked.fork.applied(case)}
-        return cls({name: value for name, value in told.items() if name not in ("job", "fork")}, asked.job, case,
-                   None if asked.fork is None else asked.fork.at)
+        if request.job is None or request.case is not None:
+            raise CaseError([FieldError("/job", request.job, "must name a job, and stand instead of case")])
+        case = jobs.case(jobs.get(request.job).id)
+        merged = {**body, "case": case if request.fork is None else request.fork.applied(case)}
+        return cls({name: value for name, value in merged.items() if name not in ("job", "fork")}, request.job, case,
+                   None if request.fork is None else request.fork.at)
 
     def check(self, spec: CaseSpec) -> None:
         """Raises CaseError for a fork that comes after the end."""

@@ -12,7 +12,7 @@ from fastapi import Request
 
 from service.api.problems import Problem
 
-Made = TypeVar("Made")
+Result = TypeVar("Result")
 LARGEST_BODY = 1_000_000
 SMALL_BODY = 10_000
 """Bytes that are understood within a few milliseconds."""
@@ -26,14 +26,14 @@ async def json_object(request: Request) -> dict[str, Any]:
     if media_type != "application/json":
         raise Problem(415, "not_json", f"Content-Type must be application/json, got {media_type!r}")
     body = await _read(request)
-    told = await at_leisure(len(body), parse, body)
+    value = await at_leisure(len(body), parse, body)
     request.state.body_size = len(body)
-    if not isinstance(told, dict):
-        raise Problem(400, "not_an_object", f"the body must be a JSON object, got a {type(told).__name__}")
-    return told
+    if not isinstance(value, dict):
+        raise Problem(400, "not_an_object", f"the body must be a JSON object, got a {type(value).__name__}")
+    return value
 
 
-async def at_leisure(size: int, work: Callable[..., Made], *parameters: Any) -> Made:
+async def at_leisure(size: int, work: Callable[..., Result], *parameters: Any) -> Result:
     """What `work` makes of a body of `size` bytes: at once if it is small, else in a thread, so that others are
     answered meanwhile."""
     return work(*parameters) if size <= SMALL_BODY else await asyncio.to_thread(work, *parameters)
@@ -42,15 +42,15 @@ async def at_leisure(size: int, work: Callable[..., Made], *parameters: Any) -> 
 def parse(body: bytes) -> Any:
     """The value of strict JSON text. Raises Problem 400."""
     try:
-        told = json.loads(body.decode(), parse_constant=_refuse, parse_float=_finite,
-                          object_pairs_hook=_without_doubles)
+        value = json.loads(body.decode(), parse_constant=_refuse, parse_float=_finite,
+                           object_pairs_hook=_without_doubles)
         if b"\\u" in body:
-            json.dumps(told, ensure_ascii=False).encode()  # half a surrogate pair is not text
+            json.dumps(value, ensure_ascii=False).encode()  # half a surrogate pair is not text
     except RecursionError:
         raise Problem(400, "malformed_json", "the body is nested too deeply") from None
     except ValueError as error:  # of the text, of the JSON, of a number with too many digits
         raise Problem(400, "malformed_json", f"the body is not strict JSON: {error}"[:300]) from None
-    return told
+    return value
 
 
 async def _read(request: Request) -> bytes:
@@ -75,9 +75,9 @@ def _finite(text: str) -> float:
 def _without_doubles(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(pairs) > MOST_MEMBERS:
         raise ValueError(f"an object must have at most {MOST_MEMBERS} members, got {len(pairs)}")
-    told: dict[str, Any] = {}
+    members: dict[str, Any] = {}
     for key, value in pairs:
-        if key in told:
+        if key in members:
             raise ValueError(f"the key {key!r} stands twice in one object")
-        told[key] = value
-    return told
+        members[key] = value
+    return members

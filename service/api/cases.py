@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from service.api.description import CASE_BODY, problems
 from service.api.parts import InParts, Reader, Submitter
 from service.api.problems import Problem
-from service.api.requests import SHIPPED, InWanted
+from service.api.requests import SHIPPED, InRequest
 from service.cases import build_scene, case_schema, check_cost, estimate, load_case, shipped_cases, warnings_of
 
 router = APIRouter(prefix="/v1", tags=["cases"])
@@ -43,12 +43,12 @@ class Verdict(BaseModel):
 
 
 @router.post("/validate", openapi_extra=CASE_BODY, responses=problems(400, 413, 415, 422))
-def validate(_: Submitter, wanted: InWanted, parts: InParts) -> Verdict:
+def validate(_: Submitter, parsed: InRequest, parts: InParts) -> Verdict:
     """The case as understood, its `cost` (nodes, frames, steps, seconds, bytes) and `warnings`. Nothing is run."""
-    check_cost(wanted.spec, parts.settings.longest_run)
-    wanted.request.limits.within(parts.settings.limits)
-    warnings = [WarningDocument(**vars(warning)) for warning in warnings_of(wanted.spec, build_scene(wanted.spec))]
-    return Verdict(case=wanted.spec.document(), cost=CostDocument(**vars(estimate(wanted.spec))), warnings=warnings)
+    check_cost(parsed.spec, parts.settings.longest_run)
+    parsed.request.limits.within(parts.settings.limits)
+    warnings = [WarningDocument(**vars(warning)) for warning in warnings_of(parsed.spec, build_scene(parsed.spec))]
+    return Verdict(case=parsed.spec.document(), cost=CostDocument(**vars(estimate(parsed.spec))), warnings=warnings)
 
 
 @router.get("/cases")

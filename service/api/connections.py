@@ -42,8 +42,8 @@ def bounds_here() -> Bounds:
     """The bounds by the descriptors that this process may have, of which it takes as many as are useful: two for each
     connection, whose answer may be a file."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = 2 * MOST_CONNECTIONS + KEPT_BACK
-    soft = max(soft, wanted if hard == resource.RLIM_INFINITY else min(hard, wanted))
+    descriptors = 2 * MOST_CONNECTIONS + KEPT_BACK
+    soft = max(soft, descriptors if hard == resource.RLIM_INFINITY else min(hard, descriptors))
     resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
     connections = max(min((soft - KEPT_BACK) // 2, MOST_CONNECTIONS), soft // 4)
     return Bounds(connections=connections, per_address=max(connections // 2, 1))
@@ -158,14 +158,14 @@ class _Bounded(HttpToolsProtocol):
         if self._reader is not None:
             self._reader.cancel()
 
-    def _be_read(self, left: int) -> None:
+    def _be_read(self, unread: int) -> None:
         """Some of the bytes that are left must have been read in a while."""
-        self._reader = self.loop.call_later(self.bounds.read_within, self._was_read, left)
+        self._reader = self.loop.call_later(self.bounds.read_within, self._was_read, unread)
 
     def _was_read(self, before: int) -> None:
-        left = self.transport.get_write_buffer_size()
-        if left < before:
-            self._be_read(left)
+        unread = self.transport.get_write_buffer_size()
+        if unread < before:
+            self._be_read(unread)
         else:
             self._hang_up()
 

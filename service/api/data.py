@@ -8,9 +8,9 @@ from typing import Annotated, TypeVar
 
 from fastapi import APIRouter, Query, Response
 
-from service.api.datasets import dataset_of, not_finished, there
+from service.api.datasets import available, dataset_of, not_finished
 from service.api.description import problems
-from service.api.formats import CONTENT, Accept, VariablesInRanges, format_of, given, readable
+from service.api.formats import CONTENT, Accept, VariablesInRanges, format_of, readable, response_of
 from service.api.parts import InParts, Jobs, Parts
 from service.jobs import ENDED, Job, Registry
 from service.results import subset
@@ -23,19 +23,19 @@ router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
 
 @router.get("/data", response_class=Response, responses={**CONTENT, **problems(404, 409, 422, 503)})
-def data(job_id: str, part: Annotated[VariablesInRanges, Query()], parts: InParts, jobs: Jobs,
+def data(job_id: str, query: Annotated[VariablesInRanges, Query()], parts: InParts, jobs: Jobs,
          accept: Accept = None) -> Response:
     """Some variables over a range of time and arclength, as JSON, CSV, NetCDF or Arrow; of a job that still runs the
     frames so far, with the bits that its dataset will have. The header `Job-Status` says which of the two it was."""
-    _, form = format_of(part.format, accept)
+    _, form = format_of(query.format, accept)
 
     def read(source: Source) -> Part:
-        return subset(source, part.names, part.ranges, form.limit, form.table)
+        return subset(source, query.names, query.ranges, form.limit, form.table)
 
-    job, found = part_of(job_id, jobs, parts, read)
-    told = {"job": job.id, "status": job.status.value, "title": job.title}
+    job, part = part_of(job_id, jobs, parts, read)
+    attributes = {"job": job.id, "status": job.status.value, "title": job.title}
     fresh = {"Job-Status": job.status.value} | ({} if job.status in ENDED else {"Cache-Control": "no-store"})
-    return given(replace(found, attributes=told), form, fresh)
+    return response_of(replace(part, attributes=attributes), form, fresh)
 
 
 def part_of(job_id: str, jobs: Registry, parts: Parts, read: Callable[[Source], T]) -> tuple[Job, T]:
@@ -53,7 +53,7 @@ def part_of(job_id: str, jobs: Registry, parts: Parts, read: Callable[[Source], 
     if job.dataset is None and job.status not in ENDED:
         raise not_finished(job, "its first frames are not there yet")
     published = dataset_of(job, parts)
-    with there(job, parts):
+    with available(job, parts):
         path = parts.datasets.file(published.file, published.bytes, published.sha256)
-    with there(job, parts), readable(), opened(path) as source:
+    with available(job, parts), readable(), opened(path) as source:
         return job, read(source)

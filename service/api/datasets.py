@@ -61,7 +61,7 @@ def whole(job: Job, request: Request, parts: Parts) -> Response:
     if matches(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     headers["Content-Disposition"] = f'attachment; filename="{job.id}.nc"'
-    with there(job, parts):
+    with available(job, parts):
         place = parts.datasets.find(published.file)
         if isinstance(place, Bucket):
             return _object(place, published, request, headers)
@@ -90,7 +90,7 @@ def _one_range(request: Request, etag: str, size: int) -> tuple[int, int] | None
 
 def dataset_of(job: Job, parts: Parts) -> Dataset:
     """What the job has published, and is still good. Raises Problem 404, 409 or 503."""
-    with there(job, parts):
+    with available(job, parts):
         published = look(parts.registry.database, parts.datasets, job)
     if published is not None and published.fault:
         raise _lost(job, published.fault)
@@ -101,14 +101,14 @@ def dataset_of(job: Job, parts: Parts) -> Dataset:
     raise not_finished(job, "its dataset comes at its end")
 
 
-def not_finished(job: Job, what: str) -> Problem:
+def not_finished(job: Job, reason: str) -> Problem:
     """What is told of a job that has not got so far."""
-    return Problem(409, "not_finished", f"job {job.id} is {job.status}: {what}", {"Retry-After": "1"})
+    return Problem(409, "not_finished", f"job {job.id} is {job.status}: {reason}", {"Retry-After": "1"})
 
 
 @contextmanager
-def there(job: Job, parts: Parts) -> Iterator[None]:
-    """While its dataset is looked for. Raises Problem 404 or 503."""
+def available(job: Job, parts: Parts) -> Iterator[None]:
+    """While its dataset is looked for. Raises Problem 404 where it is lost, 503 where it cannot be read now."""
     try:
         yield
     except FileNotFoundError:

@@ -104,19 +104,19 @@ def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
 def describe(app: FastAPI, keyed: bool) -> dict[str, Any]:
     """The document of `app`, made once. `keyed`: whether a key is required."""
     if app.openapi_schema is None:
-        told = get_openapi(title=app.title, version=app.version, description=SUMMARY, routes=app.routes,
-                           tags=app.openapi_tags)
-        schemas = told.setdefault("components", {}).setdefault("schemas", {})
-        _, ours = models_json_schema([(model, "validation") for model in MODELS], ref_template=REF)
-        schemas |= ours["$defs"]
+        document = get_openapi(title=app.title, version=app.version, description=SUMMARY, routes=app.routes,
+                               tags=app.openapi_tags)
+        schemas = document.setdefault("components", {}).setdefault("schemas", {})
+        _, definitions = models_json_schema([(model, "validation") for model in MODELS], ref_template=REF)
+        schemas |= definitions["$defs"]
         schemas["Problem"] = schemas.pop("ProblemDocument")
         for name in NOT_OURS:
             schemas.pop(name, None)
-        told["components"]["headers"] = {name: _header(text, required=keyed) for name, text in LIMITS.items()}
-        for operations in told["paths"].values():
+        document["components"]["headers"] = {name: _header(text, required=keyed) for name, text in LIMITS.items()}
+        for operations in document["paths"].values():
             for operation in operations.values():
                 _complete(operation, keyed)
-        app.openapi_schema = told
+        app.openapi_schema = document
     return app.openapi_schema
 
 
@@ -145,8 +145,8 @@ def _tell_of_limits(answers: dict[str, Any]) -> None:
 
 
 def _headers(status: int) -> dict[str, Any]:
-    told = HEADERS.get(status)
-    return {"headers": {name: _header(text) for name, text in told.items()}} if told else {}
+    headers = HEADERS.get(status)
+    return {"headers": {name: _header(text) for name, text in headers.items()}} if headers else {}
 
 
 def _header(text: str, required: bool = True) -> dict[str, Any]:

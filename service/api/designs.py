@@ -22,7 +22,7 @@ MOST_PARAMETERS = 50
 MOST_BYTES = 100_000_000
 """Of the cases of all members."""
 NAME = r"^[A-Za-z][A-Za-z0-9_.-]{0,99}$"
-TAKEN = frozenset({"member", "time", "s", "id", "job", "label", "status", "outcome", "t", *LABELS,
+RESERVED = frozenset({"member", "time", "s", "id", "job", "label", "status", "outcome", "t", *LABELS,
                    *(variable.name for variable in (*VARIABLES, *ERRORS.values()))})
 """What else stands beside the parameters in a table or a dataset."""
 LATE = ("t_end", "ends", "loads.point", "loads.distributed", "output.fields")
@@ -120,10 +120,10 @@ class EnsembleRequest(BaseModel):
         for name in self.names:
             if not re.match(NAME, name):
                 raise refusal(self._where, name, "must be names of letters, digits, '.', '_' and '-', a letter first")
-            if name in TAKEN:
+            if name in RESERVED:
                 raise refusal(self._where, name, "must not be named as what a dataset or a table has besides")
-        for name, one in self.parameters.items():
-            self._check_parameter(name, one)
+        for name, parameter in self.parameters.items():
+            self._check_parameter(name, parameter)
         if self.many > MOST_MEMBERS:
             raise refusal("parameters", None, f"must give at most {MOST_MEMBERS:,} members, not {self.many:,}")
         return self
@@ -137,21 +137,20 @@ class EnsembleRequest(BaseModel):
         for name in self.parameters.keys() - members[0].keys():
             raise refusal(f"parameters/{name}", None, "must be named by each of members")
 
-    def _check_parameter(self, name: str, one: ParameterRequest) -> None:
+    def _check_parameter(self, name: str, parameter: ParameterRequest) -> None:
         if self.members is not None:
-            wanted = ""
+            required = ""
         else:
-            wanted = "values" if self.sample is None else "low"
+            required = "values" if self.sample is None else "low"
         for field in ("values", "low"):
-            there = getattr(one, field) is not None
-            if there and field != wanted:
-                rule = "must not be given beside members" if not wanted else (
+            if getattr(parameter, field) is not None and field != required:
+                rule = "must not be given beside members" if not required else (
                     "must not be given with a sample: it fills low to high" if field == "values"
                     else "needs a sample, which says how the range is filled")  # fmt: skip
                 raise refusal(f"parameters/{name}/{field}", None, rule)
-        if wanted and getattr(one, wanted) is None:
-            rule = "is required for a grid" if wanted == "values" else "is required for a sample, and high"
-            raise refusal(f"parameters/{name}/{wanted}", None, rule)
+        if required and getattr(parameter, required) is None:
+            rule = "is required for a grid" if required == "values" else "is required for a sample, and high"
+            raise refusal(f"parameters/{name}/{required}", None, rule)
 
     @property
     def _where(self) -> str:
@@ -165,8 +164,8 @@ class EnsembleRequest(BaseModel):
         if self.sample is not None:
             return size_of(self.sample.method, self.sample.size, len(self.parameters))
         many = 1
-        for one in self.parameters.values():
-            many *= len(one.values or ())
+        for parameter in self.parameters.values():
+            many *= len(parameter.values or ())
         return many
 
     @property
@@ -177,16 +176,16 @@ class EnsembleRequest(BaseModel):
     @property
     def paths(self) -> list[str]:
         """The dotted keys of the parameters, in order."""
-        told = {name: one.path for name, one in self.parameters.items()}
-        return [told.get(name) or name for name in self.names]
+        paths = {name: parameter.path for name, parameter in self.parameters.items()}
+        return [paths.get(name) or name for name in self.names]
 
     @property
     def design(self) -> dict[str, Any]:
         """How the values were chosen."""
         parameters = {name: {"path": path} for name, path in zip(self.names, self.paths, strict=True)}
         if self.sample is not None:
-            for name, one in self.parameters.items():
-                parameters[name] |= one.model_dump(include={"low", "high", "scale"})
+            for name, parameter in self.parameters.items():
+                parameters[name] |= parameter.model_dump(include={"low", "high", "scale"})
             return {**self.sample.model_dump(), "parameters": parameters}
         return {"method": "grid" if self.members is None else "list", "parameters": parameters}
 
@@ -195,9 +194,9 @@ class EnsembleRequest(BaseModel):
         if self.members is not None:
             return [tuple(member[name] for name in self.names) for member in self.members]
         if self.sample is not None:
-            ranges = [one.range for one in self.parameters.values()]
+            ranges = [parameter.range for parameter in self.parameters.values()]
             return sample(self.sample.method, ranges, self.sample.size, self.sample.seed)
-        return grid([one.values or [] for one in self.parameters.values()])
+        return grid([parameter.values or [] for parameter in self.parameters.values()])
 
     @property
     def differs_late(self) -> bool:
@@ -211,9 +210,9 @@ class EnsembleRequest(BaseModel):
             raise CaseError([FieldError(f"/{self._where}", None, f"must make cases of at most {MOST_BYTES:,} bytes in "
                                         f"all, not {size:,} ({self.many:,} members)")])  # fmt: skip
         for number, own in enumerate(values):
-            told = dict(zip(self.paths, own, strict=True))
+            settings = dict(zip(self.paths, own, strict=True))
             try:
-                yield parse_case(apply_settings(base, {**self.set, **told}))
+                yield parse_case(apply_settings(base, {**self.set, **settings}))
             except CaseError as error:
                 of = ", ".join(f"{name} = {value!r}" for name, value in zip(self.names, own, strict=True))
                 faults = [FieldError(f"/{self._where}", fault.value,
@@ -223,7 +222,7 @@ class EnsembleRequest(BaseModel):
 
     def _size(self, base: dict[str, Any]) -> int:
         """Bytes of the members' cases, about."""
-        listed = [one.values for one in self.parameters.values() if one.values]
+        listed = [parameter.values for parameter in self.parameters.values() if parameter.values]
         own = sum(self.many // len(values) * len(json.dumps(values)) for values in listed)
         return self.many * len(json.dumps([base, self.set])) + own + len(json.dumps(self.members or ()))
 

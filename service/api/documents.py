@@ -109,10 +109,10 @@ def _webhook(job: Job) -> WebhookDocument | None:
 
 def answer(job: Job, status: int = 200, headers: Mapping[str, str] | None = None) -> Response:
     """A job as an answer: with its ETag, where it is found, and when to ask again."""
-    told = {"ETag": f'"{job.version}"', "Cache-Control": "no-cache", "Location": address(job.id)} | dict(headers or {})
+    fields = {"ETag": f'"{job.version}"', "Cache-Control": "no-cache", "Location": address(job.id), **(headers or {})}
     if job.status not in ENDED:
-        told["Retry-After"] = POLL_AFTER
-    return Response(document(job).model_dump_json(), status, told, "application/json")
+        fields["Retry-After"] = POLL_AFTER
+    return Response(document(job).model_dump_json(), status, fields, "application/json")
 
 
 def address(job_id: str) -> str:

@@ -11,8 +11,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.api.data import part_of
 from service.api.description import problems
-from service.api.ensembles import Seen, found
-from service.api.formats import CONTENT, Accept, Variables, VariablesInRanges, format_of, given, readable
+from service.api.ensembles import VisibleEnsembles, ensemble_of
+from service.api.formats import CONTENT, Accept, Variables, VariablesInRanges, format_of, readable, response_of
 from service.api.parts import InParts, Jobs, Parts
 from service.api.problems import Problem
 from service.api.scalars import job_columns, values_of
@@ -72,55 +72,56 @@ class Names(BaseModel):
 
 
 @router.get("/scalars", response_model=EnsembleScalars, responses={**CONTENT, **problems(404, 422, 503)})
-def ensemble_scalars(ensemble_id: str, chosen: Annotated[Variables, Query()], parts: InParts, jobs: Jobs,
-                     ensembles: Seen, accept: Accept = None) -> Response:
+def ensemble_scalars(ensemble_id: str, query: Annotated[Variables, Query()], parts: InParts, jobs: Jobs,
+                     ensembles: VisibleEnsembles, accept: Accept = None) -> Response:
     """Variables that have no place along the rod, at the end of each member, beside its parameters; but for JSON a
     table, a row for each member, or as NetCDF with the parameters as coordinates."""
-    ensemble = found(ensembles, ensemble_id)
+    ensemble = ensemble_of(ensembles, ensemble_id)
     with readable():
-        names = scalar_variables(chosen.names)
+        names = scalar_variables(query.names)
     members = ensembles.members(ensemble.id)
     values = values_of([member.job for member in members], names, jobs, parts)
-    name, form = format_of(chosen.format, accept)
+    name, form = format_of(query.format, accept)
     if name != "json":
         facts = job_columns([member.job for member in members], ALONG)
-        return given(Part((*parameter_columns(ensemble, members), *facts), scalar_columns(names, values, ALONG)), form)
+        coordinates = (*parameter_columns(ensemble, members), *facts)
+        return response_of(Part(coordinates, scalar_columns(names, values, ALONG)), form)
     records = [
         MemberScalars(number=member.number, job=member.job.id, status=member.job.status, outcome=member.job.outcome,
-                      t=member.job.t, parameters=dict(zip(ensemble.names, member.values, strict=True)), values=told)
-        for member, told in zip(members, values, strict=True)
+                      t=member.job.t, parameters=dict(zip(ensemble.names, member.values, strict=True)), values=scalars)
+        for member, scalars in zip(members, values, strict=True)
     ]  # fmt: skip
     return Response(EnsembleScalars(members=records).model_dump_json(), media_type=form.media_type)
 
 
 @router.get("/data", response_class=Response, responses={**CONTENT, **problems(404, 409, 422, 503)})
-def ensemble_data(ensemble_id: str, chosen: Annotated[VariablesInRanges, Query()], parts: InParts, jobs: Jobs,
-                  ensembles: Seen, accept: Accept = None) -> Response:
+def ensemble_data(ensemble_id: str, query: Annotated[VariablesInRanges, Query()], parts: InParts, jobs: Jobs,
+                  ensembles: VisibleEnsembles, accept: Accept = None) -> Response:
     """Variables of all members as one dataset, with the dimension `member` and the parameters as its coordinates. Of
     members that run the frames so far; NaN where one has no such time or node, or nothing yet."""
-    ensemble = found(ensembles, ensemble_id)
+    ensemble = ensemble_of(ensembles, ensemble_id)
     members = ensembles.members(ensemble.id)
-    _, form = format_of(chosen.format, accept)
-    read = _Reader(chosen, form.limit, parts, jobs)
+    _, form = format_of(query.format, accept)
+    read = _Reader(query, form.limit, parts, jobs)
     own = parameter_columns(ensemble, members)
     with readable():
-        told = [read(member) for member in members]
-        if not any(told):
+        member_parts = [read(member) for member in members]
+        if not any(member_parts):
             raise Problem(409, "not_finished", f"of the members of ensemble {ensemble.id} none has frames (yet): "
                           "see its status", {"Retry-After": "1"})  # fmt: skip
-        return given(combined(told, own, form.limit), form)
+        return response_of(combined(member_parts, own, form.limit), form)
 
 
 @router.get("/sensitivity", responses=problems(404, 409, 422, 503))
-def ensemble_sensitivity(ensemble_id: str, chosen: Annotated[Names, Query()], parts: InParts, jobs: Jobs,
-                         ensembles: Seen) -> Sensitivity:
+def ensemble_sensitivity(ensemble_id: str, query: Annotated[Names, Query()], parts: InParts, jobs: Jobs,
+                         ensembles: VisibleEnsembles) -> Sensitivity:
     """Sobol's indices of the last values of some variables, of an ensemble whose sample is `saltelli`."""
-    ensemble = found(ensembles, ensemble_id)
+    ensemble = ensemble_of(ensembles, ensemble_id)
     if ensemble.design["method"] != "saltelli":
         raise Problem(422, "no_saltelli_sample", "Sobol's indices need an ensemble whose sample has the method "
                       f"saltelli, this one has {ensemble.design['method']}")
     with readable():
-        names = scalar_variables([name.strip() for name in chosen.variables.split(",")])
+        names = scalar_variables([name.strip() for name in query.variables.split(",")])
     members = ensembles.members(ensemble.id)
     columns = scalar_columns(names, values_of([member.job for member in members], names, jobs, parts), ALONG)
     return Sensitivity(indices={column.name: _indices(ensemble, members, column) for column in columns})
@@ -129,19 +130,19 @@ def ensemble_sensitivity(ensemble_id: str, chosen: Annotated[Names, Query()], pa
 class _Reader:
     """Reads a part of each member, equal ones once, and no more than may be given out."""
 
-    def __init__(self, chosen: VariablesInRanges, limit: int, parts: Parts, jobs: Registry) -> None:
-        self._chosen, self._left, self._parts, self._jobs = chosen, limit, parts, jobs
+    def __init__(self, query: VariablesInRanges, limit: int, parts: Parts, jobs: Registry) -> None:
+        self._query, self._left, self._parts, self._jobs = query, limit, parts, jobs
         self._read: dict[str, Part | None] = {}
 
     def __call__(self, member: Member) -> Part | None:
         """A member's part; None where it has nothing. Raises Problem, SubsetTooLarge."""
         if member.job.id not in self._read:
-            self._read[member.job.id] = self._of(member.job.id)
+            self._read[member.job.id] = self._part(member.job.id)
         return self._read[member.job.id]
 
-    def _of(self, job_id: str) -> Part | None:
+    def _part(self, job_id: str) -> Part | None:
         def read(source: Source) -> Part:
-            return subset(source, self._chosen.names, self._chosen.ranges, self._left)
+            return subset(source, self._query.names, self._query.ranges, self._left)
 
         try:
             _, part = part_of(job_id, self._jobs, self._parts, read)

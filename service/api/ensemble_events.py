@@ -11,7 +11,7 @@ from fastapi import APIRouter, Header, Response
 from fastapi.responses import StreamingResponse
 
 from service.api.description import problems
-from service.api.ensembles import Seen, document, found, member_document
+from service.api.ensembles import VisibleEnsembles, document, ensemble_of, member_document
 from service.api.events import STILL_HERE, STREAM, event
 from service.api.numbers import WHOLE
 from service.api.parts import InParts, Reader
@@ -31,12 +31,12 @@ router = APIRouter(prefix="/v1/ensembles/{ensemble_id}", tags=["ensembles"])
 
 @router.get("/events", response_class=Response, responses={**EVENTS, **problems(404, 422)})
 def ensemble_events(
-    ensemble_id: str, ensembles: Seen, parts: InParts, caller: Reader,
+    ensemble_id: str, ensembles: VisibleEnsembles, parts: InParts, caller: Reader,
     last_event_id: Annotated[int, Header(alias="Last-Event-ID", ge=0, le=2**62), WHOLE] = 0,
 ) -> Response:
     """Follow an ensemble. Each event says how something is now, not what has changed: after a break with
     Last-Event-ID, all that does not just wait is told again, if anything has changed since."""
-    ensemble = found(ensembles, ensemble_id)
+    ensemble = ensemble_of(ensembles, ensemble_id)
     standing = ensembles.standing(ensemble.id)
     if standing.ended and last_event_id >= standing.version:
         return Response(status_code=204)
@@ -51,8 +51,8 @@ async def _stream(ensembles: Ensembles, ensemble: Ensemble, seen: int) -> AsyncG
     while True:
         version = await asyncio.to_thread(ensembles.version, ensemble.id)
         if version > seen:
-            told, ended = await asyncio.to_thread(_changes, ensembles, ensemble, statuses)
-            yield told
+            text, ended = await asyncio.to_thread(_changes, ensembles, ensemble, statuses)
+            yield text
             seen, spoke = version, time.monotonic()
             if ended:
                 return

@@ -106,14 +106,14 @@ class MemberPaging(BaseModel):
     status: Status | None = None
 
 
-async def _seen(parts: InParts, caller: Reader) -> Ensembles:
+async def _visible(parts: InParts, caller: Reader) -> Ensembles:
     return Ensembles(parts.registry.database, caller.sees)
 
 
-Seen = Annotated[Ensembles, Depends(_seen)]
+VisibleEnsembles = Annotated[Ensembles, Depends(_visible)]
 
 
-def found(ensembles: Ensembles, ensemble_id: str) -> Ensemble:
+def ensemble_of(ensembles: Ensembles, ensemble_id: str) -> Ensemble:
     """One of them. Raises Problem 404."""
     try:
         return ensembles.get(ensemble_id)
@@ -142,46 +142,46 @@ def _accepted(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> R
     return answer(ensembles.get(accepted), ensembles.standing(accepted), 202)
 
 
-def requested(asked: EnsembleRequest, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> NewEnsemble:
+def requested(request: EnsembleRequest, body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> NewEnsemble:
     """What is asked for, understood. Raises CaseError for a member's case or cost, or for the limits."""
-    limits, values = asked.limits.within(parts.settings.limits), asked.values()
+    limits, values = request.limits.within(parts.settings.limits), request.values()
     ids = sorted(new_id() for _ in values)  # the first member goes first
     jobs = []
-    for job_id, (spec, begins) in zip(ids, _with_beginnings(asked, values), strict=True):
+    for job_id, (spec, begins) in zip(ids, _with_beginnings(request, values), strict=True):
         check_cost(spec, parts.settings.longest_run)
         title = spec.title or spec.name
         leader, frame = (ids[begins.leader], begins.frame) if begins is not None else (None, 0)
-        jobs.append(NewJob(spec.document(), title, caller.owner, asked.label, asked.priority, limits, job_id,
+        jobs.append(NewJob(spec.document(), title, caller.owner, request.label, request.priority, limits, job_id,
                            leader, frame, waits=leader is not None))  # fmt: skip
     digest = hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest()
-    return NewEnsemble(asked.design, values, jobs, caller.actor, asked.title or jobs[0].title, asked.label, key, digest,
-                       asked.reuse)  # fmt: skip
+    return NewEnsemble(request.design, values, jobs, caller.actor, request.title or jobs[0].title, request.label, key,
+                       digest, request.reuse)  # fmt: skip
 
 
-def _with_beginnings(asked: EnsembleRequest, values: list[Values]) -> Iterator[tuple[CaseSpec, Beginning | None]]:
+def _with_beginnings(request: EnsembleRequest, values: list[Values]) -> Iterator[tuple[CaseSpec, Beginning | None]]:
     """The members' cases, and with which of the others each begins; one after the other, where that is not to be
     known."""
-    if not asked.differs_late:
-        yield from ((spec, None) for spec in asked.specs(values))
+    if not request.differs_late:
+        yield from ((spec, None) for spec in request.specs(values))
         return
-    specs = list(asked.specs(values))
+    specs = list(request.specs(values))
     yield from zip(specs, shared_beginnings(specs), strict=True)
 
 
 @router.get("", responses=problems(422))
-def list_ensembles(paging: Annotated[Paging, Query()], ensembles: Seen) -> EnsemblesDocument:
+def list_ensembles(paging: Annotated[Paging, Query()], ensembles: VisibleEnsembles) -> EnsemblesDocument:
     """Ensembles, newest first, a page at a time."""
     page = ensembles.page(paging.limit + 1, paging.after)
-    documents = [document(one, ensembles.standing(one.id)) for one in page[: paging.limit]]
+    documents = [document(ensemble, ensembles.standing(ensemble.id)) for ensemble in page[: paging.limit]]
     more = len(page) > paging.limit
     following = f"/v1/ensembles?limit={paging.limit}&after={documents[-1].id}" if more else None
     return EnsemblesDocument(ensembles=documents, next=following)
 
 
 @router.get("/{ensemble_id}", response_model=EnsembleDocument, responses=problems(404))
-def ensemble_status(ensemble_id: str, ensembles: Seen) -> Response:
+def ensemble_status(ensemble_id: str, ensembles: VisibleEnsembles) -> Response:
     """How an ensemble is doing as a whole."""
-    ensemble = found(ensembles, ensemble_id)
+    ensemble = ensemble_of(ensembles, ensemble_id)
     return answer(ensemble, ensembles.standing(ensemble.id))
 
 
@@ -189,22 +189,23 @@ def ensemble_status(ensemble_id: str, ensembles: Seen) -> Response:
 def cancel_ensemble(ensemble_id: str, parts: InParts, caller: Submitter) -> EnsembleDocument:
     """Cancel all members that have not ended."""
     ensembles = Ensembles(parts.registry.database, caller.sees)
-    ensemble = found(ensembles, ensemble_id)
+    ensemble = ensemble_of(ensembles, ensemble_id)
     ensembles.cancel(ensemble.id, caller.actor)
     return document(ensemble, ensembles.standing(ensemble.id))
 
 
 @router.get("/{ensemble_id}/members", responses=problems(404, 422))
-def ensemble_members(ensemble_id: str, paging: Annotated[MemberPaging, Query()], ensembles: Seen) -> MembersDocument:
+def ensemble_members(ensemble_id: str, paging: Annotated[MemberPaging, Query()],
+                     ensembles: VisibleEnsembles) -> MembersDocument:
     """The members in their order, with their values and how their jobs are doing, a page at a time."""
-    ensemble = found(ensembles, ensemble_id)
+    ensemble = ensemble_of(ensembles, ensemble_id)
     page = ensembles.members(ensemble.id, paging.limit + 1, paging.after, paging.status)
-    shown = [member_document(ensemble, member) for member in page[: paging.limit]]
+    documents = [member_document(ensemble, member) for member in page[: paging.limit]]
     following = None
     if len(page) > paging.limit:
         status = f"&status={paging.status}" if paging.status else ""
-        following = f"{here(ensemble)}/members?limit={paging.limit}&after={shown[-1].number}{status}"
-    return MembersDocument(members=shown, next=following)
+        following = f"{here(ensemble)}/members?limit={paging.limit}&after={documents[-1].number}{status}"
+    return MembersDocument(members=documents, next=following)
 
 
 def here(ensemble: Ensemble) -> str:
@@ -215,27 +216,27 @@ def here(ensemble: Ensemble) -> str:
 def member_document(ensemble: Ensemble, member: Member) -> MemberDocument:
     """A member as its readers see it."""
     job: Job = member.job
-    its = address(job.id)
+    job_address = address(job.id)
     return MemberDocument(
         number=member.number, values=dict(zip(ensemble.names, member.values, strict=True)), job=job.id,
         status=job.status, phase=job.phase, progress=job.progress, t=job.t, outcome=job.outcome, message=job.message,
-        links={"job": its, "data": f"{its}/data"},
+        links={"job": job_address, "data": f"{job_address}/data"},
     )  # fmt: skip
 
 
 def document(ensemble: Ensemble, standing: Standing) -> EnsembleDocument:
     """An ensemble as its readers see it."""
-    its = here(ensemble)
-    links = {name: f"{its}/{name}" for name in ("members", "events", "scalars", "data")}
+    own_address = here(ensemble)
+    links = {name: f"{own_address}/{name}" for name in ("members", "events", "scalars", "data")}
     if ensemble.design["method"] == "saltelli":
-        links["sensitivity"] = f"{its}/sensitivity"
+        links["sensitivity"] = f"{own_address}/sensitivity"
     return EnsembleDocument(
         id=ensemble.id, owner=ensemble.owner, status=standing.status, title=ensemble.title, label=ensemble.label,
         members=standing.members, jobs=standing.jobs,
         counts={status: standing.statuses[status] for status in Status}, outcomes=dict(standing.outcomes),
         progress=standing.progress, design=ensemble.design, created=datetime.fromtimestamp(ensemble.created, UTC),
         finished=None if standing.finished is None else datetime.fromtimestamp(standing.finished, UTC),
-        links={"self": its} | links,
+        links={"self": own_address} | links,
     )  # fmt: skip
 
 

@@ -47,9 +47,9 @@ async def events(job_id: str, parts: InParts, jobs: Jobs, caller: Reader,
 async def _stream(jobs: Registry, feed: Feed, job_id: str, seen: int) -> AsyncGenerator[str, None]:
     while True:
         job = jobs.get(job_id)
-        for one in jobs.events(job_id, seen):
-            seen = one.seq
-            yield event(seen, one.kind, {"time": datetime.fromtimestamp(one.time, UTC).isoformat(), **one.data})
+        for entry in jobs.events(job_id, seen):
+            seen = entry.seq
+            yield event(seen, entry.kind, {"time": datetime.fromtimestamp(entry.time, UTC).isoformat(), **entry.data})
         if job.status in ENDED:
             return
         if job.version > seen:

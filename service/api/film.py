@@ -20,7 +20,7 @@ CONTENT: dict[int | str, dict[str, Any]] = {200: {
 router = APIRouter(prefix="/v1/jobs/{job_id}", tags=["results"])
 
 
-class Chosen(BaseModel):
+class FilmQuery(BaseModel):
     """Which frames."""
 
     model_config = ConfigDict(extra="forbid")
@@ -28,8 +28,8 @@ class Chosen(BaseModel):
 
 
 @router.get("/film", response_class=Response, responses={**CONTENT, **problems(404, 409, 422, 503)})
-def film(job_id: str, chosen: Annotated[Chosen, Query()], parts: InParts, jobs: Jobs) -> Response:
+def film(job_id: str, query: Annotated[FilmQuery, Query()], parts: InParts, jobs: Jobs) -> Response:
     """Positions, orientations and the numbers that colour them, thinned out to what can be drawn; of a job that still
     runs, the frames so far."""
-    _, content = part_of(job_id, jobs, parts, lambda source: film_of(source, chosen.since))
+    _, content = part_of(job_id, jobs, parts, lambda source: film_of(source, query.since))
     return Response(content, media_type=KIND, headers={"Cache-Control": "no-cache"})

@@ -20,8 +20,8 @@ FormatName = Literal["json", "csv", "netcdf", "arrow"]
 Accept = Annotated[str | None, Header(alias="Accept", description="A format's media type, where the query has none")]
 ALSO = {"application/netcdf": "netcdf", "application/vnd.apache.arrow.file": "arrow"}
 CONTENT: dict[int | str, dict[str, Any]] = {200: {"description": "The values", "content": {
-    one.media_type: {"schema": {"type": "object"} if name == "json" else {"type": "string", "format": "binary"}}
-    for name, one in FORMATS.items()}}}  # fmt: skip
+    form.media_type: {"schema": {"type": "object"} if name == "json" else {"type": "string", "format": "binary"}}
+    for name, form in FORMATS.items()}}}  # fmt: skip
 """The formats in an operation's `responses`."""
 
 
@@ -66,9 +66,9 @@ def format_of(name: FormatName | None, accept: str | None) -> tuple[str, Format]
     """The format that is asked for, with its name; JSON where none of ours is."""
     if name is not None:
         return name, FORMATS[name]
-    types = {one.media_type: known for known, one in FORMATS.items()} | ALSO
-    wanted = [kind.partition(";")[0].strip().lower() for kind in (accept or "").split(",")]
-    chosen = next((types[kind] for kind in wanted if kind in types), "json")
+    types = {form.media_type: key for key, form in FORMATS.items()} | ALSO
+    accepted = [kind.partition(";")[0].strip().lower() for kind in (accept or "").split(",")]
+    chosen = next((types[kind] for kind in accepted if kind in types), "json")
     return chosen, FORMATS[chosen]
 
 
@@ -83,6 +83,6 @@ def readable() -> Iterator[None]:
         raise Problem(422, "unknown_variable", str(error)) from None
 
 
-def given(part: Part, form: Format, headers: dict[str, str] | None = None) -> Response:
-    """The answer that holds a part."""
+def response_of(part: Part, form: Format, headers: dict[str, str] | None = None) -> Response:
+    """The response that holds a part."""
     return Response(form.write(part), 200, {"Vary": "Accept"} | (headers or {}), form.media_type)

@@ -60,10 +60,10 @@ def ready(parts: InParts, response: Response) -> Readiness:
     """Whether jobs can be taken: 200 with a database that takes writes and a disk with room, else 503; what else does
     not get on is told: `status` is `ok` only where all does."""
     health = parts.health
-    told = {"database": health.database, "broker": health.broker, "disk": health.disk, "workers": health.workers,
-            "leader": health.leader}  # fmt: skip
+    states = {"database": health.database, "broker": health.broker, "disk": health.disk, "workers": health.workers,
+              "leader": health.leader}  # fmt: skip
     still = health.silent
-    good = not still and set(told.values()) == {"ok"}
-    if (told["database"], told["disk"]) != ("ok", "ok"):
+    good = not still and set(states.values()) == {"ok"}
+    if (states["database"], states["disk"]) != ("ok", "ok"):
         response.status_code = 503
-    return Readiness.model_validate(told | {"status": "ok" if good else "degraded", "standing_still": still})
+    return Readiness.model_validate(states | {"status": "ok" if good else "degraded", "standing_still": still})

@@ -87,8 +87,8 @@ class Gate:
         name = _name_in(host)
         if is_loopback(name) or name in self._hosts or (self._keyed and _is_address(name)):
             return
-        told = "a name of this service (HOCKLE_HOSTS)" if self._keyed else "a loopback address"
-        raise Problem(421, "foreign_host", f"Host must be {told}, got {host[:80]!r}")
+        expected = "a name of this service (HOCKLE_HOSTS)" if self._keyed else "a loopback address"
+        raise Problem(421, "foreign_host", f"Host must be {expected}, got {host[:80]!r}")
 
 
 def is_open(path: str) -> bool:
@@ -125,8 +125,8 @@ def _safely(send: Send) -> Send:
     async def tell(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = message.setdefault("headers", [])
-            told = {name for name, _ in headers}
-            headers += [one for one in (*SAFE, NOTHING) if one[0] not in told]
+            present = {name for name, _ in headers}
+            headers += [header for header in (*SAFE, NOTHING) if header[0] not in present]
         await send(message)
 
     return tell

@@ -70,19 +70,19 @@ def share(job_id: str, parts: InParts, jobs: OwnJobs, caller: Submitter,
     It needs no key: `xarray.open_dataset(address + "#mode=bytes")` and `curl -O` take it as it is.
     """
     try:
-        asked = LinkRequest.model_validate(body)
+        request = LinkRequest.model_validate(body)
     except ValidationError as error:
         raise CaseError.of(error) from None
     dataset_of(jobs.get(job_id), parts)
-    link, token = LinkStore(parts.registry.database).create(job_id, caller.actor, asked.seconds)
+    link, token = LinkStore(parts.registry.database).create(job_id, caller.actor, request.seconds)
     return _document(link, f"{SHARED}{token}")
 
 
 @router.get("/v1/jobs/{job_id}/links", responses=problems(404))
 def list_links(job_id: str, parts: InParts, jobs: Jobs) -> LinksDocument:
     """The links to this job's dataset, without their addresses, which nobody keeps."""
-    found = LinkStore(parts.registry.database).of(jobs.get(job_id).id)
-    return LinksDocument(links=[_document(link) for link in found])
+    links = LinkStore(parts.registry.database).of(jobs.get(job_id).id)
+    return LinksDocument(links=[_document(link) for link in links])
 
 
 @router.delete("/v1/jobs/{job_id}/links/{link_id}", status_code=204, response_class=Response,
@@ -129,8 +129,8 @@ def _job(token: str, parts: Parts) -> Job:
 
 
 def _document(link: Link, address: str | None = None) -> LinkDocument:
-    told = {name: None if address is None else address + end for name, end in ENDS.items()}
-    return LinkDocument(id=link.id, **told, created=_instant(link.created), expires=_instant(link.expires),
+    addresses = {name: None if address is None else address + end for name, end in ENDS.items()}
+    return LinkDocument(id=link.id, **addresses, created=_instant(link.created), expires=_instant(link.expires),
                         revoked=None if link.revoked is None else _instant(link.revoked))
 
 

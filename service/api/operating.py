@@ -109,7 +109,7 @@ def _resumed(parts: Parts, host: str, actor: Actor) -> Workforce:
 def _workforce(parts: Parts) -> Workforce:
     database = parts.registry.database
     waiting, running = counted(database)
-    pauses, workers = {one.host: one for one in paused(database)}, hosts(database)
+    pauses, workers = {pause.host: pause for pause in paused(database)}, hosts(database)
     named = sorted((workers.keys() | pauses.keys()) - {ALL_HOSTS})
     return Workforce(
         waiting=waiting, running=running, paused=_document(pauses.get(ALL_HOSTS)),
@@ -118,13 +118,13 @@ def _workforce(parts: Parts) -> Workforce:
     )  # fmt: skip
 
 
-def _document(one: Pause | None) -> PauseDocument | None:
-    if one is None:
+def _document(pause: Pause | None) -> PauseDocument | None:
+    if pause is None:
         return None
-    return PauseDocument(drains=one.drains, since=datetime.fromtimestamp(one.since, UTC), owner=one.owner)
+    return PauseDocument(drains=pause.drains, since=datetime.fromtimestamp(pause.since, UTC), owner=pause.owner)
 
 
 def _check_known(parts: Parts, host: str) -> None:
-    known = [one.name for one in _workforce(parts).hosts]
+    known = [document.name for document in _workforce(parts).hosts]
     if host not in known:
         raise Problem(404, "unknown_host", f"no worker is on {host[:64]!r}; there are {', '.join(known) or 'none'}")

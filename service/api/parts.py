@@ -69,7 +69,7 @@ Submitter = Annotated[Caller, Depends(_With(Scope.SUBMIT))]
 Operator = Annotated[Caller, Depends(_With(Scope.OPERATE))]
 
 
-async def _seen(parts: InParts, caller: Reader) -> Registry:
+async def _visible_jobs(parts: InParts, caller: Reader) -> Registry:
     return parts.registry.of(caller.sees)
 
 
@@ -77,7 +77,7 @@ async def _own(parts: InParts, caller: Submitter) -> Registry:
     return parts.registry.of(caller.sees)
 
 
-Jobs = Annotated[Registry, Depends(_seen)]
+Jobs = Annotated[Registry, Depends(_visible_jobs)]
 """The jobs that the caller may see, for reading."""
 
 OwnJobs = Annotated[Registry, Depends(_own)]
@@ -86,5 +86,5 @@ OwnJobs = Annotated[Registry, Depends(_own)]
 
 def matches(request: Request, etag: str) -> bool:
     """Whether the client already has what `etag` names (If-None-Match)."""
-    told = request.headers.get("if-none-match", "")
-    return etag in [tag.strip().removeprefix("W/") for tag in told.split(",")] or told.strip() == "*"
+    header = request.headers.get("if-none-match", "")
+    return etag in [tag.strip().removeprefix("W/") for tag in header.split(",")] or header.strip() == "*"

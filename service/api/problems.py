@@ -91,8 +91,8 @@ async def _http(request: Request, error: HTTPException) -> JSONResponse:
 def _allowed(request: Request) -> str:
     """The methods of every route at this address; each route by itself knows only its own."""
     def is_there(method: str) -> bool:
-        asked = {**request.scope, "method": method}
-        return any(route.matches(asked)[0] is Match.FULL for route in request.app.routes)
+        scope = {**request.scope, "method": method}
+        return any(route.matches(scope)[0] is Match.FULL for route in request.app.routes)
 
     return ", ".join(filter(is_there, METHODS))
 
@@ -102,18 +102,18 @@ async def _parameters(request: Request, error: RequestValidationError) -> JSONRe
     faults = [meant(fault, fault.pointer[1:], _parameters_of(request)) if fault.unknown else fault for fault in faults]
     errors = [{"parameter": fault.pointer[1:].replace("/", "."), "value": shown(fault.value), "rule": fault.rule}
               for fault in faults]
-    return Problem(422, "invalid_parameters", _told("parameter", errors), errors=errors).response()
+    return Problem(422, "invalid_parameters", _summary("parameter", errors), errors=errors).response()
 
 
 def _parameters_of(request: Request) -> list[str]:
     """The names of the parameters that the query of this route may have."""
-    models = [one.field_info.annotation for one in request.scope["route"].dependant.query_params]
+    models = [parameter.field_info.annotation for parameter in request.scope["route"].dependant.query_params]
     return [name for model in models for name in getattr(model, "model_fields", ())]
 
 
 async def _case(_: Request, error: CaseError) -> JSONResponse:
     errors = [{"pointer": e.pointer, "value": shown(e.value), "rule": e.rule} for e in error.errors]
-    return Problem(422, "invalid_case", _told("pointer", errors, error.more), errors=errors).response()
+    return Problem(422, "invalid_case", _summary("pointer", errors, error.more), errors=errors).response()
 
 
 async def _unknown_job(_: Request, error: Exception) -> JSONResponse:
@@ -169,7 +169,7 @@ async def _bug(request: Request, error: Exception) -> JSONResponse:
     return Problem(500, "internal_error", "hockle itself failed; its log says where").response()
 
 
-def _told(where: str, errors: list[dict[str, Any]], untold: int = 0) -> str:
+def _summary(where: str, errors: list[dict[str, Any]], omitted: int = 0) -> str:
     faults = [FieldError(e[where] or "the whole", e["value"], e["rule"]) for e in errors[:3]]
-    first, more = "; ".join(map(str, faults)), len(errors) - 3 + untold
+    first, more = "; ".join(map(str, faults)), len(errors) - 3 + omitted
     return first if more <= 0 else f"{first}; and {more} more"

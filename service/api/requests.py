@@ -53,12 +53,12 @@ class LimitsRequest(BaseModel):
 
     def within(self, most: Limits) -> Limits:
         """The limits that the job gets. Raises CaseError for those beyond `most`."""
-        asked = self.model_dump(exclude_none=True)
+        limits = self.model_dump(exclude_none=True)
         beyond = [FieldError(f"/limits/{name}", value, f"must be <= {getattr(most, name):g}, which this service allows")
-                  for name, value in asked.items() if value > getattr(most, name)]
+                  for name, value in limits.items() if value > getattr(most, name)]
         if beyond:
             raise CaseError(beyond)
-        return replace(most, **asked)
+        return replace(most, **limits)
 
 
 class ForkRequest(BaseModel):
@@ -77,7 +77,7 @@ class ForkRequest(BaseModel):
 
     def applied(self, case: Mapping[str, Any]) -> dict[str, Any]:
         """A case with these."""
-        ends = {name: _switched(told, self.at, getattr(self, name)) for name, told in case["ends"].items()}
+        ends = {name: _switched(end, self.at, getattr(self, name)) for name, end in case["ends"].items()}
         return {**case, "ends": ends}
 
 
@@ -85,8 +85,8 @@ def _switched(end: Any, at: float, conditions: Mapping[str, Any]) -> Any:
     if not conditions:
         return end
     before: dict[str, Any] = {"preset": end} if isinstance(end, str) else end
-    kept = [switch for switch in before.get("switches", ()) if switch["at"] < at]
-    return {**before, "switches": [*kept, {"at": at, **conditions}]}
+    earlier = [switch for switch in before.get("switches", ()) if switch["at"] < at]
+    return {**before, "switches": [*earlier, {"at": at, **conditions}]}
 
 
 class JobRequest(BaseModel):
@@ -123,20 +123,20 @@ class JobRequest(BaseModel):
 
 
 @dataclass(frozen=True)
-class Wanted:
+class ParsedRequest:
     """A request understood: the case that will run, and the rest of the request."""
 
     spec: CaseSpec
     request: JobRequest
 
 
-def wanted(body: Annotated[dict[str, Any], Depends(json_object)]) -> Wanted:
+def parse_request(body: Annotated[dict[str, Any], Depends(json_object)]) -> ParsedRequest:
     """What a body asks for: a JobRequest, or a bare case. Raises CaseError.
 
     Pointers lead into the body; those of a shipped case, which is not in the body, lead into the case.
     """
     if "case" not in body:
-        return Wanted(parse_case(body), JobRequest(case=body))
+        return ParsedRequest(parse_case(body), JobRequest(case=body))
     try:
         request = JobRequest.model_validate(body)
     except ValidationError as error:
@@ -146,12 +146,12 @@ def wanted(body: Annotated[dict[str, Any], Depends(json_object)]) -> Wanted:
     if isinstance(request.case, str):
         if request.case not in SHIPPED:  # a name only: never a path
             raise CaseError([FieldError("/case", request.case, f"must be one of {', '.join(SHIPPED)}")])
-        return Wanted(parse_case(apply_settings(load_case(request.case), request.set)), request)
+        return ParsedRequest(parse_case(apply_settings(load_case(request.case), request.set)), request)
     try:
-        return Wanted(parse_case(apply_settings(request.case, request.set)), request)
+        return ParsedRequest(parse_case(apply_settings(request.case, request.set)), request)
     except CaseError as error:
         inside = [FieldError(f"/case{fault.pointer}", fault.value, fault.rule) for fault in error.errors]
         raise CaseError(inside, error.more) from None
 
 
-InWanted = Annotated[Wanted, Depends(wanted)]
+InRequest = Annotated[ParsedRequest, Depends(parse_request)]

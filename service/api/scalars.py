@@ -9,9 +9,9 @@ import numpy as np
 from fastapi import APIRouter, Query, Response
 from pydantic import BaseModel, Field
 
-from service.api.datasets import dataset_of, there
+from service.api.datasets import available, dataset_of
 from service.api.description import problems
-from service.api.formats import CONTENT, Accept, Variables, format_of, given, readable
+from service.api.formats import CONTENT, Accept, Variables, format_of, readable, response_of
 from service.api.parts import InParts, Jobs, Parts
 from service.api.problems import Problem
 from service.jobs import Job, Registry, Status
@@ -22,7 +22,7 @@ MOST_JOBS = 200
 router = APIRouter(prefix="/v1/scalars", tags=["results"])
 
 
-class Chosen(Variables):
+class ScalarsQuery(Variables):
     """Which numbers of which jobs."""
 
     jobs: str = Field(min_length=1, max_length=27 * MOST_JOBS, examples=["01m7zns6je0661bz8g4vdfp4fq"],
@@ -47,36 +47,36 @@ class ScalarsDocument(BaseModel):
 
 
 @router.get("", response_model=ScalarsDocument, responses={**CONTENT, **problems(404, 422, 503)})
-def scalars(chosen: Annotated[Chosen, Query()], parts: InParts, jobs: Jobs, accept: Accept = None) -> Response:
+def scalars(query: Annotated[ScalarsQuery, Query()], parts: InParts, jobs: Jobs, accept: Accept = None) -> Response:
     """Variables that have no place along the rod, at the end of many jobs; but for JSON a table, a row for each job."""
-    ids = [one.strip() for one in chosen.jobs.split(",")]
+    ids = [text.strip() for text in query.jobs.split(",")]
     if len(ids) > MOST_JOBS:
         raise Problem(422, "too_many_jobs", f"jobs must be at most {MOST_JOBS}, got {len(ids)}")
     with readable():
-        names = scalar_variables(chosen.names)
-    found = [jobs.get(job_id) for job_id in ids]
-    values = values_of(found, names, jobs, parts)
-    name, form = format_of(chosen.format, accept)
+        names = scalar_variables(query.names)
+    selected = [jobs.get(job_id) for job_id in ids]
+    values = values_of(selected, names, jobs, parts)
+    name, form = format_of(query.format, accept)
     if name != "json":
-        return given(Part(job_columns(found), scalar_columns(names, values)), form)
-    documents = [ScalarsOfJob(id=job.id, label=job.label, status=job.status, outcome=job.outcome, t=job.t, values=told)
-                 for job, told in zip(found, values, strict=True)]  # fmt: skip
+        return response_of(Part(job_columns(selected), scalar_columns(names, values)), form)
+    documents = [ScalarsOfJob(id=job.id, label=job.label, status=job.status, outcome=job.outcome, t=job.t, values=last)
+                 for job, last in zip(selected, values, strict=True)]  # fmt: skip
     return Response(ScalarsDocument(jobs=documents).model_dump_json(), media_type=form.media_type)
 
 
-def values_of(found: Sequence[Job], names: Sequence[str], jobs: Registry, parts: Parts) -> list[dict[str, Value]]:
+def values_of(selected: Sequence[Job], names: Sequence[str], jobs: Registry, parts: Parts) -> list[dict[str, Value]]:
     """The last values of jobs. Raises Problem 404 or 503 where only a dataset tells them, and that is not there."""
-    told = jobs.scalars({job.id for job in found if job.dataset is not None})
-    return [_of(job, names, told.get(job.id), parts) for job in found]
+    stored = jobs.scalars({job.id for job in selected if job.dataset is not None})
+    return [_scalars_of(job, names, stored.get(job.id), parts) for job in selected]
 
 
-def _of(job: Job, names: Sequence[str], told: Mapping[str, Value] | None, parts: Parts) -> dict[str, Value]:
+def _scalars_of(job: Job, names: Sequence[str], stored: Mapping[str, Value] | None, parts: Parts) -> dict[str, Value]:
     if job.dataset is None:
         return dict.fromkeys(names)
-    if told is not None:
-        return {name: told.get(name) for name in names}
+    if stored is not None:
+        return {name: stored.get(name) for name in names}
     published = dataset_of(job, parts)
-    with there(job, parts):
+    with available(job, parts):
         path = parts.datasets.file(published.file, published.bytes, published.sha256)
     return last_values(path, names)
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Path, Request, Response
 
-from service.api.datasets import dataset_of, there
+from service.api.datasets import available, dataset_of
 from service.api.description import problems
 from service.api.formats import readable
 from service.api.parts import InParts, Jobs, Parts
@@ -79,7 +79,7 @@ def dap_of(job: Job, what: Dap, constraint: str, parts: Parts) -> Response:
 
 def _read(job: Job, parts: Parts, make: Callable[[DatasetSource], bytes]) -> bytes:
     published = dataset_of(job, parts)
-    with there(job, parts):
+    with available(job, parts):
         path = parts.datasets.file(published.file, published.bytes, published.sha256)
-    with there(job, parts), opened(path) as source:
+    with available(job, parts), opened(path) as source:
         return make(source)

@@ -17,7 +17,7 @@ from service.api.documents import JobDocument, answer
 from service.api.parts import InParts, Parts, Submitter
 from service.api.preferences import wait_preferred
 from service.api.problems import Problem
-from service.api.requests import wanted
+from service.api.requests import parse_request
 from service.cases import CaseError, FieldError, check_cost
 from service.jobs import ENDED, Job, NewJob
 from service.jobs.submission import Submission
@@ -63,11 +63,11 @@ async def understood(request: Request, body: dict[str, Any], parts: Parts, calle
 
 
 def requested(body: dict[str, Any], parts: Parts, caller: Caller, key: str) -> Submission:
-    """What the registry is asked for by a body. Raises CaseError for its case, cost or limits, Problem for its
+    """What a body asks of the registry. Raises CaseError for its case, cost or limits, Problem for its
     webhook."""
     other = Again.of(body, parts.registry.of(caller.sees)) if "job" in body else None
-    understood = wanted(other.body if other else body)
-    spec, request = understood.spec, understood.request
+    parsed = parse_request(other.body if other else body)
+    spec, request = parsed.spec, parsed.request
     if other is not None:
         other.check(spec)
     check_cost(spec, parts.settings.longest_run)

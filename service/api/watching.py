@@ -61,7 +61,7 @@ def metrics(parts: InParts, _: Operator) -> Response:
     registry.register(_Parts(parts.health))
     if parts.health.database == "ok":
         measures = measure(parts.registry.database, parts.settings.lease, time.time())
-        registry.register(_Told(measures, shutil.disk_usage(parts.settings.datasets).free))
+        registry.register(_Measures(measures, shutil.disk_usage(parts.settings.datasets).free))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
 
 
@@ -98,7 +98,7 @@ class _Parts(Collector):
         yield ages
 
 
-class _Told(Collector):
+class _Measures(Collector):
     """Measures as Prometheus names them."""
 
     def __init__(self, measures: Measures, free: int) -> None:
@@ -115,13 +115,13 @@ class _Told(Collector):
         yield from (now, ended)
         yield GaugeMetricFamily("hockle_queue_age_seconds", "Age of the oldest waiting job", measures.queue_age)
         yield GaugeMetricFamily("hockle_lease_age_seconds", "Since the most silent worker renewed", measures.lease_age)
-        taken = measures.steps + measures.steps_redone  # the first alone falls where a run goes back to its checkpoint
-        yield CounterMetricFamily("hockle_steps", "Steps of the solver, those computed again included", taken)
+        steps = measures.steps + measures.steps_redone  # the first alone falls where a run goes back to its checkpoint
+        yield CounterMetricFamily("hockle_steps", "Steps of the solver, those computed again included", steps)
         yield CounterMetricFamily("hockle_steps_redone", "Steps lost and computed again", measures.steps_redone)
-        held = GaugeMetricFamily("hockle_dataset_bytes", "Bytes of the datasets of an owner", labels=["owner"])
+        sizes = GaugeMetricFamily("hockle_dataset_bytes", "Bytes of the datasets of an owner", labels=["owner"])
         for owner, size in measures.bytes.items():
-            held.add_metric([owner], size)
-        yield held
+            sizes.add_metric([owner], size)
+        yield sizes
         yield GaugeMetricFamily("hockle_disk_free_bytes", "Free room where datasets are written", self._free)
         yield GaugeMetricFamily("hockle_datasets_lost", "Datasets that are missing or damaged", measures.lost)
         yield GaugeMetricFamily("hockle_jobs_pinned", "Jobs that nobody may delete", measures.pinned)
@@ -133,7 +133,7 @@ class _Told(Collector):
 
 def _histogram(name: str, text: str, of_methods: list[Histogram]) -> Metric:
     family = HistogramMetricFamily(name, text, labels=["method"])
-    for one in of_methods:
-        buckets = [(str(bound), float(below)) for bound, below in zip(BOUNDS, one.below, strict=True)]
-        family.add_metric([one.method], [*buckets, ("+Inf", float(one.count))], one.total)
+    for histogram in of_methods:
+        buckets = [(str(bound), float(below)) for bound, below in zip(BOUNDS, histogram.below, strict=True)]
+        family.add_metric([histogram.method], [*buckets, ("+Inf", float(histogram.count))], histogram.total)
     return family

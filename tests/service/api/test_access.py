@@ -253,7 +253,7 @@ def test_the_events_that_a_key_follows_end_with_it(keyed, key, store, case, unti
     for thread in threads:
         thread.start()
     prefix = mine["Authorization"].split("_")[1]
-    until(lambda: prefix in keyed.app.state.parts.admitted._seen, "somebody listens")
+    until(lambda: prefix in keyed.app.state.parts.admitted._checks, "somebody listens")
     if end == "revoked":
         store.revoke(prefix)
     else:

@@ -17,9 +17,9 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
-from service.cases import MOST_TOLD, CaseError, FieldError
+from service.cases import MOST_ERRORS, CaseError, FieldError
 from service.cases.errors import field_error
-from service.cases.suggestions import meant
+from service.cases.suggestions import with_suggestion
 from service.jobs import DeletedJob, Pinned, UnknownJob
 from service.jobs.sqlite import FilesReplaced
 from service.jobs.submission import KeyReused, QuotaReached
@@ -98,8 +98,9 @@ def _allowed(request: Request) -> str:
 
 
 async def _parameters(request: Request, error: RequestValidationError) -> JSONResponse:
-    faults = [field_error(fault | {"loc": fault["loc"][1:]}) for fault in error.errors()[:MOST_TOLD]]
-    faults = [meant(fault, fault.pointer[1:], _parameters_of(request)) if fault.unknown else fault for fault in faults]
+    faults = [field_error(fault | {"loc": fault["loc"][1:]}) for fault in error.errors()[:MOST_ERRORS]]
+    faults = [with_suggestion(fault, fault.pointer[1:], _parameters_of(request)) if fault.unknown else fault
+              for fault in faults]  # fmt: skip
     errors = [{"parameter": fault.pointer[1:].replace("/", "."), "value": shown(fault.value), "rule": fault.rule}
               for fault in faults]
     return Problem(422, "invalid_parameters", _summary("parameter", errors), errors=errors).response()

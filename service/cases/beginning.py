@@ -37,11 +37,11 @@ def shared_beginnings(specs: Sequence[CaseSpec]) -> list[Beginning | None]:
     groups: dict[str, list[int]] = {}
     for number, spec in enumerate(specs):
         groups.setdefault(json.dumps(_trunk(_of_run(spec)), sort_keys=True), []).append(number)
-    found: list[Beginning | None] = [None] * len(specs)
+    beginnings: list[Beginning | None] = [None] * len(specs)
     for group in groups.values():
         for number, frame in _begun_in(group, specs).items():
-            found[number] = frame
-    return found
+            beginnings[number] = frame
+    return beginnings
 
 
 def _begun_in(group: Sequence[int], specs: Sequence[CaseSpec]) -> dict[int, Beginning]:
@@ -49,21 +49,21 @@ def _begun_in(group: Sequence[int], specs: Sequence[CaseSpec]) -> dict[int, Begi
     best: dict[int, Beginning] = {}
     for leader in {group[0], group[-1], max(group, key=lambda number: specs[number].t_end)}:
         common = {number: common_frame(specs[leader], specs[number]) for number in group if number != leader}
-        mine = {number: Beginning(leader, frame) for number, frame in common.items()
+        followers = {number: Beginning(leader, frame) for number, frame in common.items()
                 if frame >= max(1.0, WORTH * specs[number].frames)}  # fmt: skip
-        best = max(best, mine, key=lambda of: sum(one.frame for one in of.values()))
+        best = max(best, followers, key=lambda group: sum(beginning.frame for beginning in group.values()))
     return best
 
 
-def _trunk(told: Any, name: str = "") -> Any:
+def _trunk(data: Any, name: str = "") -> Any:
     """What cases with one beginning have alike: a schedule is where it starts from, what comes later is left out."""
     if name in ("t_end", "switches"):
         return None
-    if _is_schedule(told):
-        return told["value"][0]
-    if isinstance(told, dict):
-        return {key: _trunk(value, key) for key, value in told.items()}
-    return [_trunk(value) for value in told] if isinstance(told, list) else told
+    if _is_schedule(data):
+        return data["value"][0]
+    if isinstance(data, dict):
+        return {key: _trunk(value, key) for key, value in data.items()}
+    return [_trunk(value) for value in data] if isinstance(data, list) else data
 
 
 def common_frame(first: CaseSpec, then: CaseSpec) -> int:
@@ -101,11 +101,11 @@ def hindrance(first: CaseSpec, then: CaseSpec) -> str:
 
 def _of_run(spec: CaseSpec) -> dict[str, Any]:
     """What the run depends on."""
-    told = spec.model_dump(mode="json", exclude={*FOR_PEOPLE, "output"})
-    for name, end in told["ends"].items():
+    data = spec.model_dump(mode="json", exclude={*FOR_PEOPLE, "output"})
+    for name, end in data["ends"].items():
         if isinstance(end, str):
-            told["ends"][name] = EndObject.model_validate({"preset": end}).model_dump(mode="json")
-    return told
+            data["ends"][name] = EndObject.model_validate({"preset": end}).model_dump(mode="json")
+    return data
 
 
 def _same_until(first: Any, then: Any, name: str = "") -> float:

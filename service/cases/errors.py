@@ -39,8 +39,8 @@ _RULES = {
 }
 TAG = re.compile("<[a-z]+>")
 """What tells the kinds of a value apart; it is no field."""
-MOST_TOLD = 100
-"""Faults of a case that are told one by one."""
+MOST_ERRORS = 100
+"""Faults of a case that are listed one by one."""
 LONGEST_POINTER = 300
 _LONGEST_VALUE = 60
 _LARGEST_INTEGER = 10**15
@@ -69,15 +69,15 @@ class CaseError(ValueError):
     """A case that cannot be run: the first faults that were found, and how many `more` there are."""
 
     def __init__(self, errors: Sequence[FieldError], more: int = 0) -> None:
-        self.errors, self.more = list(errors[:MOST_TOLD]), more + max(len(errors) - MOST_TOLD, 0)
-        told = [str(error) for error in self.errors]
-        super().__init__("\n".join([*told, f"and {self.more} more faults"] if self.more else told))
+        self.errors, self.more = list(errors[:MOST_ERRORS]), more + max(len(errors) - MOST_ERRORS, 0)
+        lines = [str(error) for error in self.errors]
+        super().__init__("\n".join([*lines, f"and {self.more} more faults"] if self.more else lines))
 
     @classmethod
     def of(cls, error: ValidationError) -> CaseError:
         """The same faults as pydantic found them, in the words of this package."""
-        found = error.errors(include_url=False)
-        return cls([field_error(detail) for detail in found[:MOST_TOLD]], max(len(found) - MOST_TOLD, 0))
+        details = error.errors(include_url=False)
+        return cls([field_error(detail) for detail in details[:MOST_ERRORS]], max(len(details) - MOST_ERRORS, 0))
 
 
 def refusal(at: str, value: object, rule: str) -> PydanticCustomError:
@@ -95,8 +95,8 @@ def field_error(detail: ErrorDetails) -> FieldError:
     kind, value = detail["type"], detail["input"]
     if kind == "refused":
         at = context["at"]
-        there = value.get(at) if isinstance(value, dict) else value
-        return FieldError(pointer + (f"/{at}" if at else ""), plain(context.get("value", there)), context["rule"])
+        refused = value.get(at) if isinstance(value, dict) else value
+        return FieldError(pointer + (f"/{at}" if at else ""), plain(context.get("value", refused)), context["rule"])
     if kind == "string_pattern_mismatch" and (words := IN_WORDS.get(context["pattern"])):
         return FieldError(pointer, value, words)
     if kind in _RULES:

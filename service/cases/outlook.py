@@ -84,7 +84,7 @@ def _is_let_go(scene: Scene) -> bool:
     weight = float(np.linalg.norm(np.cross(tangent, scene.gravity), axis=1).mean()) * mass * length**3
     stress = float(np.abs(moments(elasticity_of(scene.rod, s), kappa)).max()) * length
     crossed = [np.cross(tangent[0], [c.value(0.0) for c in load.force]) for load in scene.points]
-    across = [float(np.linalg.norm(one)) for one in crossed]
+    across = [float(np.linalg.norm(force)) for force in crossed]
     across += [_across(scene.start, tangent[0]), _across(scene.end, tangent[-1])]
     thrown = any((*scene.initial.velocity, *scene.initial.angular_velocity))
     return thrown or max(weight, stress, max(across) * length**2) > SMALL * stiffness

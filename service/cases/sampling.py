@@ -47,7 +47,7 @@ def sample(method: Method, ranges: Sequence[Range], size: int, seed: int) -> lis
     estimated (Saltelli et al., 2010), size (parameters + 2) of them, as SALib has them.
     """
     parts = _unit(method, len(ranges), size, seed)
-    columns = [one.at(part) for one, part in zip(ranges, parts.T, strict=True)]
+    columns = [bounds.at(part) for bounds, part in zip(ranges, parts.T, strict=True)]
     return list(zip(*(column.tolist() for column in columns), strict=True))
 
 
@@ -87,8 +87,8 @@ def sobol_indices(values: NDArray[np.float64], parameters: int) -> list[Index]:
     """Sobol's indices of a number, by its values at the points of a `saltelli` sample (members,)."""
     from SALib.analyze import sobol
 
-    found: Mapping[str, NDArray[np.float64]] = sobol.analyze(
+    indices: Mapping[str, NDArray[np.float64]] = sobol.analyze(
         unit_problem(parameters), values, calc_second_order=False, seed=0
     )
-    columns = (found[name].tolist() for name in ("S1", "S1_conf", "ST", "ST_conf"))
+    columns = (indices[name].tolist() for name in ("S1", "S1_conf", "ST", "ST_conf"))
     return [Index(*row) for row in zip(*columns, strict=True)]

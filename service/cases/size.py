@@ -60,8 +60,8 @@ def _refuse_output(case: CaseSpec) -> None:
     frames = case.t_end / case.output.interval
     stored = inf if frames > MOST_NODE_FRAMES else case.frames * ((case.numerics.intervals or FIRST_INTERVALS) + 1)
     if stored > MOST_NODE_FRAMES:
-        told = f"{frames:.3g} frames" if stored == inf else f"{stored:,}"
-        rule = f"must leave at most {MOST_NODE_FRAMES:,} nodes times frames, not {told}"
+        count = f"{frames:.3g} frames" if stored == inf else f"{stored:,}"
+        rule = f"must leave at most {MOST_NODE_FRAMES:,} nodes times frames, not {count}"
         raise refusal("output/interval", case.output.interval, rule)
     steps = case.t_end / (case.numerics.dt_max or case.output.interval)
     if case.analysis == "dynamic" and steps > MOST_STEPS:
@@ -73,9 +73,9 @@ def _refuse_contact(case: CaseSpec) -> None:
     if case.contact is None:
         return
     points, pairs = contact_points(case)
-    given = f" (of {_spacing(case):g} m, 0.4 diameters)" if case.contact.spacing is None else ""
+    default = f" (of {_spacing(case):g} m, 0.4 diameters)" if case.contact.spacing is None else ""
     if points > MOST_CONTACT_POINTS:
-        rule = f"must leave at most {MOST_CONTACT_POINTS:,} contact points along the rod{given}, not {points:,.0f}"
+        rule = f"must leave at most {MOST_CONTACT_POINTS:,} contact points along the rod{default}, not {points:,.0f}"
         raise refusal("contact/spacing", case.contact.spacing, rule)
     if pairs > MOST_CONTACT_PAIRS:
         rule = (f"must leave at most {MOST_CONTACT_PAIRS:,} pairs of contact points within the cutoff of "

@@ -20,19 +20,19 @@ def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
     if not fault.unknown or not fault.pointer:  # a field that is named as what tells kinds apart has no pointer
         return fault
     *path, name = (part.replace("~1", "/").replace("~0", "~") for part in fault.pointer.split("/")[1:])
-    return meant(fault, name, fields_at(whole, path))
+    return with_suggestion(fault, name, fields_at(whole, path))
 
 
-def meant(fault: FieldError, name: str, names: Sequence[str]) -> FieldError:
+def with_suggestion(fault: FieldError, name: str, names: Sequence[str]) -> FieldError:
     """The same fault, with the one of the known `names` that is most like the unknown `name`, if one is."""
     return FieldError(fault.pointer, fault.value, fault.rule + did_you_mean(name, names))
 
 
 def did_you_mean(name: str, names: Sequence[str]) -> str:
     """The known name that is most like an unknown one, in whatever letters, as the end of a message; if one is."""
-    known = {one.lower(): one for one in names}
-    near = get_close_matches(name[:80].lower(), known, n=1)
-    return f": did you mean {known[near[0]]}?" if near else ""
+    spellings = {known.lower(): known for known in names}
+    near = get_close_matches(name[:80].lower(), spellings, n=1)
+    return f": did you mean {spellings[near[0]]}?" if near else ""
 
 
 def fields_at(whole: type[BaseModel], path: Sequence[str]) -> list[str]:

@@ -167,11 +167,11 @@ class ContactSpec(Spec):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        given = [name for name in (*NEEDED, *DAMPING) if getattr(self, name) is not None]
-        if given:
+        constants = [name for name in (*NEEDED, *DAMPING) if getattr(self, name) is not None]
+        if constants:
             for name in (*NEEDED, "skip", "spacing"):
                 if getattr(self, name) is None:
-                    raise refusal(name, None, f"is required beside {given[0]}: all constants of eq. (6), or none")
+                    raise refusal(name, None, f"is required beside {constants[0]}: all constants of eq. (6), or none")
         elif self.sum != "density":
             raise refusal("sum", self.sum, "must be density where no constants of eq. (6) are given")
         return self

@@ -96,8 +96,8 @@ def _turn(end: End, scene: Scene) -> Any:
     if condition.kind == "rate":
         steps = 0.5 * (value[1:] + value[:-1]) * np.diff(times)
         value = np.concatenate([[0.0], np.cumsum(steps)])
-    kept = times <= later[0].since if later else np.full(len(times), True)
-    return np.where(kept, value, value[kept][-1]) - value[0]
+    driven = times <= later[0].since if later else np.full(len(times), True)
+    return np.where(driven, value, value[driven][-1]) - value[0]
 
 
 def _times(scene: Scene) -> Any:
@@ -106,8 +106,8 @@ def _times(scene: Scene) -> Any:
 
 def _frames(spec: CaseSpec) -> Iterator[FieldError]:
     """Too few frames to see a schedule go up and down."""
-    found = [period for part in ("ends", "loads") for period in _periods(getattr(spec, part), f"/{part}")]
-    shortest, where = min(found, default=(np.inf, ""))
+    periods = [period for part in ("ends", "loads") for period in _periods(getattr(spec, part), f"/{part}")]
+    shortest, where = min(periods, default=(np.inf, ""))
     if spec.output.interval > shortest:
         rule = f"is longer than {shortest:.3g} s, in which {where} goes up and down: the frames cannot show it"
         yield FieldError("/output/interval", spec.output.interval, rule)

@@ -36,7 +36,7 @@ def check(arguments: argparse.Namespace) -> int:
     settings, wrong = settings_of(arguments), 0
     with registry_of(settings) as database:
         for finding in check(database, settings):
-            print(finding.what)
+            print(finding.sentence)
             wrong += not finding.repaired
     print(f"{wrong} faults are left" if wrong else "all is well")
     return 1 if wrong else 0

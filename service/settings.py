@@ -220,7 +220,7 @@ def from_environment(environment: Mapping[str, str] = os.environ) -> Settings:
     if path := environment.get(FILE):
         values = _read(path)
     names = {field.name: variable(field.name) for field in fields(Settings)}
-    values |= {name: environment[its] for name, its in names.items() if environment.get(its)}
+    values |= {name: environment[key] for name, key in names.items() if environment.get(key)}
     try:
         return TypeAdapter(Settings).validate_python(values)
     except ValidationError as error:

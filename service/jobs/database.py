@@ -14,7 +14,7 @@ from sqlalchemy import ColumnElement, Connection, Engine, create_engine, insert,
 
 from service.jobs.lifecycle import ENDED, Status, allowed_before
 from service.jobs.migrations import migrate
-from service.jobs.sqlite import BUSY, Files, sqlite_engine, told
+from service.jobs.sqlite import BUSY, Files, isolation, sqlite_engine
 from service.jobs.tables import events, jobs, owners
 
 FOUND_DEAD = {
@@ -54,9 +54,9 @@ class Transaction:
         if status in ENDED:
             self._finished(changed)
         if event:
-            told = {"status": status.value} if status is not None else {}
+            data = {"status": status.value} if status is not None else {}
             for row in changed:
-                self.note(row.id, row.version, event, told | {"epoch": row.epoch})
+                self.note(row.id, row.version, event, data | {"epoch": row.epoch})
         return [row.id for row in changed]
 
     def _finished(self, ended: Sequence[Any]) -> None:
@@ -113,4 +113,4 @@ class Database:
 
 
 def _postgresql(url: str, reading: bool) -> Engine:
-    return create_engine(url, connect_args=FOUND_DEAD, pool_pre_ping=True, pool_timeout=BUSY, **told(reading))
+    return create_engine(url, connect_args=FOUND_DEAD, pool_pre_ping=True, pool_timeout=BUSY, **isolation(reading))

@@ -23,20 +23,20 @@ def delete_jobs(transaction: Transaction, actor: Actor, job_ids: Collection[str]
     Their cases, events, links and webhooks go at once; the files of their datasets are noted as removals.
     """
     connection = transaction.connection
-    these = (jobs.c.id.in_(job_ids), jobs.c.status.in_(ENDED), jobs.c.deleted.is_(None), ~jobs.c.pinned)
-    held = select(jobs.c.id, jobs.c.owner, jobs.c.dataset_file, jobs.c.dataset_bytes).where(*these)
-    found = connection.execute(held.order_by(jobs.c.id).with_for_update()).all()
-    ids = [row.id for row in found]
+    conditions = (jobs.c.id.in_(job_ids), jobs.c.status.in_(ENDED), jobs.c.deleted.is_(None), ~jobs.c.pinned)
+    query = select(jobs.c.id, jobs.c.owner, jobs.c.dataset_file, jobs.c.dataset_bytes).where(*conditions)
+    rows = connection.execute(query.order_by(jobs.c.id).with_for_update()).all()
+    ids = [row.id for row in rows]
     if not ids:
         return []
     for table in (events, links, webhooks):
         connection.execute(delete(table).where(table.c.job_id.in_(ids)))
-    gone = {"deleted": transaction.now, "deleted_by": actor.owner, "version": jobs.c.version + 1}
-    connection.execute(update(jobs).where(jobs.c.id.in_(ids)).values(**BLANK, **gone))
-    if files := [{"file": row.dataset_file} for row in found if row.dataset_file is not None]:
+    marks = {"deleted": transaction.now, "deleted_by": actor.owner, "version": jobs.c.version + 1}
+    connection.execute(update(jobs).where(jobs.c.id.in_(ids)).values(**BLANK, **marks))
+    if files := [{"file": row.dataset_file} for row in rows if row.dataset_file is not None]:
         connection.execute(insert(removals), files)
     freed = Counter[str]()
-    for row in found:
+    for row in rows:
         freed[row.owner] += row.dataset_bytes or 0
     for owner, bytes_ in sorted(freed.items()):  # in one order: rows are locked in it
         connection.execute(update(owners).where(owners.c.name == owner).values(bytes=owners.c.bytes - bytes_))

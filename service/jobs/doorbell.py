@@ -64,8 +64,8 @@ class Doorbell:
             return False
         return True
 
-    def leave(self, wanted: int) -> None:
-        """Ring until as many messages lie unanswered as are wanted, or the broker cannot be reached."""
+    def leave(self, messages: int) -> None:
+        """Ring until so many `messages` lie unanswered, or the broker cannot be reached."""
         try:
             with self._celery.connection_or_acquire() as connection:  # one that is kept: a new one takes 1.5 ms
                 connection.ensure_connection(**ONCE_MORE)
@@ -73,7 +73,7 @@ class Doorbell:
         except BROKEN as error:
             log.warning("the broker cannot be reached, it will be told again: %s", error)
             return
-        for _ in range(wanted - unanswered):
+        for _ in range(messages - unanswered):
             if not self.ring():
                 return
 

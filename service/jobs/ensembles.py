@@ -117,7 +117,7 @@ class Ensembles:
 
     def get(self, ensemble_id: str) -> Ensemble:
         """One ensemble. Raises UnknownEnsemble."""
-        query = _ensembles().where(ensembles.c.id == ensemble_id, self._seen)
+        query = _ensembles().where(ensembles.c.id == ensemble_id, self._visible)
         with self._database.reading() as connection:
             row = None if "\0" in ensemble_id else connection.execute(query).mappings().first()
         if row is None:
@@ -126,7 +126,7 @@ class Ensembles:
 
     def page(self, limit: int, after: str | None = None) -> list[Ensemble]:
         """At most so many, newest first, older than the one with the id `after`."""
-        query = _ensembles().where(self._seen).order_by(ensembles.c.id.desc()).limit(limit)
+        query = _ensembles().where(self._visible).order_by(ensembles.c.id.desc()).limit(limit)
         if after is not None:
             query = query.where(ensembles.c.id < after)
         with self._database.reading() as connection:
@@ -145,14 +145,14 @@ class Ensembles:
             rows = connection.execute(query).all()
         statuses: Counter[Status] = Counter()
         outcomes: Counter[str] = Counter()
-        done = 0.0
+        progress = 0.0
         for row in rows:
             statuses[Status(row.status)] += row.many
             outcomes[row.outcome] += row.many
-            done += row.many if Status(row.status) in ENDED else row.progress
+            progress += row.many if Status(row.status) in ENDED else row.progress
         del outcomes[""]
         ended = all(status in ENDED for status in statuses)
-        return Standing(statuses, outcomes, done / max(statuses.total(), 1), sum(row.jobs for row in rows),
+        return Standing(statuses, outcomes, progress / max(statuses.total(), 1), sum(row.jobs for row in rows),
                         int(sum(row.version for row in rows)),
                         max((row.finished for row in rows), default=None) if ended else None)
 
@@ -177,27 +177,27 @@ class Ensembles:
 
     def cancel(self, ensemble_id: str, actor: Actor) -> None:
         """Dismiss the members that wait, and tell the workers of those that run."""
-        theirs = jobs.c.id.in_(select(members.c.job_id).where(members.c.ensemble_id == ensemble_id))
+        of_ensemble = jobs.c.id.in_(select(members.c.job_id).where(members.c.ensemble_id == ensemble_id))
         open_ = jobs.c.status.in_([Status.ACCEPTED, Status.RUNNING])
         with self._database.writing() as transaction:
-            asked = transaction.change(theirs, open_, ~jobs.c.cancel_requested, event="cancel_requested",
-                                       cancel_requested=True)
-            if asked:
+            changed = transaction.change(of_ensemble, open_, ~jobs.c.cancel_requested, event="cancel_requested",
+                                         cancel_requested=True)
+            if changed:
                 note(transaction, actor, "ensemble_cancelled", ensemble_id)
-            transaction.change(theirs, jobs.c.status == Status.ACCEPTED, event="ended", status=Status.DISMISSED,
+            transaction.change(of_ensemble, jobs.c.status == Status.ACCEPTED, event="ended", status=Status.DISMISSED,
                                outcome=Outcome.CANCELLED.value, message="cancelled before it started")
 
     def _submit(self, new: NewEnsemble, terms: Terms) -> str:
         with self._database.writing() as transaction:
-            known = _known(transaction, new)
-            if known is not None:
-                return known
-            wanted: dict[str, Submission] = {}
+            earlier = _ensemble_of_key(transaction, new)
+            if earlier is not None:
+                return earlier
+            submissions: dict[str, Submission] = {}
             for job in new.jobs:
-                wanted.setdefault(job.case_sha256, Submission(job, new.actor, reuse=new.reuse))
-            results = submit_all(transaction, list(wanted.values()), terms)
+                submissions.setdefault(job.case_sha256, Submission(job, new.actor, reuse=new.reuse))
+            results = submit_all(transaction, list(submissions.values()), terms)
             ids: dict[str, str] = {}
-            for case_sha256, result in zip(wanted, results, strict=True):
+            for case_sha256, result in zip(submissions, results, strict=True):
                 if isinstance(result, Exception):
                     raise result
                 ids[case_sha256] = result.id
@@ -206,11 +206,11 @@ class Ensembles:
         return new.id
 
     @property
-    def _seen(self) -> ColumnElement[bool]:
+    def _visible(self) -> ColumnElement[bool]:
         return true() if self._owner is None else ensembles.c.owner == self._owner
 
 
-def _known(transaction: Transaction, new: NewEnsemble) -> str | None:
+def _ensemble_of_key(transaction: Transaction, new: NewEnsemble) -> str | None:
     """The ensemble that came with the same key before. Raises KeyReused."""
     same = ensembles.c.owner == new.actor.owner, ensembles.c.key == new.key
     if not new.key:
@@ -237,11 +237,11 @@ def _write(transaction: Transaction, new: NewEnsemble, job_ids: Sequence[str]) -
 def _follow(transaction: Transaction, accepted: Mapping[str, str]) -> None:
     """Have those that begin with a job which was not accepted, as another one is as good, begin with that; none waits
     for what has ended, or for itself."""
-    for asked, given in accepted.items():
-        if asked != given:
-            followers = update(jobs).where(jobs.c.begins_with == asked)
-            ended = select(jobs.c.id).where(jobs.c.id == given, jobs.c.status.in_(ENDED)).exists()
-            transaction.connection.execute(followers.values(begins_with=given, waits=~ended))
+    for own_id, accepted_id in accepted.items():
+        if own_id != accepted_id:
+            followers = update(jobs).where(jobs.c.begins_with == own_id)
+            ended = select(jobs.c.id).where(jobs.c.id == accepted_id, jobs.c.status.in_(ENDED)).exists()
+            transaction.connection.execute(followers.values(begins_with=accepted_id, waits=~ended))
     itself = update(jobs).where(jobs.c.begins_with == jobs.c.id, jobs.c.waits)
     transaction.connection.execute(itself.values(begins_with=None, waits=False))
 

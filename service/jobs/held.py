@@ -36,12 +36,12 @@ def claim(database: Database, job_id: str, lease: float, worker: str, most: int 
     with database.writing() as transaction:
         if not may_run(transaction, job_id, host_of(worker), most):
             return None
-        taken = transaction.change(
+        claimed = transaction.change(
             jobs.c.id == job_id, *waiting_for_a_worker(), event="started", status=Status.RUNNING,
             epoch=jobs.c.epoch + 1, attempts=jobs.c.attempts + 1, fruitless=jobs.c.fruitless + 1,
             lease_until=transaction.now + lease, started=transaction.now, worker=worker, gives_way=False,
         )  # fmt: skip
-        if not taken:
+        if not claimed:
             return None
         connection = transaction.connection
         row = dict(connection.execute(
@@ -66,12 +66,12 @@ class HeldJob:
 
         Returns what is to become of the run; None if the job is another's now.
         """
-        seen = (jobs.c.steps != reached.steps) | (jobs.c.phase != reached.phase)
-        moved = case((seen, 1), else_=0)
+        progressed = (jobs.c.steps != reached.steps) | (jobs.c.phase != reached.phase)
+        moved = case((progressed, 1), else_=0)
         with self.database.writing() as transaction:
-            kept = transaction.change(*self._mine, lease_until=transaction.now + lease,
-                                      version=jobs.c.version + moved, **asdict(reached))
-            if not kept:
+            renewed = transaction.change(*self._mine, lease_until=transaction.now + lease,
+                                         version=jobs.c.version + moved, **asdict(reached))
+            if not renewed:
                 return None
             wishes = select(jobs.c.cancel_requested, jobs.c.gives_way).where(jobs.c.id == self.job.id)
             cancelled, gives_way = transaction.connection.execute(wishes).one()

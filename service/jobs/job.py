@@ -181,10 +181,10 @@ class Job:
     @property
     def remaining(self) -> float | None:
         """Seconds that the rest of the run takes if it goes on as so far; None where that cannot be known."""
-        done = self.reached.progress
-        if self.status is not Status.RUNNING or done < LEAST_PROGRESS:
+        progress = self.reached.progress
+        if self.status is not Status.RUNNING or progress < LEAST_PROGRESS:
             return None
-        return self.reached.wall * (1.0 - done) / done
+        return self.reached.wall * (1.0 - progress) / progress
 
 
 def new_id() -> str:

@@ -49,8 +49,8 @@ class Leader:
             return False
         with self._database.writing() as transaction:
             same = (leader.c.holder == holder, leader.c.beat == beat)
-            taken = update(leader).where(*same).values(holder=self._me, beat=beat + 1)
-            return transaction.connection.execute(taken).rowcount == 1
+            statement = update(leader).where(*same).values(holder=self._me, beat=beat + 1)
+            return transaction.connection.execute(statement).rowcount == 1
 
     def resign(self) -> None:
         """Let another lead at once."""
@@ -65,7 +65,7 @@ class Leader:
     def writing(self) -> Iterator[Transaction]:
         """As the database's, but raises Deposed where another process leads."""
         with self._database.writing() as transaction:
-            held = select(leader.c.holder).with_for_update(read=True)  # until the commit, where it is not all locked
-            if transaction.connection.scalar(held) != self._me:
+            query = select(leader.c.holder).with_for_update(read=True)  # until the commit, where it is not all locked
+            if transaction.connection.scalar(query) != self._me:
                 raise Deposed
             yield transaction

@@ -50,44 +50,44 @@ class Measures:
 def measure(database: Database, lease: float, now: float) -> Measures:
     """The measures at the time `now`, where a lease lasts `lease` seconds."""
     with database.reading() as connection:
-        many = connection.execute(
+        rows = connection.execute(
             select(jobs.c.status, jobs.c.outcome, func.count(), func.sum(jobs.c.steps), func.sum(jobs.c.steps_redone))
             .group_by(jobs.c.status, jobs.c.outcome)
         ).all()  # fmt: skip
         oldest = connection.scalar(select(func.min(jobs.c.created)).where(jobs.c.status == Status.ACCEPTED))
         bytes_ = {row.name: row.bytes for row in connection.execute(select(owners.c.name, owners.c.bytes))}
-        kept = connection.execute(select(
+        counts = connection.execute(select(
             _count(jobs.c.dataset_fault != ""), _count(jobs.c.pinned), _count(jobs.c.deleted.is_not(None))
         )).one()  # fmt: skip
         silent = connection.scalar(select(func.min(jobs.c.lease_until)).where(jobs.c.status == Status.RUNNING))
     by_status = {status.value: 0 for status in Status}
-    for status, _, count, _, _ in many:
+    for status, _, count, _, _ in rows:
         by_status[status] += count
     return Measures(
         by_status,
-        {(status, outcome): count for status, outcome, count, _, _ in many if status in ENDED},
+        {(status, outcome): count for status, outcome, count, _, _ in rows if status in ENDED},
         max(0.0, now - oldest) if oldest is not None else 0.0,
         max(0.0, now - (silent - lease)) if silent is not None else 0.0,
-        sum(int(steps) for *_, steps, _ in many),
-        sum(int(redone) for *_, redone in many),
+        sum(int(steps) for *_, steps, _ in rows),
+        sum(int(redone) for *_, redone in rows),
         bytes_,
-        *kept,
+        *counts,
         _histograms(database, jobs.c.drift_topology),
         _histograms(database, jobs.c.drift_energy),
     )
 
 
-def _count(which: ColumnElement[bool]) -> ColumnElement[int]:
-    return func.coalesce(func.sum(case((which, 1), else_=0)), 0)
+def _count(condition: ColumnElement[bool]) -> ColumnElement[int]:
+    return func.coalesce(func.sum(case((condition, 1), else_=0)), 0)
 
 
 def counted(database: Database) -> tuple[int, int]:
     """How many jobs wait, and how many run."""
-    some = jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING))
+    unfinished = jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING))
     with database.reading() as connection:
-        found = connection.execute(select(jobs.c.status, func.count()).where(some).group_by(jobs.c.status)).all()
-    many: dict[str, int] = dict(map(tuple, found))
-    return many.get(Status.ACCEPTED, 0), many.get(Status.RUNNING, 0)
+        rows = connection.execute(select(jobs.c.status, func.count()).where(unfinished).group_by(jobs.c.status)).all()
+    counts: dict[str, int] = dict(map(tuple, rows))
+    return counts.get(Status.ACCEPTED, 0), counts.get(Status.RUNNING, 0)
 
 
 def _histograms(database: Database, column: Column[float]) -> list[Histogram]:
@@ -95,5 +95,5 @@ def _histograms(database: Database, column: Column[float]) -> list[Histogram]:
     below = [func.sum(case((column <= bound, 1), else_=0)) for bound in BOUNDS]
     query = select(jobs.c.drift_method, func.count(column), func.sum(column), *below).where(column.is_not(None))
     with database.reading() as connection:
-        found = connection.execute(query.group_by(jobs.c.drift_method).order_by(jobs.c.drift_method)).all()
-    return [Histogram(method, [int(n) for n in below], count, total) for method, count, total, *below in found]
+        rows = connection.execute(query.group_by(jobs.c.drift_method).order_by(jobs.c.drift_method)).all()
+    return [Histogram(method, [int(n) for n in below], count, total) for method, count, total, *below in rows]

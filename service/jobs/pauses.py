@@ -28,8 +28,8 @@ def pause(database: Database, host: str, drains: bool, actor: Actor) -> None:
     """Have a host, or all, take no more jobs, and, if it `drains`, hand back those it runs, with a checkpoint."""
     with database.writing() as transaction:
         transaction.connection.execute(delete(pauses).where(pauses.c.host == host))
-        told = {"host": host, "drains": drains, "since": transaction.now, "owner": actor.owner}
-        transaction.connection.execute(insert(pauses), told)
+        row = {"host": host, "drains": drains, "since": transaction.now, "owner": actor.owner}
+        transaction.connection.execute(insert(pauses), row)
         if drains:
             give_way(transaction, _runs_on(host))
         note(transaction, actor, f"{_what(host)}_{'drained' if drains else 'paused'}", host)
@@ -54,9 +54,9 @@ def drain(database: Database | Leader) -> None:
     """Have what runs where it should not be handed back, also what was claimed while a pause began."""
     with database.reading() as connection:
         drained = connection.scalars(select(pauses.c.host).where(pauses.c.drains)).all()
-        found = [connection.scalar(select(jobs.c.id).where(_runs_on(host), ~jobs.c.gives_way).limit(1))
+        job_ids = [connection.scalar(select(jobs.c.id).where(_runs_on(host), ~jobs.c.gives_way).limit(1))
                  for host in drained]  # fmt: skip
-    if not any(found):
+    if not any(job_ids):
         return
     with database.writing() as transaction:
         for host in drained:

@@ -51,12 +51,12 @@ class Presence:
         """Show that this process gets on, but for what is `stuck`; the first time take along the rows of those of
         this host that ended without a word. Raises what the database raises."""
         with self._database.writing() as transaction:
-            told = {"stuck": ",".join(stuck), "seen": transaction.now}
-            this = update(processes).where(processes.c.id == self._id).values(beat=processes.c.beat + 1, **told)
-            if transaction.connection.execute(this).rowcount:
+            values = {"stuck": ",".join(stuck), "seen": transaction.now}
+            statement = update(processes).where(processes.c.id == self._id).values(beat=processes.c.beat + 1, **values)
+            if transaction.connection.execute(statement).rowcount:
                 return
             new = {"id": self._id, "kind": self._kind, "host": self._host, "pid": self._pid, "beat": 1}
-            transaction.connection.execute(insert(processes), new | told)
+            transaction.connection.execute(insert(processes), new | values)
         self._bury()
 
     def leave(self) -> None:
@@ -66,8 +66,8 @@ class Presence:
     def _bury(self) -> None:
         here = (processes.c.host == self._host, processes.c.kind == self._kind)  # others may count pids by themselves
         with self._database.reading() as connection:
-            there = connection.execute(select(processes.c.id, processes.c.pid).where(*here)).all()
-        if dead := [row.id for row in there if not _runs(row.pid)]:
+            rows = connection.execute(select(processes.c.id, processes.c.pid).where(*here)).all()
+        if dead := [row.id for row in rows if not _runs(row.pid)]:
             forget(self._database, dead)
 
 
@@ -76,7 +76,7 @@ class Roll:
 
     def __init__(self, listener: Callable[[], Listener] = Listener) -> None:
         self._listener = listener
-        self._heard: dict[str, Listener] = {}
+        self._listeners: dict[str, Listener] = {}
         self.ages: dict[str, float] = {}
         """Seconds in which nothing was heard of each."""
         self.silent: list[str] = []
@@ -87,12 +87,12 @@ class Roll:
     def call(self, database: Database) -> None:
         """Look at the rows."""
         with database.reading() as connection:
-            there = [Process(**row) for row in connection.execute(select(processes)).mappings()]
-        self._heard = {one.id: self._heard.get(one.id) or self._listener() for one in there}
-        self.ages = {one.id: self._heard[one.id].silent(one.beat) for one in there}
+            rows = [Process(**row) for row in connection.execute(select(processes)).mappings()]
+        self._listeners = {process.id: self._listeners.get(process.id) or self._listener() for process in rows}
+        self.ages = {process.id: self._listeners[process.id].silent(process.beat) for process in rows}
         quiet = {name for name, age in self.ages.items() if age > SILENT}
-        self.workers = sum(one.kind == "worker" and one.id not in quiet for one in there)
-        parts = [f"{one.id} {part}" for one in there if one.stuck for part in one.stuck.split(",")]
+        self.workers = sum(process.kind == "worker" and process.id not in quiet for process in rows)
+        parts = [f"{process.id} {part}" for process in rows if process.stuck for part in process.stuck.split(",")]
         self.silent = sorted(quiet) + parts
 
 

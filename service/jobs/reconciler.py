@@ -104,34 +104,34 @@ def dismiss_cancelled(database: Database | Leader) -> None:
 def recount(database: Database | Leader) -> None:
     """Set right how many unfinished jobs and how many bytes owners have: a process of an older version, which does not
     keep the numbers, may have run beside this one."""
-    his = jobs.c.owner == owners.c.name
-    there_are = (
-        select(func.count()).where(his, jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING))).scalar_subquery()
+    of_owner = jobs.c.owner == owners.c.name
+    unfinished = (
+        select(func.count()).where(of_owner, jobs.c.status.in_((Status.ACCEPTED, Status.RUNNING))).scalar_subquery()
     )
-    bytes_ = select(func.coalesce(func.sum(jobs.c.dataset_bytes), 0)).where(his).scalar_subquery()
-    miscounted = (owners.c.unfinished != there_are) | (owners.c.bytes != bytes_)
+    bytes_ = select(func.coalesce(func.sum(jobs.c.dataset_bytes), 0)).where(of_owner).scalar_subquery()
+    miscounted = (owners.c.unfinished != unfinished) | (owners.c.bytes != bytes_)
     with database.reading() as connection:
         wrong = connection.scalars(select(owners.c.name).where(miscounted)).all()
     if not wrong:
         return
-    theirs = owners.c.name.in_(wrong)
+    of_wrong = owners.c.name.in_(wrong)
     with database.writing() as transaction:
         # held first, in one order, and counted after: what another transaction changes meanwhile it adds itself
-        transaction.connection.execute(select(owners.c.name).where(theirs).order_by(owners.c.name).with_for_update())
-        transaction.connection.execute(update(owners).where(theirs).values(unfinished=there_are, bytes=bytes_))
+        transaction.connection.execute(select(owners.c.name).where(of_wrong).order_by(owners.c.name).with_for_update())
+        transaction.connection.execute(update(owners).where(of_wrong).values(unfinished=unfinished, bytes=bytes_))
 
 
 def waiting(database: Database) -> int:
     """How many jobs wait for a worker, counted up to AT_ONCE."""
-    some = select(jobs.c.id).where(jobs.c.status == Status.ACCEPTED).limit(AT_ONCE).subquery()
+    accepted = select(jobs.c.id).where(jobs.c.status == Status.ACCEPTED).limit(AT_ONCE).subquery()
     with database.reading() as connection:
-        return connection.scalar(select(func.count()).select_from(some)) or 0
+        return connection.scalar(select(func.count()).select_from(accepted)) or 0
 
 
 def ring_for_all(database: Database, doorbell: Doorbell, least: int = 0) -> None:
     """Have a message lie for each job that waits, up to AT_ONCE, and `least` in any case."""
-    if wanted := max(waiting(database), least):
-        doorbell.leave(wanted)
+    if messages := max(waiting(database), least):
+        doorbell.leave(messages)
 
 
 class Reconciler:

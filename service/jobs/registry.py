@@ -110,22 +110,22 @@ class Registry:
 
     def scalars(self, job_ids: Collection[str]) -> dict[str, dict[str, Any]]:
         """The last values of some jobs, by id; those of which only a dataset tells are left out."""
-        found: dict[str, dict[str, Any]] = {}
+        scalars: dict[str, dict[str, Any]] = {}
         with self.database.reading() as connection:
-            for some in _batches(list(job_ids)):
-                query = select(jobs.c.id, jobs.c.scalars).where(jobs.c.id.in_(some), self._seen)
-                found |= {row.id: json.loads(row.scalars) for row in connection.execute(query) if row.scalars}
-        return found
+            for batch in _batches(list(job_ids)):
+                query = select(jobs.c.id, jobs.c.scalars).where(jobs.c.id.in_(batch), self._visible)
+                scalars |= {row.id: json.loads(row.scalars) for row in connection.execute(query) if row.scalars}
+        return scalars
 
     def page(self, limit: int, selection: Selection = Selection()) -> Page:
         """At most `limit` jobs of a selection, newest first."""
-        kept = (self._seen, jobs.c.deleted.is_(None))
-        query = JOBS.where(*kept).order_by(jobs.c.id.desc()).limit(limit + 1)
-        wanted = {jobs.c.status: selection.status, jobs.c.label: selection.label, jobs.c.owner: selection.owner}
-        query = query.where(*(column == value for column, value in wanted.items() if value is not None))
+        conditions = (self._visible, jobs.c.deleted.is_(None))
+        query = JOBS.where(*conditions).order_by(jobs.c.id.desc()).limit(limit + 1)
+        filters = {jobs.c.status: selection.status, jobs.c.label: selection.label, jobs.c.owner: selection.owner}
+        query = query.where(*(column == value for column, value in filters.items() if value is not None))
         if selection.ensemble is not None:
-            its = select(members.c.job_id).where(members.c.ensemble_id == selection.ensemble)
-            query = query.where(jobs.c.id.in_(its))
+            of_ensemble = select(members.c.job_id).where(members.c.ensemble_id == selection.ensemble)
+            query = query.where(jobs.c.id.in_(of_ensemble))
         if selection.after is not None:
             query = query.where(jobs.c.id < selection.after)
         if selection.since is not None:
@@ -149,12 +149,12 @@ class Registry:
         """Dismiss a job that waits; tell the worker of one that runs. Raises UnknownJob, DeletedJob."""
         _check(job_id)
         with self.database.writing() as transaction:
-            this = (jobs.c.id == job_id, self._seen)
+            conditions = (jobs.c.id == job_id, self._visible)
             open_ = jobs.c.status.in_([Status.ACCEPTED, Status.RUNNING])
-            if transaction.change(*this, open_, ~jobs.c.cancel_requested, event="cancel_requested",
+            if transaction.change(*conditions, open_, ~jobs.c.cancel_requested, event="cancel_requested",
                                   cancel_requested=True) and actor is not None:
                 note(transaction, actor, "job_cancelled", job_id)
-            transaction.change(*this, jobs.c.status == Status.ACCEPTED, event="ended", status=Status.DISMISSED,
+            transaction.change(*conditions, jobs.c.status == Status.ACCEPTED, event="ended", status=Status.DISMISSED,
                                outcome=Outcome.CANCELLED.value, message="cancelled before it started")
         return self.get(job_id)
 
@@ -174,7 +174,7 @@ class Registry:
         """Have a job kept whatever retention says, or no more. Raises UnknownJob, DeletedJob."""
         _check(job_id)
         with self.database.writing() as transaction:
-            other = (jobs.c.id == job_id, self._seen, jobs.c.deleted.is_(None), jobs.c.pinned != pinned)
+            other = (jobs.c.id == job_id, self._visible, jobs.c.deleted.is_(None), jobs.c.pinned != pinned)
             if transaction.change(*other, pinned=pinned):
                 note(transaction, actor, "job_pinned" if pinned else "job_unpinned", job_id)
         return self.get(job_id)
@@ -182,19 +182,19 @@ class Registry:
     def versions(self, job_ids: Collection[str]) -> dict[str, int]:
         """The versions of some jobs, by id."""
         with self.database.reading() as connection:
-            rows = connection.execute(select(jobs.c.id, jobs.c.version).where(jobs.c.id.in_(job_ids), self._seen))
+            rows = connection.execute(select(jobs.c.id, jobs.c.version).where(jobs.c.id.in_(job_ids), self._visible))
             return {row.id: row.version for row in rows}
 
     def events(self, job_id: str, after: int = 0) -> list[Event]:
         """What happened to a job since its version `after`, oldest first."""
         query = select(events.c.seq, events.c.time, events.c.kind, events.c.data).order_by(events.c.seq)
-        query = query.join(jobs, jobs.c.id == events.c.job_id).where(jobs.c.id == job_id, self._seen)
+        query = query.join(jobs, jobs.c.id == events.c.job_id).where(jobs.c.id == job_id, self._visible)
         with self.database.reading() as connection:
             rows = connection.execute(query.where(events.c.seq > after))
             return [Event(row.seq, row.time, row.kind, json.loads(row.data)) for row in rows]
 
     @property
-    def _seen(self) -> ColumnElement[bool]:
+    def _visible(self) -> ColumnElement[bool]:
         return true() if self.owner is None else jobs.c.owner == self.owner
 
 

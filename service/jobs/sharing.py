@@ -34,9 +34,9 @@ def next_in_turn(database: Database, besides: Collection[str] = (), host: str = 
         .where(exists().where(*of_owner), ~_paused(host), true() if most is None else running < most)
         .order_by(running, owners.c.served, owners.c.name).limit(1).scalar_subquery()
     )  # fmt: skip
-    his = (jobs.c.owner == owner, *waiting_for_a_worker(besides))
-    highest = select(func.max(jobs.c.priority)).where(*his).scalar_subquery()
-    oldest = select(jobs.c.id).where(*his, jobs.c.priority == highest).order_by(jobs.c.id).limit(1)
+    of_next_owner = (jobs.c.owner == owner, *waiting_for_a_worker(besides))
+    highest = select(func.max(jobs.c.priority)).where(*of_next_owner).scalar_subquery()
+    oldest = select(jobs.c.id).where(*of_next_owner, jobs.c.priority == highest).order_by(jobs.c.id).limit(1)
     with database.reading() as connection:
         return connection.scalar(oldest)
 
@@ -117,10 +117,10 @@ def choose(waiting: Collection[str], running: Sequence[Running], before: float, 
             leaving -= 1
             continue
         than = 0 if count[owner] == 0 else count[owner] + 1
-        found = [job for job in old.values() if job.owner != owner and count[job.owner] > than]
-        if not found:
+        candidates = [job for job in old.values() if job.owner != owner and count[job.owner] > than]
+        if not candidates:
             continue
-        longest = min(found, key=lambda job: (-count[job.owner], job.started))
+        longest = min(candidates, key=lambda job: (-count[job.owner], job.started))
         chosen.append(longest.id)
         count[longest.owner] -= 1
         count[owner] += 1

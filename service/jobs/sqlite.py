@@ -59,23 +59,24 @@ class Files:
             if not self._connections:
                 return
             for i, path in enumerate(self._paths):
-                found = _identity(path)
+                identity = _identity(path)
                 if self._opened[i] is None:
-                    self._opened[i] = found  # SQLite makes it when it first needs it
-                elif found != self._opened[i]:
+                    self._opened[i] = identity  # SQLite makes it when it first needs it
+                elif identity != self._opened[i]:
                     raise FilesReplaced(path)
 
 
-def told(reading: bool) -> dict[str, Any]:
-    """What engines of every database are told. Reads have connections of their own: to change the level of one costs
-    as much as a read itself."""
+def isolation(reading: bool) -> dict[str, Any]:
+    """The level of an engine's transactions, on every database. Reads have connections of their own: to change the
+    level of one costs as much as a read itself."""
     return {"isolation_level": "AUTOCOMMIT"} if reading else {}
 
 
 def sqlite_engine(url: str, files: Files, reading: bool) -> Engine:
     """An engine whose connections raise FilesReplaced where they would write what is lost, or open another database
     than the first one of this process."""
-    engine = create_engine(url, connect_args={"timeout": BUSY if reading else 0.0}, pool_timeout=BUSY, **told(reading))
+    connect_args = {"timeout": BUSY if reading else 0.0}
+    engine = create_engine(url, connect_args=connect_args, pool_timeout=BUSY, **isolation(reading))
 
     def set_up(connection: Any, _record: object) -> None:
         try:
@@ -125,7 +126,7 @@ def _patiently(execute: Callable[[str], object], statement: str) -> None:
 
 def _identity(path: str) -> Identity:
     try:
-        there = os.stat(path)  # noqa: PTH116  # three of them at each commit
+        stat = os.stat(path)  # noqa: PTH116  # three of them at each commit
     except OSError:
         return None
-    return there.st_dev, there.st_ino
+    return stat.st_dev, stat.st_ino

@@ -93,73 +93,81 @@ class _Desk:
 
     def __init__(self, transaction: Transaction, submissions: Sequence[Submission], terms: Terms) -> None:
         self._transaction, self._terms = transaction, terms
-        self._known = _known(transaction, {one.mark for one in submissions if one.key})
-        self._alike = _alike(transaction, {one.new.case_sha256 for one in submissions if one.reuse}, terms.looks_good)
-        self._unfinished, self._bytes = _owned(transaction, {one.new.owner for one in submissions})
-        self._remembered = _remembered(transaction, {one.new.owner for one in submissions if one.key})
-        self._made: list[Submission] = []
+        keyed = [submission for submission in submissions if submission.key]
+        reusing = {submission.new.case_sha256 for submission in submissions if submission.reuse}
+        self._answered = _answered(transaction, {submission.mark for submission in keyed})
+        self._alike = _alike(transaction, reusing, terms.looks_good)
+        self._unfinished, self._bytes = _owned(transaction, {submission.new.owner for submission in submissions})
+        self._remembered = _remembered(transaction, {submission.new.owner for submission in keyed})
+        self._accepted: list[Submission] = []
         self._keys: list[dict[str, object]] = []
 
-    def judge(self, one: Submission) -> str | Exception:
+    def judge(self, submission: Submission) -> str | Exception:
         """The id of the job that a submission is answered with."""
-        if one.key and one.mark in self._known:
-            body_sha256, job_id = self._known[one.mark]
-            return job_id if body_sha256 == one.body_sha256 else KeyReused(one.key)
-        if one.key and self._remembered[one.new.owner] >= MOST_KEYS:
-            return QuotaReached(f"{one.new.owner} has {MOST_KEYS:,} idempotency keys that are remembered for three "
+        new = submission.new
+        if submission.key and submission.mark in self._answered:
+            body_sha256, job_id = self._answered[submission.mark]
+            return job_id if body_sha256 == submission.body_sha256 else KeyReused(submission.key)
+        if submission.key and self._remembered[new.owner] >= MOST_KEYS:
+            return QuotaReached(f"{new.owner} has {MOST_KEYS:,} idempotency keys that are remembered for three "
                                 "days, and may have no more: wait, or send none")
-        verdict = self._alike.get((one.new.owner, one.new.case_sha256)) if one.reuse else None
+        verdict = self._alike.get((new.owner, new.case_sha256)) if submission.reuse else None
         if verdict is None:
-            if refusal := self._beyond(one.new.owner):
+            if refusal := self._beyond(new.owner):
                 return refusal
-            self._unfinished[one.new.owner] += 1
-            self._made.append(one)
-            verdict = one.new.id
-        if one.key:
-            self._remembered[one.new.owner] += 1
-            self._known[one.mark] = one.body_sha256, verdict
-            self._keys.append({"owner": one.new.owner, "key": one.key, "body_sha256": one.body_sha256,
+            self._unfinished[new.owner] += 1
+            self._accepted.append(submission)
+            verdict = new.id
+        if submission.key:
+            self._remembered[new.owner] += 1
+            self._answered[submission.mark] = submission.body_sha256, verdict
+            self._keys.append({"owner": new.owner, "key": submission.key, "body_sha256": submission.body_sha256,
                                "job_id": verdict, "created": self._transaction.now})
         return verdict
 
     def _beyond(self, owner: str) -> QuotaReached | None:
         """Why this owner may have no job more."""
-        many, held = self._unfinished[owner], self._bytes[owner]
+        many, size = self._unfinished[owner], self._bytes[owner]
         if many >= self._terms.unfinished:
             return QuotaReached(f"{owner} has {many} unfinished jobs, and may have {self._terms.unfinished}: "
                                 "wait for some of them, or cancel them")
-        if self._terms.bytes is not None and held >= self._terms.bytes:
-            return QuotaReached(f"{owner} has {held:,} bytes of datasets, and may have {self._terms.bytes:,}: "
+        if self._terms.bytes is not None and size >= self._terms.bytes:
+            return QuotaReached(f"{owner} has {size:,} bytes of datasets, and may have {self._terms.bytes:,}: "
                                 "delete some jobs")
         return None
 
     def write(self) -> list[Job]:
         """Write the jobs that are new, and what belongs to them; gives the jobs."""
         connection = self._transaction.connection
-        made = insert_jobs(self._transaction, [one.new for one in self._made]) if self._made else []
-        for actor in {one.actor for one in self._made}:
-            note(self._transaction, actor, "job_submitted", *(one.new.id for one in self._made if one.actor == actor))
+        new = [submission.new for submission in self._accepted]
+        accepted = insert_jobs(self._transaction, new) if new else []
+        for actor in {submission.actor for submission in self._accepted}:
+            ids = [submission.new.id for submission in self._accepted if submission.actor == actor]
+            note(self._transaction, actor, "job_submitted", *ids)
         if self._keys:
             connection.execute(insert(idempotency_keys), self._keys)
-        hooks = [{"job_id": one.new.id, "url": one.webhook, "key": one.actor.key, "due": 0.0}
-                 for one in self._made if one.webhook]  # fmt: skip
-        if hooks:
-            connection.execute(insert(webhooks), hooks)
-        told = {one.new.id: Webhook(one.webhook) for one in self._made if one.webhook}
-        return [replace(job, webhook=told.get(job.id)) for job in made] if told else made
+        hooked = [submission for submission in self._accepted if submission.webhook]
+        if not hooked:
+            return accepted
+        connection.execute(insert(webhooks), [
+            {"job_id": submission.new.id, "url": submission.webhook, "key": submission.actor.key, "due": 0.0}
+            for submission in hooked
+        ])  # fmt: skip
+        hooks = {submission.new.id: Webhook(submission.webhook) for submission in hooked}
+        return [replace(job, webhook=hooks.get(job.id)) for job in accepted]
 
 
-def _known(transaction: Transaction, marks: Collection[tuple[str, str]]) -> dict[tuple[str, str], tuple[str, str]]:
+def _answered(transaction: Transaction, marks: Collection[tuple[str, str]]) -> dict[tuple[str, str], tuple[str, str]]:
     """Body and job of the idempotency keys that came before."""
     if not marks:
         return {}
     table = idempotency_keys.c
     connection = transaction.connection
     forget_keys(transaction)
-    found = connection.execute(
+    rows = connection.execute(
         select(table.owner, table.key, table.body_sha256, table.job_id).where(tuple_(table.owner, table.key).in_(marks))
     )
-    return {(row.owner, row.key): (row.body_sha256, row.job_id) for row in found}
+    return {(row.owner, row.key): (row.body_sha256, row.job_id) for row in rows}
 
 
 def forget_keys(transaction: Transaction) -> None:
@@ -172,8 +180,8 @@ def _remembered(transaction: Transaction, names: Collection[str]) -> Counter[str
     """How many idempotency keys of some owners are remembered, counted up to MOST_KEYS."""
     many = Counter[str]()
     for name in names:
-        some = select(idempotency_keys.c.key).where(idempotency_keys.c.owner == name).limit(MOST_KEYS).subquery()
-        many[name] = transaction.connection.scalar(select(func.count()).select_from(some)) or 0
+        keys = select(idempotency_keys.c.key).where(idempotency_keys.c.owner == name).limit(MOST_KEYS).subquery()
+        many[name] = transaction.connection.scalar(select(func.count()).select_from(keys)) or 0
     return many
 
 
@@ -192,5 +200,5 @@ def _alike(transaction: Transaction, hashes: Collection[str],
 
 def _owned(transaction: Transaction, names: Collection[str]) -> tuple[Counter[str], Counter[str]]:
     """How many unfinished jobs, and bytes of datasets, each of some owners has."""
-    found = transaction.connection.execute(OWNED, {"names": list(names)}).all()
-    return Counter({row.name: row.unfinished for row in found}), Counter({row.name: row.bytes for row in found})
+    rows = transaction.connection.execute(OWNED, {"names": list(names)}).all()
+    return Counter({row.name: row.unfinished for row in rows}), Counter({row.name: row.bytes for row in rows})

@@ -91,8 +91,8 @@ class Submissions:
 
     def _more(self) -> list[Waiting]:
         """All that waits besides and is still wanted, up to a bound."""
-        found: list[Waiting] = []
-        while len(found) < AT_ONCE:
+        items: list[Waiting] = []
+        while len(items) < AT_ONCE:
             try:
                 item = self._waiting.get_nowait()
             except queue.Empty:
@@ -101,8 +101,8 @@ class Submissions:
                 self._waiting.put(None)
                 break
             if item[1].set_running_or_notify_cancel():
-                found.append(item)
-        return found
+                items.append(item)
+        return items
 
     def _settle(self, batch: list[Waiting], again: bool = True) -> None:
         """Answer a batch, with all that came while other processes wrote. If it fails, each is tried once more by
@@ -113,11 +113,11 @@ class Submissions:
                     batch += self._more()
                 results = submit_all(transaction, [submission for submission, _ in batch], self.terms)
         except Exception as error:
-            for one in batch:
+            for item in batch:
                 if again:
-                    self._settle([one], again=False)
+                    self._settle([item], again=False)
                 else:
-                    one[1].set_exception(error)
+                    item[1].set_exception(error)
             return
         for (_, future), result in zip(batch, results, strict=True):
             if isinstance(result, Job):

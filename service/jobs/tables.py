@@ -243,8 +243,8 @@ def job_of(row: Mapping[Any, Any]) -> Job:
     fields = dict(row)
     reached = Reached(*(fields.pop(name) for name in REACHED))
     limits = Limits(*(fields.pop(f"limit_{name}") for name in ("wall", "memory", "disk")))
-    told = [fields.pop(f"dataset_{name}") for name in DATASET]
-    dataset = Dataset(*told) if told[0] is not None else None
+    published = [fields.pop(f"dataset_{name}") for name in DATASET]
+    dataset = Dataset(*published) if published[0] is not None else None
     hook = [fields.pop(f"webhook_{name}", None) for name in WEBHOOK]
     webhook = Webhook(*hook) if hook[0] is not None else None
     return Job(**fields | {"status": Status(fields["status"]), "reached": reached, "limits": limits,

@@ -31,9 +31,9 @@ def back_up(database: Database, settings: Settings, folder: Path) -> Iterator[st
     for job_id, dataset in named.items():
         if fault := _copy(settings.datasets / dataset.file, dataset, folder / DATASETS / dataset.file):
             yield f"job {job_id}: its dataset {dataset.file} is {fault}"
-    kept = {dataset.file for dataset in named.values()}
+    names = {dataset.file for dataset in named.values()}
     for old in (folder / DATASETS).iterdir():
-        if FILE.fullmatch(old.name) and old.name not in kept:
+        if FILE.fullmatch(old.name) and old.name not in names:
             old.unlink()
     sync(folder / DATASETS)
 
@@ -55,9 +55,9 @@ def restore(settings: Settings, folder: Path) -> Iterator[str]:
     datasets = Datasets(settings.datasets, settings.copies, settings.objects)
     try:
         for job in all_jobs(database):
-            found = look(database, datasets, job)
-            if found is not None and found.fault:
-                yield f"job {job.id}: its dataset {found.file} is {found.fault}"
+            published = look(database, datasets, job)
+            if published is not None and published.fault:
+                yield f"job {job.id}: its dataset {published.file} is {published.fault}"
     finally:
         database.close()
 

@@ -23,7 +23,7 @@ FILE = re.compile(r"([0-9a-z]{26})\.\d+\.nc")
 class Finding:
     """What is not as it should be, and whether it was set right."""
 
-    what: str
+    sentence: str
     repaired: bool
 
 
@@ -34,9 +34,9 @@ def check(database: Database, settings: Settings) -> Iterator[Finding]:
     recount(database)
     remove_files(database, datasets)
     for job in all_jobs(database):
-        found = look(database, datasets, job, thorough=True)
-        if found is not None and found.fault:
-            yield Finding(f"job {job.id}: its dataset {found.file} is {found.fault}", repaired=False)
+        dataset = look(database, datasets, job, thorough=True)
+        if dataset is not None and dataset.fault:
+            yield Finding(f"job {job.id}: its dataset {dataset.file} is {dataset.fault}", repaired=False)
     yield from _left_over(database, settings)
 
 

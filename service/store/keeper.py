@@ -38,8 +38,8 @@ class Keeper:
 
     def once(self) -> None:
         """Do what is due."""
-        if gone := retain(self._database, self._settings, time.time()):
-            log.info("%d jobs are kept no longer", len(gone))
+        if deleted := retain(self._database, self._settings, time.time()):
+            log.info("%d jobs are kept no longer", len(deleted))
         with self._database.writing() as transaction:
             forget_keys(transaction)
         remove_files(self._database, self._datasets)

@@ -16,10 +16,10 @@ log = logging.getLogger(__name__)
 def remove_files(database: Database, datasets: Datasets) -> None:
     """Remove all that are noted. What cannot be removed now is tried again the next time."""
     while files := pending_removals(database, AT_ONCE):
-        done = [file for file in files if _remove(datasets, file)]
-        if done:
-            removed(database, done)
-        if len(done) < len(files):
+        deleted = [file for file in files if _remove(datasets, file)]
+        if deleted:
+            removed(database, deleted)
+        if len(deleted) < len(files):
             return
 
 

@@ -25,11 +25,11 @@ DAY = 86400.0
 def retain(database: Database, settings: Settings, now: float) -> list[str]:
     """Delete the jobs that are kept no longer at the time `now`, and give their ids; files are noted as removals."""
     due = overdue(database, settings, now)
-    gone: list[str] = []
+    deleted: list[str] = []
     for start in range(0, len(due), AT_ONCE):
         with database.writing() as transaction:
-            gone += delete_jobs(transaction, RETENTION, due[start : start + AT_ONCE])
-    return gone
+            deleted += delete_jobs(transaction, RETENTION, due[start : start + AT_ONCE])
+    return deleted
 
 
 def overdue(database: Database, settings: Settings, now: float) -> list[str]:
@@ -42,8 +42,8 @@ def overdue(database: Database, settings: Settings, now: float) -> list[str]:
     if settings.keep_bytes is not None:
         rich = select(owners.c.name, owners.c.bytes).where(owners.c.bytes > settings.keep_bytes)
         for owner in _all(database, rich):
-            theirs = _deletable(ended, jobs.c.owner == owner.name)
-            due += _oldest(database, theirs, owner.bytes - settings.keep_bytes)
+            of_owner = _deletable(ended, jobs.c.owner == owner.name)
+            due += _oldest(database, of_owner, owner.bytes - settings.keep_bytes)
     if settings.keep_free is not None:
         here = _deletable(ended, jobs.c.dataset_stamp != OBJECT)
         due += _oldest(database, here, settings.keep_free - shutil.disk_usage(settings.datasets).free)
@@ -58,15 +58,15 @@ def _deletable(*where: ColumnElement[bool]) -> Select[Any]:
 
 def _oldest(database: Database, query: Select[Any], needed: int) -> list[str]:
     """As many of the oldest jobs as hold so many bytes."""
-    found: list[str] = []
+    ids: list[str] = []
     with database.reading() as connection:
         holding = connection.execute(query.where(jobs.c.dataset_bytes.is_not(None)))
         for job in holding:
             if needed <= 0:
                 break
-            found.append(job.id)
+            ids.append(job.id)
             needed -= job.dataset_bytes
-    return found
+    return ids
 
 
 def _all(database: Database, query: Select[Any]) -> list[Any]:

@@ -17,7 +17,7 @@ from service.results.durable import sync
 
 AT_ONCE = 1000
 SQLITE = "sqlite:///"
-KEPT = [table for table in metadata.sorted_tables if table not in (leader, processes)]
+COPIED = [table for table in metadata.sorted_tables if table not in (leader, processes)]
 """What is copied row by row: not who runs at the moment."""
 
 
@@ -41,7 +41,7 @@ def datasets_in(path: Path) -> dict[str, Dataset]:
     """The datasets that such a file names, by job."""
     query = "SELECT id, dataset_file, dataset_sha256, dataset_bytes FROM jobs WHERE dataset_file IS NOT NULL"
     with closing(sqlite3.connect(f"{path.absolute().as_uri()}?immutable=1", uri=True)) as saved:
-        return {job_id: Dataset(*told) for job_id, *told in saved.execute(query)}
+        return {job_id: Dataset(*fields) for job_id, *fields in saved.execute(query)}
 
 
 def check_empty(url: str) -> None:
@@ -52,10 +52,10 @@ def check_empty(url: str) -> None:
         return
     database = Database(url)
     with database.reading() as connection:
-        kept = [table.name for table in KEPT if connection.scalar(select(func.count()).select_from(table))]
+        filled = [table.name for table in COPIED if connection.scalar(select(func.count()).select_from(table))]
     database.close()
-    if kept:
-        raise FileExistsError(f"the database has rows already, in {', '.join(kept)}")
+    if filled:
+        raise FileExistsError(f"the database has rows already, in {', '.join(filled)}")
 
 
 def bring_back(path: Path, url: str) -> Database:
@@ -102,7 +102,7 @@ def _copy_rows(source: Engine, target: Engine) -> None:
     with source.connect() as reading, target.begin() as writing:
         if source.dialect.name == "postgresql":
             reading = reading.execution_options(isolation_level="REPEATABLE READ")
-        for table in KEPT:
+        for table in COPIED:
             for rows in reading.execute(select(table)).mappings().partitions(AT_ONCE):
                 writing.execute(insert(table), [dict(row) for row in rows])
         if target.dialect.name == "postgresql":

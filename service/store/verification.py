@@ -25,12 +25,12 @@ def look(database: Database, datasets: Datasets, job: Job, thorough: bool = Fals
     """
     if job.dataset is None:
         return None
-    found = _found(datasets, job.dataset, thorough)
-    if found != job.dataset:
-        if found.fault != job.dataset.fault:
-            log.warning("job %s: its dataset is %s", job.id, found.fault or "good again")
-        _remember(database, job.id, found)
-    return found
+    current = _checked(datasets, job.dataset, thorough)
+    if current != job.dataset:
+        if current.fault != job.dataset.fault:
+            log.warning("job %s: its dataset is %s", job.id, current.fault or "good again")
+        _remember(database, job.id, current)
+    return current
 
 
 def all_jobs(database: Database) -> Iterator[Job]:
@@ -50,23 +50,23 @@ def lost(database: Database, job: Job) -> None:
         _remember(database, job.id, replace(job.dataset, stamp="", fault=MISSING))
 
 
-def _found(datasets: Datasets, known: Dataset, thorough: bool) -> Dataset:
+def _checked(datasets: Datasets, dataset: Dataset, thorough: bool) -> Dataset:
     try:
-        stamp = datasets.stamp(known.file)
-        if stamp == known.stamp and not thorough:
-            return known
-        sha256 = datasets.sha256(known.file, known.bytes)
+        stamp = datasets.stamp(dataset.file)
+        if stamp == dataset.stamp and not thorough:
+            return dataset
+        sha256 = datasets.sha256(dataset.file, dataset.bytes)
     except FileNotFoundError:
-        return replace(known, stamp="", fault=MISSING)
-    fault = "" if sha256 == known.sha256 else f"damaged: its sha256 is {sha256}, not {known.sha256}"
-    return replace(known, stamp=stamp, fault=fault)
+        return replace(dataset, stamp="", fault=MISSING)
+    fault = "" if sha256 == dataset.sha256 else f"damaged: its sha256 is {sha256}, not {dataset.sha256}"
+    return replace(dataset, stamp=stamp, fault=fault)
 
 
-def _remember(database: Database, job_id: str, found: Dataset) -> None:
+def _remember(database: Database, job_id: str, dataset: Dataset) -> None:
     """Write it into the row; where that cannot be done, whoever looks next looks again."""
-    same = (jobs.c.id == job_id, jobs.c.dataset_file == found.file)
+    same = (jobs.c.id == job_id, jobs.c.dataset_file == dataset.file)
     try:
         with database.writing() as transaction:
-            transaction.change(*same, dataset_stamp=found.stamp, dataset_fault=found.fault)
+            transaction.change(*same, dataset_stamp=dataset.stamp, dataset_fault=dataset.fault)
     except SQLAlchemyError as error:
         log.warning("job %s: the state of its dataset could not be written: %s", job_id, error)

@@ -30,21 +30,21 @@ class Delivery:
 
 def take_due(database: Database, limit: int) -> list[Delivery]:
     """Deliveries that are due; no other process takes them for HELD seconds."""
-    wanted = (
+    query = (
         select(webhooks.c.job_id, webhooks.c.url, api_keys.c.sha256, jobs.c.status, jobs.c.outcome, webhooks.c.tries)
         .join(jobs, jobs.c.id == webhooks.c.job_id).join(api_keys, api_keys.c.prefix == webhooks.c.key)
         .where(jobs.c.status.in_(ENDED)).order_by(webhooks.c.due).limit(limit)
     )  # fmt: skip
     with database.reading() as connection:
-        if not connection.execute(wanted.where(webhooks.c.due.is_not(None)).limit(1)).first():
+        if not connection.execute(query.where(webhooks.c.due.is_not(None)).limit(1)).first():
             return []
     with database.writing() as transaction:
         connection = transaction.connection
         due = webhooks.c.due <= transaction.now
-        found = [Delivery(*row) for row in connection.execute(wanted.where(due).with_for_update(of=webhooks))]
-        these = webhooks.c.job_id.in_([delivery.job_id for delivery in found])
-        connection.execute(update(webhooks).where(these).values(due=transaction.now + HELD))
-    return found
+        deliveries = [Delivery(*row) for row in connection.execute(query.where(due).with_for_update(of=webhooks))]
+        taken = webhooks.c.job_id.in_([delivery.job_id for delivery in deliveries])
+        connection.execute(update(webhooks).where(taken).values(due=transaction.now + HELD))
+    return deliveries
 
 
 def settle(database: Database, delivery: Delivery, answer: str, again: bool) -> None:

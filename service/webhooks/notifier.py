@@ -34,5 +34,5 @@ class Notifier:
 
     def _deliver(self, delivery: Delivery) -> None:
         answer = send(delivery, int(time.time()))
-        settle(self._database, delivery, answer.told, answer.again)
-        log.info("job %s: its webhook: %s", delivery.job_id, answer.told)
+        settle(self._database, delivery, answer.text, answer.again)
+        log.info("job %s: its webhook: %s", delivery.job_id, answer.text)

@@ -20,7 +20,7 @@ TIMEOUT = {"connect": 5.0, "read": 5.0, "write": 5.0, "pool": 5.0}
 class Answer:
     """What came of a try, and whether another one makes sense."""
 
-    told: str
+    text: str
     again: bool
 
 

@@ -226,5 +226,5 @@ def test_the_address_that_was_checked_is_the_one_connected_to(monkeypatch):
 @pytest.mark.parametrize("url", ["http://localhost/", "http://[::1]/", "http://0x7f.1/", "http://2130706433/",
                                  "https://127.0.0.1.nip.invalid/", "http:///", "http://\x00/"])  # fmt: skip
 def test_no_spelling_of_loopback_gets_through(url):
-    told = send(Delivery(**vars(DELIVERY) | {"url": url}), 1).told
+    told = send(Delivery(**vars(DELIVERY) | {"url": url}), 1).text
     assert not told.startswith("answered")

@@ -21,11 +21,11 @@ def combined(parts: Sequence[Part | None], own: Sequence[Column], limit: int) ->
 
     `own`: coordinates along the new dimension. Raises SubsetTooLarge for more than `limit` values.
     """
-    there = [part for part in parts if part is not None]
-    axes = _axes(there)
-    shapes = {column.name: _shape(column, axes) for part in there for column in part.variables}
+    present = [part for part in parts if part is not None]
+    axes = _axes(present)
+    shapes = {column.name: _shape(column, axes) for part in present for column in part.variables}
     check_size(len(parts) * sum(prod(shape) for shape in shapes.values()), limit)
-    coordinates = [Column(name, (name,), values, _attributes(there, name)) for name, values in axes.items()]
+    coordinates = [Column(name, (name,), values, _attributes(present, name)) for name, values in axes.items()]
     variables = [_stacked(name, parts, axes, shape) for name, shape in shapes.items()]
     return Part((*own, *coordinates), tuple(variables))
 
@@ -55,11 +55,11 @@ def _stacked(name: str, parts: Sequence[Part | None], axes: dict[str, NDArray[An
     values = np.full((len(parts), *shape), np.nan)
     sample: Column | None = None
     for number, part in enumerate(parts):
-        column = next((one for one in part.variables if one.name == name), None) if part is not None else None
+        column = None if part is None else next((v for v in part.variables if v.name == name), None)
         if part is None or column is None:
             continue
         sample = column
-        own = {one.name: one.values for one in part.coordinates}
+        own = {coordinate.name: coordinate.values for coordinate in part.coordinates}
         places = [np.arange(len(own[axis])) if axis in LABELS else np.searchsorted(axes[axis], own[axis])
                   for axis in column.dimensions]  # fmt: skip
         values[number][np.ix_(*places)] = column.values

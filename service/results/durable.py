@@ -47,8 +47,8 @@ def sha256_of(path: Path) -> str:
 
 def stamp_of(path: Path) -> str:
     """What tells cheaply that a file is as it was: size, time of its last change, inode. Raises FileNotFoundError."""
-    told = path.stat()
-    return f"{told.st_size} {told.st_mtime_ns} {told.st_ino}"
+    stat = path.stat()
+    return f"{stat.st_size} {stat.st_mtime_ns} {stat.st_ino}"
 
 
 def size_of(directory: Path) -> int:
@@ -77,14 +77,14 @@ def scratch(target: Path) -> Iterator[Path]:
 
 
 def _remove_abandoned(directory: Path, prefix: str) -> None:
-    for left in directory.glob(f"{prefix}*"):
+    for path in directory.glob(f"{prefix}*"):
         try:
-            descriptor = os.open(left, os.O_RDONLY)
+            descriptor = os.open(path, os.O_RDONLY)
         except FileNotFoundError:
             continue  # its process has just ended
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            shutil.rmtree(left, ignore_errors=True)
+            shutil.rmtree(path, ignore_errors=True)
         except BlockingIOError:
             pass  # its process lives
         finally:

@@ -49,7 +49,7 @@ def film(source: Source, since: float | None = None) -> bytes:
             blocks[name] = _colour(name, read(variable))[..., None].astype("<f4")
     header = {
         "time": source.time[part].tolist(), "s": source.s[nodes].tolist(), "contacts": read("contacts").tolist(),
-        "blocks": [_told(name, block) for name, block in blocks.items()],
+        "blocks": [_block_header(name, block) for name, block in blocks.items()],
     }
     return _packed(header, list(blocks.values()))
 
@@ -57,12 +57,12 @@ def film(source: Source, since: float | None = None) -> bytes:
 def _thinned(frames: int, nodes: int) -> tuple[NDArray[np.intp], slice]:
     """The frames and the nodes that are in a film; both ends of the rod always are."""
     step = next((n for n in range(ceil(nodes / MOST_NODES), nodes) if (nodes - 1) % n == 0), 1)
-    kept = (nodes - 1) // step + 1
-    return np.arange(0, frames, max(1, ceil(frames * kept / MOST_NODE_FRAMES))), slice(None, None, step)
+    drawn_nodes = (nodes - 1) // step + 1
+    return np.arange(0, frames, max(1, ceil(frames * drawn_nodes / MOST_NODE_FRAMES))), slice(None, None, step)
 
 
-def _step(chosen: NDArray[np.intp]) -> int:
-    return int(chosen[1] - chosen[0]) if len(chosen) > 1 else 1
+def _step(frames: NDArray[np.intp]) -> int:
+    return int(frames[1] - frames[0]) if len(frames) > 1 else 1
 
 
 def _colour(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -73,7 +73,7 @@ def _colour(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
     return values[..., 2]
 
 
-def _told(name: str, block: Array) -> dict[str, Any]:
+def _block_header(name: str, block: Array) -> dict[str, Any]:
     units = COLOURS[name][1] if name in COLOURS else {"r": "m", "orientation": "1"}[name]
     return {"name": name, "units": units, "components": block.shape[-1]}
 

@@ -24,13 +24,15 @@ TEXT, BINARY = 1_000_000, 10_000_000
 def as_data(part: Part) -> dict[str, Any]:
     """JSON data: `coordinates` and `variables` by name, with nested `values`; null where there is no number."""
     coordinates = {
-        one.name: ({} if one.dimensions == (one.name,) else {"dimensions": list(one.dimensions)})
-        | {**one.attributes} | {"values": _plain(one.values)} for one in part.coordinates
+        column.name: ({} if column.dimensions == (column.name,) else {"dimensions": list(column.dimensions)})
+        | {**column.attributes} | {"values": _plain(column.values)} for column in part.coordinates
     }  # fmt: skip
-    for one in coordinates.values():
-        one.pop("long_name", None)
-    variables = {one.name: {"dimensions": list(one.dimensions), **one.attributes, "values": _plain(one.values)}
-                 for one in part.variables}  # fmt: skip
+    for coordinate in coordinates.values():
+        coordinate.pop("long_name", None)
+    variables = {
+        column.name: {"dimensions": list(column.dimensions), **column.attributes, "values": _plain(column.values)}
+        for column in part.variables
+    }  # fmt: skip
     return {"coordinates": coordinates, "variables": variables}
 
 
@@ -69,11 +71,11 @@ def as_netcdf(part: Part) -> bytes:
     with ONE_AT_A_TIME:
         file = netCDF4.Dataset("part.nc", "w", format="NETCDF4", memory=1)
         file.setncatts({"Conventions": "CF-1.11", **part.attributes})
-        auxiliary = [one for one in part.coordinates if one.dimensions != (one.name,)]
+        auxiliary = [coordinate for coordinate in part.coordinates if coordinate.dimensions != (coordinate.name,)]
         for column in (*part.coordinates, *part.variables):
             _write(file, column)
         for column in part.variables:
-            names = [one.name for one in auxiliary if set(one.dimensions) <= set(column.dimensions)]
+            names = [other.name for other in auxiliary if set(other.dimensions) <= set(column.dimensions)]
             if names:
                 file[column.name].setncattr("coordinates", " ".join(names))
         return bytes(file.close())

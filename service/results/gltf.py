@@ -76,13 +76,13 @@ class _File:
 
     def packed(self, document: dict[str, Any]) -> bytes:
         """The file."""
-        told = {**document, "accessors": self.accessors, "bufferViews": self.views,
-                "buffers": [{"byteLength": len(self.content)}]}
-        text = json.dumps(told).encode()
+        whole = {**document, "accessors": self.accessors, "bufferViews": self.views,
+                 "buffers": [{"byteLength": len(self.content)}]}
+        text = json.dumps(whole).encode()
         text += b" " * (-len(text) % 4)
         binary = bytes(self.content) + b"\0" * (-len(self.content) % 4)
         chunks = [(text, b"JSON"), (binary, b"BIN\0")]
-        body = b"".join(len(one).to_bytes(4, "little") + kind + one for one, kind in chunks)
+        body = b"".join(len(chunk).to_bytes(4, "little") + kind + chunk for chunk, kind in chunks)
         return b"glTF" + (2).to_bytes(4, "little") + (12 + len(body)).to_bytes(4, "little") + body
 
 
@@ -100,7 +100,7 @@ def _document(file: _File, shapes: NDArray[np.float32], time: NDArray[np.float32
     }  # fmt: skip
     targets = len(shapes) - 1
     if targets:
-        primitive["targets"] = [{"POSITION": file.add(one - shapes[0], "VEC3", VERTICES)} for one in shapes[1:]]
+        primitive["targets"] = [{"POSITION": file.add(shape - shapes[0], "VEC3", VERTICES)} for shape in shapes[1:]]
         mesh["weights"] = [0.0] * targets
         weights = np.vstack([np.zeros(targets), np.eye(targets)]).astype("<f4").ravel()
         sampler = {"input": file.add(time, "SCALAR"), "output": file.add(weights, "SCALAR"), "interpolation": "LINEAR"}

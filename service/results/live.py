@@ -26,8 +26,8 @@ def show(directory: Path, segments: Sequence[Segment], s: NDArray[np.float64]) -
     """Tell readers which segments in the directory of a run hold its frames, whose nodes are at `s`. Raises OSError."""
     if not segments:
         return
-    told = {"segments": [asdict(segment) for segment in segments], "s": s.tolist()}
-    write_whole(directory / INDEX, json.dumps(told).encode())
+    index = {"segments": [asdict(segment) for segment in segments], "s": s.tolist()}
+    write_whole(directory / INDEX, json.dumps(index).encode())
 
 
 def hide(directory: Path) -> None:
@@ -46,8 +46,8 @@ class LiveSource:
     @classmethod
     def of(cls, directory: Path) -> LiveSource:
         """The frames in a directory now. Raises FileNotFoundError where there is none yet, or no more."""
-        told = json.loads((directory / INDEX).read_bytes())
-        return cls(directory, tuple(Segment(**one) for one in told["segments"]), np.array(told["s"]))
+        index = json.loads((directory / INDEX).read_bytes())
+        return cls(directory, tuple(Segment(**segment) for segment in index["segments"]), np.array(index["s"]))
 
     @cached_property
     def time(self) -> NDArray[np.float64]:
@@ -72,10 +72,10 @@ class LiveSource:
     def _joined(self, name: str, frames: slice, rest: tuple[slice, ...]) -> NDArray[Any]:
         """The values of some frames, of which no segment is opened that holds none."""
         total = sum(segment.frames for segment in self.segments)
-        wanted, first = np.arange(total)[frames], 0
+        indices, first = np.arange(total)[frames], 0
         parts: list[NDArray[Any]] = []
         for segment in self.segments:
-            here = wanted[(wanted >= first) & (wanted < first + segment.frames)] - first
+            here = indices[(indices >= first) & (indices < first + segment.frames)] - first
             if len(here) or (segment is self.segments[-1] and not parts):  # none at all: the shape is that of none
                 with np.load(self.directory / segment.name) as arrays:
                     parts.append(arrays[name][(here, *rest)] if rest else arrays[name][here])

@@ -96,8 +96,8 @@ def packs_well(values: NDArray[Any]) -> bool:
     return len(zlib.compress(shuffled, LEVEL)) <= PACKED * len(shuffled)
 
 
-def _same_bits(one: NDArray[Any], other: NDArray[Any]) -> bool:
-    return one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()
+def _same_bits(array: NDArray[Any], other: NDArray[Any]) -> bool:
+    return array.dtype == other.dtype and array.shape == other.shape and array.tobytes() == other.tobytes()
 
 
 @contextmanager

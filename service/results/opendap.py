@@ -26,7 +26,7 @@ class BadConstraint(ValueError):
 
 
 @dataclass(frozen=True)
-class Wanted:
+class Projection:
     """An array and the part of it that is asked for."""
 
     name: str
@@ -54,30 +54,31 @@ class DapDataset:
 
     def dds(self, constraint: str) -> bytes:
         """The arrays that a constraint asks for, all if it is empty. Raises BadConstraint, UnknownVariable."""
-        declared = "".join(one.declaration for one in self._wanted(constraint))
+        declared = "".join(projection.declaration for projection in self._projections(constraint))
         return f"Dataset {{\n{declared}}} {self._name};\n".encode()
 
     def das(self) -> bytes:
         """The attributes of all."""
         attributes = {"time": COORDINATES["time"], "s": COORDINATES["s"]} | {
-            name: {"units": one.units, "long_name": one.long_name} for name, one in self._source.variables.items()}
+            name: {"units": variable.units, "long_name": variable.long_name}
+            for name, variable in self._source.variables.items()}
         parts = {**attributes, "NC_GLOBAL": self._source.attributes}
-        lines = [f"    {name} {{\n{_attributes(told)}    }}\n" for name, told in parts.items()]
+        lines = [f"    {name} {{\n{_attributes(container)}    }}\n" for name, container in parts.items()]
         return f"Attributes {{\n{''.join(lines)}}}\n".encode()
 
     def dods(self, constraint: str) -> bytes:
         """The values (XDR). Raises BadConstraint, UnknownVariable, SubsetTooLarge."""
-        wanted = self._wanted(constraint)
-        check_size(sum(prod(one.lengths) for one in wanted), LIMIT)
-        return self.dds(constraint) + b"\nData:\n" + b"".join(self._values(one) for one in wanted)
+        projections = self._projections(constraint)
+        check_size(sum(prod(projection.lengths) for projection in projections), LIMIT)
+        return self.dds(constraint) + b"\nData:\n" + b"".join(self._values(projection) for projection in projections)
 
-    def _wanted(self, constraint: str) -> list[Wanted]:
-        asked = unquote(constraint)
-        if not asked:
+    def _projections(self, constraint: str) -> list[Projection]:
+        decoded = unquote(constraint)
+        if not decoded:
             return [self._whole(name) for name in ("time", "s", *self._source.variables)]
-        return [self._part(one) for one in asked.split(",")]
+        return [self._part(projection) for projection in decoded.split(",")]
 
-    def _whole(self, name: str) -> Wanted:
+    def _whole(self, name: str) -> Projection:
         dimensions: tuple[str, ...] = (name,)
         kind = "f"
         if name in self._source.variables:
@@ -87,29 +88,30 @@ class DapDataset:
             raise unknown(name, ["time", "s", *self._source.variables])
         sizes = {"time": len(self._source.time), "s": len(self._source.s)}
         sizes |= {label: len(labels) for label, labels in LABELS.items()}
-        return Wanted(name, dimensions, kind, tuple(slice(0, sizes[one], 1) for one in dimensions))
+        return Projection(name, dimensions, kind, tuple(slice(0, sizes[dimension], 1) for dimension in dimensions))
 
-    def _part(self, projection: str) -> Wanted:
-        told = PROJECTION.fullmatch(projection)
-        if told is None:
+    def _part(self, projection: str) -> Projection:
+        match = PROJECTION.fullmatch(projection)
+        if match is None:
             raise BadConstraint(f"a projection is NAME[start:stride:stop]..., got {projection[:80]!r}")
-        whole = self._whole(told[1])
-        ranges = re.findall(r"\[([\d:]+)\]", told[2])
+        whole = self._whole(match[1])
+        ranges = re.findall(r"\[([\d:]+)\]", match[2])
         if not ranges:
             return whole
         if len(ranges) != len(whole.slices):
-            raise BadConstraint(f"{told[1]} has {len(whole.slices)} dimensions, got {projection[:80]!r}")
-        slices = tuple(_slice(one, all_.stop) for one, all_ in zip(ranges, whole.slices, strict=True))
-        return Wanted(whole.name, whole.dimensions, whole.kind, slices)
+            raise BadConstraint(f"{match[1]} has {len(whole.slices)} dimensions, got {projection[:80]!r}")
+        slices = tuple(_slice(text, part.stop) for text, part in zip(ranges, whole.slices, strict=True))
+        return Projection(whole.name, whole.dimensions, whole.kind, slices)
 
-    def _values(self, one: Wanted) -> bytes:
-        count = np.array([prod(one.lengths)] * 2, ">u4").tobytes()
-        return count + self._read(one).astype(TYPES[one.kind][1]).tobytes()
+    def _values(self, projection: Projection) -> bytes:
+        count = np.array([prod(projection.lengths)] * 2, ">u4").tobytes()
+        return count + self._read(projection).astype(TYPES[projection.kind][1]).tobytes()
 
-    def _read(self, one: Wanted) -> NDArray[Any]:
-        if one.name in ("time", "s"):
-            return (self._source.time if one.name == "time" else self._source.s)[one.slices[0]]
-        return self._source.read(self._source.variables[one.name], dict(zip(one.dimensions, one.slices, strict=True)))
+    def _read(self, projection: Projection) -> NDArray[Any]:
+        if projection.name in ("time", "s"):
+            return (self._source.time if projection.name == "time" else self._source.s)[projection.slices[0]]
+        slices = dict(zip(projection.dimensions, projection.slices, strict=True))
+        return self._source.read(self._source.variables[projection.name], slices)
 
 
 def _slice(text: str, size: int) -> slice:
@@ -122,8 +124,8 @@ def _slice(text: str, size: int) -> slice:
     return slice(start, stop + 1, stride)
 
 
-def _attributes(told: Any) -> str:
-    return "".join(_attribute(name, value) for name, value in told.items())
+def _attributes(attributes: Any) -> str:
+    return "".join(_attribute(name, value) for name, value in attributes.items())
 
 
 def _attribute(name: str, value: Any) -> str:

@@ -35,11 +35,11 @@ class Part:
     @property
     def rows(self) -> dict[str, int]:
         """The dimensions, with their lengths, that a table of it has a row for each place in: all but components."""
-        found: dict[str, int] = {}
+        lengths: dict[str, int] = {}
         for column in (*self.variables, *self.coordinates):
-            found |= {name: size for name, size in zip(column.dimensions, column.values.shape, strict=True)
-                      if name not in LABELS}
-        return found
+            lengths |= {name: size for name, size in zip(column.dimensions, column.values.shape, strict=True)
+                        if name not in LABELS}
+        return lengths
 
     def table(self) -> Iterator[Column]:
         """The same as columns of one length: coordinates first, a column for each component (`r_e1`), and what

@@ -99,12 +99,12 @@ class Datasets:
     def _make_room(self, size: int) -> None:
         """Remove the copies that were asked for longest ago, until there is room for one more."""
         copies = sorted(self._kept())
-        held = size + sum(bytes_ for _, bytes_, _ in copies)
-        for asked, bytes_, path in copies:
-            if held <= ROOM or asked > time.time() - IN_USE:
+        total = size + sum(bytes_ for _, bytes_, _ in copies)
+        for used, bytes_, path in copies:
+            if total <= ROOM or used > time.time() - IN_USE:
                 return
             path.unlink(missing_ok=True)
-            held -= bytes_
+            total -= bytes_
 
     def _kept(self) -> Iterator[tuple[float, int, Path]]:
         for path in self._copies.glob("*.nc"):

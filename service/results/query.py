@@ -88,8 +88,8 @@ class DatasetSource:
     @property
     def attributes(self) -> dict[str, Any]:
         """Those of the dataset as a whole, as plain data."""
-        told = {name: value for name, value in self._file.attrs.items() if not name.startswith("_")}
-        return {name: value.decode() if isinstance(value, bytes) else value.item() for name, value in told.items()}
+        stored = {name: value for name, value in self._file.attrs.items() if not name.startswith("_")}
+        return {name: value.decode() if isinstance(value, bytes) else value.item() for name, value in stored.items()}
 
     def read(self, variable: Variable, ranges: Mapping[str, slice]) -> NDArray[Any]:
         """The values of one variable at some indices of time and s."""
@@ -112,17 +112,17 @@ def subset(source: Source, names: Sequence[str], ranges: Ranges = Ranges(), limi
     Raises UnknownVariable, or SubsetTooLarge for more than `limit` values, before anything is read. `table`: as many
     as its table has, in which what has no place along the rod is repeated along it.
     """
-    chosen = [held(source.variables, name) for name in dict.fromkeys(names)]
+    variables = [variable_named(source.variables, name) for name in dict.fromkeys(names)]
     indices = ranges.of(source.time, source.s)
     lengths = _lengths(source, indices)
-    used = list(dict.fromkeys(name for variable in chosen for name in variable.dimensions))
+    used = list(dict.fromkeys(name for variable in variables for name in variable.dimensions))
     rows = [name for name in used if name not in LABELS] if table else []
-    check_size(sum(prod(lengths[name] for name in {*variable.dimensions, *rows}) for variable in chosen), limit)
+    check_size(sum(prod(lengths[name] for name in {*variable.dimensions, *rows}) for variable in variables), limit)
     return Part(tuple(coordinate(source, name, indices) for name in used),
-                tuple(column(variable, source.read(variable, indices)) for variable in chosen))
+                tuple(column(variable, source.read(variable, indices)) for variable in variables))
 
 
-def held(variables: Mapping[str, Variable], name: str) -> Variable:
+def variable_named(variables: Mapping[str, Variable], name: str) -> Variable:
     """The variable of this name. Raises UnknownVariable."""
     if name not in variables:
         raise unknown(name, list(variables))

@@ -31,14 +31,14 @@ def last_values(path: Path, names: Sequence[str]) -> dict[str, Value]:
     """The values of the last frame; None for what the dataset does not hold, and where there is no number."""
     with h5py.File(path) as file:
         frames = len(file["time"])
-        held = {name: np.asarray(file[name][-1]) for name in names if frames and name in file}
-    return {name: _plain(held[name]) if name in held else None for name in names}
+        values = {name: np.asarray(file[name][-1]) for name in names if frames and name in file}
+    return {name: _plain(values[name]) if name in values else None for name in names}
 
 
 def scalar_columns(names: Sequence[str], values: Sequence[Mapping[str, Value]],
                    along: str = "job") -> tuple[Column, ...]:
     """The last values of many jobs as arrays along one dimension; NaN where there is none."""
-    return tuple(_column(BY_NAME[name], [one[name] for one in values], along) for name in names)
+    return tuple(_column(BY_NAME[name], [row[name] for row in values], along) for name in names)
 
 
 def _column(variable: Variable, values: Sequence[Value], along: str) -> Column:
@@ -53,5 +53,5 @@ def _column(variable: Variable, values: Sequence[Value], along: str) -> Column:
 def _plain(value: NDArray[np.float64]) -> Value:
     plain = value.astype(object)
     plain[~np.isfinite(value)] = None
-    told: Value = plain.tolist()
-    return told
+    number: Value = plain.tolist()
+    return number

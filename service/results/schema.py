@@ -95,8 +95,8 @@ VARIABLES = tuple(_variable(output) for output in OUTPUTS)
 
 def _error_of(variable: Variable) -> Variable:
     long_name = f"estimated error of {variable.name}"
-    told = replace(variable, name=variable.name + ERROR, long_name=long_name)
-    return ErrorVariable(**vars(told))
+    error = replace(variable, name=variable.name + ERROR, long_name=long_name)
+    return ErrorVariable(**vars(error))
 
 
 ERRORS = {o.name: _error_of(v) for o, v in zip(OUTPUTS, VARIABLES, strict=True) if o.verified}
@@ -105,8 +105,8 @@ ERRORS = {o.name: _error_of(v) for o, v in zip(OUTPUTS, VARIABLES, strict=True) 
 
 def stored_variables(spec: CaseSpec) -> tuple[Variable, ...]:
     """The variables of a case's dataset: the fields that it asks for, and every number in time; errors if verified."""
-    asked = (v for v in VARIABLES if not v.along_rod or v.name in spec.output.fields)
-    stored = tuple(v for v in asked if spec.analysis == "static" or not v.statics)
+    selected = (v for v in VARIABLES if not v.along_rod or v.name in spec.output.fields)
+    stored = tuple(v for v in selected if spec.analysis == "static" or not v.statics)
     if not spec.numerics.has_errors:
         return stored
     errors = {v.name: ERRORS[v.name] for v in stored if v.name in ERRORS}

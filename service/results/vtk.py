@@ -51,7 +51,7 @@ def vtk_archive(source: Source, radius: NDArray[np.float64], time_stride: int = 
         sets = [f'<DataSet timestep="{times[frame]!r}" part="0" file="{_name(frame)}"/>\n' for frame in frames]
         file.writestr("rod.pvd", PVD.format("".join(sets)))
         for frame in frames:
-            values = {one.name: source.read(one, {"time": slice(frame, frame + 1)})[0] for one in along}
+            values = {variable.name: source.read(variable, {"time": slice(frame, frame + 1)})[0] for variable in along}
             file.writestr(_name(frame), _vtp(times[frame], values, radius))
     return archive.getvalue()
 
@@ -70,7 +70,7 @@ def _vtp(time: float, values: Mapping[str, NDArray[Any]], radius: NDArray[np.flo
     blocks: list[bytes] = []
     parts = [
         HEAD.format(time=time, points=len(points)),
-        "<PointData>\n", *(_array(name, one, blocks) for name, one in data.items()), "</PointData>\n",
+        "<PointData>\n", *(_array(name, array, blocks) for name, array in data.items()), "</PointData>\n",
         "<Points>\n", _array("Points", points, blocks), "</Points>\n",
         "<Lines>\n", _array("connectivity", np.arange(len(points)), blocks),
         _array("offsets", np.array([len(points)]), blocks), "</Lines>\n", TAIL,

@@ -91,9 +91,9 @@ class ZarrStore:
                   for name, values in (("time", self._source.time), ("s", self._source.s))}
         used = {name for variable in self._source.variables.values() for name in variable.dimensions}
         arrays |= {name: _texts(name) for name in LABELS if name in used}
-        return arrays | {name: self._of(variable) for name, variable in self._source.variables.items()}
+        return arrays | {name: self._array(variable) for name, variable in self._source.variables.items()}
 
-    def _of(self, variable: Variable) -> Array:
+    def _array(self, variable: Variable) -> Array:
         sizes = {"time": len(self._source.time), "s": len(self._source.s)}
         sizes |= {name: len(labels) for name, labels in LABELS.items()}
         shape = tuple(sizes[name] for name in variable.dimensions)

@@ -32,7 +32,7 @@ from worker.lock import JobLock
 from worker.shown import Shown
 
 log = logging.getLogger(__name__)
-Made = TypeVar("Made")
+Result = TypeVar("Result")
 
 SHARE = 0.05
 """The part of the running time that checkpoints may take."""
@@ -55,8 +55,8 @@ def work_directory(settings: Settings, job_id: str) -> Path:
 def _check_budget(run: Run, budget: float) -> None:
     spent = run.statistics.cpu_time
     if spent > budget:
-        told = f"{spent:.0f} s of computing, {run.progress:.0%} done"
-        raise RunFailed(Outcome.ESTIMATE_EXCEEDED, run.t, run.statistics.steps, told)
+        detail = f"{spent:.0f} s of computing, {run.progress:.0%} done"
+        raise RunFailed(Outcome.ESTIMATE_EXCEEDED, run.t, run.statistics.steps, detail)
 
 
 def _is_shared(spec: CaseSpec) -> bool:
@@ -78,15 +78,17 @@ class Attempt:
         self._redone = 0
         self._due = 0.0
         self._shown = Shown(self._directory)
-        self._kept: Beginnings | None = None
+        self._beginnings: Beginnings | None = None
 
     def run(self) -> Ending:
         """Compute the frames and put the dataset together. Raises whatever else ends a run."""
         self._with_room(lambda: self._directory.mkdir(mode=0o700, parents=True, exist_ok=True))
         spec = parse_case(self._held.case)
         simulation, segments = self._start(spec)
-        kept = (code_digest(), spec.frames, self._held.followers())
-        self._kept = Beginnings(self._datasets.states(self._held.job.id), *kept) if _is_shared(spec) else None
+        followed = self._held.followers()
+        if _is_shared(spec):
+            states = self._datasets.states(self._held.job.id)
+            self._beginnings = Beginnings(states, code_digest(), spec.frames, followed)
         self._with_room(lambda: self._shown.begin(segments, simulation))
         with DatasetWriter(self._path, spec, self._directory, segments) as writer:
             status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED, ""
@@ -102,15 +104,15 @@ class Attempt:
 
     def _start(self, spec: CaseSpec) -> tuple[Run, tuple[Segment, ...]]:
         """The run, where it goes on or begins, and its frames until then."""
-        found = self._checkpoints.newest()
-        begun = None if found else begun_with(self._held, spec, self._datasets, self._directory, self._path.stem)
-        self._tell_lost(found.steps if found else begun.steps if begun else 0)
+        checkpoint = self._checkpoints.newest()
+        begun = None if checkpoint else begun_with(self._held, spec, self._datasets, self._directory, self._path.stem)
+        self._tell_lost(checkpoint.steps if checkpoint else begun.steps if begun else 0)
         if begun is not None:
             return begun.run, begun.segments
         simulation = simulate(build_scene(spec))
-        if found is not None:
-            simulation.restore(found.state)
-        return simulation, found.segments if found else ()
+        if checkpoint is not None:
+            simulation.restore(checkpoint.state)
+        return simulation, checkpoint.segments if checkpoint else ()
 
     def publish(self) -> None:
         """Have the dataset lie where all can read it. Raises whatever ends a run."""
@@ -128,8 +130,8 @@ class Attempt:
                 log.info("under way", extra={"t": simulation.t, "steps": simulation.statistics.steps})
             if frame is not None:
                 self._keep(simulation, writer, frame)
-                if self._kept is not None:
-                    self._kept.keep(writer.frames - 1, simulation)
+                if self._beginnings is not None:
+                    self._beginnings.keep(writer.frames - 1, simulation)
             steps = simulation.statistics.steps
             self._lock.mark(steps)
             self._tell(simulation)
@@ -176,7 +178,7 @@ class Attempt:
         now = time.monotonic()
         self._due = now + max(self._interval, (now - began) / SHARE)
 
-    def _with_room(self, write: Callable[[], Made]) -> Made:
+    def _with_room(self, write: Callable[[], Result]) -> Result:
         """What `write` makes, once there is room for it: hours of computing may be worth minutes of waiting.
 
         What fails is tried once more in any case: the disk may have been full, and have room again by now.

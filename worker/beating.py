@@ -61,8 +61,8 @@ class Parent:
         self._turned = time.monotonic()
 
     def _look(self, pids: list[int]) -> None:
-        for gone in self._children.keys() - set(pids):
-            path_of(self._pulses, "child", gone).unlink(missing_ok=True)
+        for ended in self._children.keys() - set(pids):
+            path_of(self._pulses, "child", ended).unlink(missing_ok=True)
         self._children = {pid: self._children.get(pid) or Listener() for pid in pids}
         for pid, listener in self._children.items():
             if listener.stands_still(last_beat(self._pulses, "child", pid), self._longest):

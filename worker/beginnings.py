@@ -51,15 +51,15 @@ class AnotherBeginning(Exception):
 class Beginnings:
     """The states of one job's run in a directory of theirs, by the numbers of their frames."""
 
-    def __init__(self, directory: Path, key: str, frames: int, asked: Collection[int] = ()) -> None:
-        """`key`: the code by which it runs; `asked`: frames from which others will begin."""
+    def __init__(self, directory: Path, key: str, frames: int, followed: Collection[int] = ()) -> None:
+        """`key`: the code by which it runs; `followed`: frames from which others will begin."""
         self._directory, self._key = directory, key
-        parts = {int(part * (frames - 1)) for part in PARTS} | {frames - 2} | set(asked)
-        self._wanted = {frame for frame in parts if 0 < frame < frames - 1}
+        parts = {int(part * (frames - 1)) for part in PARTS} | {frames - 2} | set(followed)
+        self._frames = {frame for frame in parts if 0 < frame < frames - 1}
 
     def keep(self, frame: int, run: Run) -> None:
         """Keep the state at this frame, if it is one of those. A run goes on where that cannot be done."""
-        if frame not in self._wanted:
+        if frame not in self._frames:
             return
         try:
             self._directory.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -85,36 +85,36 @@ def begun(fresh: Mapping[str, Any], other: Mapping[str, Any], reached: Mapping[s
 
     Raises AnotherBeginning where the fresh ones differ in more than what comes later.
     """
-    told = {}
+    state = {}
     for path in sorted(fresh.keys() | reached.keys()):
         changed = path not in other or (path in reached and not _same(reached[path], other[path]))
         apart = path in fresh and path in other and not _same(fresh[path], other[path])
         if apart and not OF_THE_FUTURE.search(path):
             raise AnotherBeginning(f"{path} is another one")
         if path in reached and changed and not apart:
-            told[path] = reached[path]
+            state[path] = reached[path]
         elif path in fresh:
-            told[path] = fresh[path]
-    return _switched(told, fresh, other, reached)
+            state[path] = fresh[path]
+    return _switched(state, fresh, other, reached)
 
 
-def _switched(told: dict[str, Any], fresh: Mapping[str, Any], other: Mapping[str, Any],
+def _switched(state: dict[str, Any], fresh: Mapping[str, Any], other: Mapping[str, Any],
               reached: Mapping[str, Any]) -> dict[str, Any]:  # fmt: skip
     """With the switches that are still to come: those of the fresh run less the ones that the other has made."""
     for path in [path for path in fresh if path.endswith("._switches[]")]:
-        made = other[path] - reached[path]
+        passed = other[path] - reached[path]
         name = path.removesuffix("[]")
-        for item in [item for item in told if item.startswith(f"{name}[") and item != path]:
-            del told[item]
-        told[path] = fresh[path] - made
-        told |= {f"{name}[{i}]": fresh[f"{name}[{i + made}]"] for i in range(told[path])}
-    return told
+        for item in [item for item in state if item.startswith(f"{name}[") and item != path]:
+            del state[item]
+        state[path] = fresh[path] - passed
+        state |= {f"{name}[{i}]": fresh[f"{name}[{i + passed}]"] for i in range(state[path])}
+    return state
 
 
-def _same(one: Any, other: Any) -> bool:
-    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
-        return np.shape(one) == np.shape(other) and np.array_equal(one, other, equal_nan=True)
-    return bool(one == other) or (one != one and other != other)
+def _same(value: Any, other: Any) -> bool:
+    if isinstance(value, np.ndarray) or isinstance(other, np.ndarray):
+        return np.shape(value) == np.shape(other) and np.array_equal(value, other, equal_nan=True)
+    return bool(value == other) or (value != value and other != other)
 
 
 def begun_with(held: HeldJob, spec: CaseSpec, datasets: Datasets, directory: Path, tag: str) -> Begun | None:
@@ -139,10 +139,10 @@ def _begun(held: HeldJob, other_id: str, spec: CaseSpec, datasets: Datasets, dir
     registry = Registry(held.database)
     other, first = registry.get(other_id), parse_case(registry.case(other_id))
     most = min(held.job.begins_at, common_frame(first, spec))
-    found = Beginnings(datasets.states(other_id), code_digest(), first.frames).last(most)
-    if found is None or other.dataset is None:
+    beginning = Beginnings(datasets.states(other_id), code_digest(), first.frames).last(most)
+    if beginning is None or other.dataset is None:
         raise LookupError("no state or no dataset of it is kept")
-    frame, reached = found
+    frame, reached = beginning
     run = simulate(build_scene(spec))
     run.restore(begun(run.checkpoint(), simulate(build_scene(first)).checkpoint(), reached))
     path = datasets.file(other.dataset.file, other.dataset.bytes, other.dataset.sha256)

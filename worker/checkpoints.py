@@ -68,8 +68,8 @@ class Checkpoints:
         return None
 
     def _files(self) -> list[Path]:
-        found = self._directory.glob("checkpoint-*")
-        return sorted((path for path in found if path.suffix != ".part"), reverse=True)
+        paths = self._directory.glob("checkpoint-*")
+        return sorted((path for path in paths if path.suffix != ".part"), reverse=True)
 
 
 def packed(checkpoint: Checkpoint, key: str) -> bytes:
@@ -79,12 +79,12 @@ def packed(checkpoint: Checkpoint, key: str) -> bytes:
     head = {"key": key, "steps": checkpoint.steps, "numbers": numbers,
             "segments": [asdict(segment) for segment in checkpoint.segments],
             "arrays": [(name, value.dtype.str, value.shape) for name, value in arrays.items()]}
-    told = np.frombuffer(json.dumps(head).encode(), np.uint8)
+    head_bytes = np.frombuffer(json.dumps(head).encode(), np.uint8)
     whole = b"".join([*(value.tobytes() for value in arrays.values()), bytes(WORD)])
     words = np.frombuffer(whole[: len(whole) // WORD * WORD], np.uint64)
     content = BytesIO()
-    there = words != 0
-    np.savez(content, **{HEAD: told, PLACES: np.packbits(there), WORDS: words[there]})
+    nonzero = words != 0
+    np.savez(content, **{HEAD: head_bytes, PLACES: np.packbits(nonzero), WORDS: words[nonzero]})
     return hashlib.sha256(content.getbuffer()).digest() + content.getvalue()
 
 
@@ -100,15 +100,16 @@ def unpacked(file_content: bytes, key: str) -> Checkpoint:
         raise ValueError("it is of another case, or of another version of the solver")
     if WORDS in arrays:  # else it is of a version that wrote each array by itself
         arrays = dict(_arrays(head["arrays"], np.unpackbits(arrays[PLACES]).astype(bool), arrays[WORDS]))
-    return Checkpoint(head["steps"], arrays | head["numbers"], tuple(Segment(**told) for told in head["segments"]))
+    segments = tuple(Segment(**segment) for segment in head["segments"])
+    return Checkpoint(head["steps"], arrays | head["numbers"], segments)
 
 
-def _arrays(told: list[tuple[str, str, list[int]]], places: NDArray[np.bool_],
+def _arrays(headers: list[tuple[str, str, list[int]]], places: NDArray[np.bool_],
             words: NDArray[np.uint64]) -> Iterator[tuple[str, NDArray[Any]]]:  # fmt: skip
     whole, at = np.zeros(len(places), np.uint64), 0
     whole[places] = words
     content = whole.tobytes()
-    for name, kind, shape in told:
+    for name, kind, shape in headers:
         array = np.frombuffer(content, kind, prod(shape), at).reshape(shape).copy()
         at += array.nbytes
         yield name, array

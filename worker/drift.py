@@ -14,7 +14,7 @@ from service.results.query import opened
 
 TOPOLOGY, BALANCE = ("Tw", "Wr", "Lk"), "energy_balance"
 ENERGIES = tuple(f"energy_{name}" for name in ("bending", "torsion", "kinetic", "added_mass", "potential", "contact"))
-GIVEN = ("work_ends", "work_loads", "dissipation")
+EXCHANGED = ("work_ends", "work_loads", "dissipation")
 
 
 def drift_of(dataset: Path, method: str) -> Drift:
@@ -27,7 +27,7 @@ def drift_of(dataset: Path, method: str) -> Drift:
     with opened(dataset) as source:
         if len(source.time) == 0:
             return Drift(method)
-        run = {name: source.read(source.variables[name], {}) for name in (*TOPOLOGY, BALANCE, *ENERGIES, *GIVEN)}
+        run = {name: source.read(source.variables[name], {}) for name in (*TOPOLOGY, BALANCE, *ENERGIES, *EXCHANGED)}
     twist, writhe, link = (float(run[name][-1]) for name in TOPOLOGY)
     topology = abs(twist + writhe - link)
     balance, changed = abs(float(run[BALANCE][-1])), _changed(run)
@@ -38,4 +38,4 @@ def drift_of(dataset: Path, method: str) -> Drift:
 def _changed(run: Mapping[str, NDArray[np.float64]]) -> float:
     """Energy (J) that has changed its form or come from outside."""
     stored = sum(float(np.nanmax(run[name]) - np.nanmin(run[name])) for name in ENERGIES)
-    return stored + sum(abs(float(run[name][-1])) for name in GIVEN)
+    return stored + sum(abs(float(run[name][-1])) for name in EXCHANGED)

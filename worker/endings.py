@@ -84,5 +84,5 @@ def _not_written(error: OSError, store: Path) -> Ending:
     return _failed(Outcome.DATASET_NOT_WRITTEN, f"the dataset could not be written ({error.strerror or error})")
 
 
-def _failed(outcome: Outcome, what: str) -> Ending:
-    return Ending(Status.FAILED, outcome, f"{what}: {outcome.remedy}")
+def _failed(outcome: Outcome, cause: str) -> Ending:
+    return Ending(Status.FAILED, outcome, f"{cause}: {outcome.remedy}")

@@ -75,12 +75,12 @@ class Lease:
 
     def renew(self) -> None:
         """Lengthen the lease now, and tell the row what was reached. Raises what the database raises."""
-        asked, reached = time.monotonic(), self.reached
+        since, reached = time.monotonic(), self.reached
         wish = self._held.renew(self._seconds, reached)
         if wish is None:
             self._verdict = LeaseLost(self._held.job.id)
             return
-        self._put_off(asked)
+        self._put_off(since)
         self.gives_way = wish is Wish.GIVE_WAY
         if wish is Wish.CANCEL:
             self._verdict = Cancelled(self._held.job.id)

@@ -36,7 +36,7 @@ def job_lock(path: Path) -> Iterator[JobLock | None]:
     """
     file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     try:
-        if not (_locked(file) and _is(path, file)):
+        if not (_locked(file) and _is_same_file(path, file)):
             yield None
             return
         try:
@@ -55,7 +55,7 @@ def _locked(file: int) -> bool:
     return True
 
 
-def _is(path: Path, file: int) -> bool:
+def _is_same_file(path: Path, file: int) -> bool:
     """Whether `path` is still the file that was opened: its last holder may have removed it since."""
     try:
         return os.path.samestat(path.stat(), os.fstat(file))

@@ -16,7 +16,7 @@ def memory_limit(more: int) -> Iterator[None]:
         yield
         return
     before, hard = resource.getrlimit(resource.RLIMIT_DATA)
-    allowed = _taken() + more
+    allowed = _memory_used() + more
     resource.setrlimit(resource.RLIMIT_DATA, (allowed if hard == resource.RLIM_INFINITY else min(allowed, hard), hard))
     try:
         yield
@@ -24,7 +24,7 @@ def memory_limit(more: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_DATA, (before, hard))
 
 
-def _taken() -> int:
+def _memory_used() -> int:
     """Bytes that count towards the limit now."""
     lines = Path("/proc/self/status").read_text().splitlines()
     return 1024 * next(int(line.split()[1]) for line in lines if line.startswith("VmData:"))

@@ -33,11 +33,11 @@ def run_next(database: Database, settings: Settings) -> bool:
     host, most = platform.node(), settings.most_running
     while job_id := next_in_turn(database, passed, host, most):
         with stopping.at_work(), job_lock(settings.locks / f"{job_id}.lock") as lock:
-            asked = time.monotonic()
+            since = time.monotonic()
             held = claim(database, job_id, settings.lease, f"{host}:{os.getpid()}", most) if lock else None
             if lock is not None and held is not None:
                 with about(job=job_id, epoch=held.job.epoch):
-                    _run(held, Lease(held, settings.lease, asked), lock, settings)
+                    _run(held, Lease(held, settings.lease, since), lock, settings)
                 return True
         passed.append(job_id)
     log.info("no job waits")

@@ -24,7 +24,7 @@ def add_server(*parsers: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def connected(server: str | None) -> Iterator[Client]:
-    """A client of a server. What it raises becomes a Failure; it is told at once that no server answers."""
+    """A client of a server. What it raises becomes a Failure, at once where no server answers."""
     from hockle_client import Client, HockleError, Unreachable
 
     try:

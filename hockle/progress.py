@@ -21,8 +21,8 @@ class Pace:
         """Seconds that are left at this progress (0 to 1) and time (s); None while it cannot be said."""
         if self._first is None or progress <= self._first[1]:  # what came before the first progress does not count
             self._first = now, progress
-        since, done = self._first
-        return (1.0 - progress) * (now - since) / (progress - done) if progress > done else None
+        since, before = self._first
+        return (1.0 - progress) * (now - since) / (progress - before) if progress > before else None
 
 
 def show(jobs: Iterable[dict[str, Any]]) -> dict[str, Any]:

@@ -24,7 +24,7 @@ def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
 
 
 def read_case(name_or_path: str, texts: Iterable[str]) -> dict[str, Any]:
-    """The raw case of a shipped name or a file, with the settings made. Raises Failure."""
+    """The raw case of a shipped name or a file, with the settings applied. Raises Failure."""
     from service.cases import CaseError, apply_settings, load_case
 
     try:

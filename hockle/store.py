@@ -76,6 +76,6 @@ def restore(arguments: argparse.Namespace) -> int:
         raise Failure(str(error)) from None
 
 
-def _report(faults: list[str], done: str) -> int:
-    print("\n".join([*faults, done if not faults else f"{done}, but for {len(faults)} datasets"]))
+def _report(faults: list[str], summary: str) -> int:
+    print("\n".join([*faults, summary if not faults else f"{summary}, but for {len(faults)} datasets"]))
     return 1 if faults else 0

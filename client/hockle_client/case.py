@@ -22,7 +22,7 @@ class Case:
 
     @classmethod
     def shipped(cls, name: str) -> Self:
-        """A case that comes with hockle, by its name: `Client.shipped()` tells them."""
+        """A case that comes with hockle, by its name: `Client.shipped()` lists them."""
         return cls(name)
 
     @classmethod

@@ -35,7 +35,7 @@ class Limits(Document):
 
 
 class WebhookInfo(Document):
-    """Whom the end of a job is told: how often that was tried, what came of the last try, and when the next one is."""
+    """Where the end of a job is reported: how often that was tried, the result of the last try, when the next is."""
 
     url: str
     deliveries: int
@@ -172,7 +172,7 @@ class Event(Document):
 class Link(Document):
     """An address by which anybody reads one dataset, until it expires or is revoked.
 
-    `url`, that of the file, `zarr`, that of a Zarr store, and `opendap` are told once, when the link is made; else they
+    `url`, that of the file, `zarr`, that of a Zarr store, and `opendap` are known only when the link is made; else they
     are empty.
     """
 
@@ -186,7 +186,7 @@ class Link(Document):
 
 
 class PauseInfo(Document):
-    """Since when no job is taken, and by whom it was said; `drains`: what ran was handed back too."""
+    """Since when no job is taken, and who paused; `drains`: what ran was handed back too."""
 
     drains: bool
     since: datetime

@@ -87,7 +87,7 @@ class Problem(HockleError):
 
 
 def problem_of(response: httpx.Response) -> Problem:
-    """The problem that an answer tells, which must have been read."""
+    """The problem in an answer, whose body must have been read."""
     document: Any = None
     if response.headers.get("content-type", "").partition(";")[0] == PROBLEM:
         document = response.json()

@@ -58,16 +58,16 @@ print(json.dumps([time.perf_counter() - began, (peak() - before) / 1e3]))
 
 
 @dataclass(frozen=True)
-class Held:
+class Cost:
     """What something took (s), and the most memory (MB) that it added to the server and to its client."""
 
-    what: str
+    label: str
     seconds: float
     server: float | None
     client: float
 
 
-def of_a_large_dataset(address: str, settings: Settings) -> tuple[float, list[Held]]:
+def of_a_large_dataset(address: str, settings: Settings) -> tuple[float, list[Cost]]:
     """The size (bytes) of the file, and what publishing and reading it took."""
     with httpx.Client(base_url=address, timeout=600.0) as client:
         job = client.post("/v1/jobs", json={"case": "cantilever-vibration", "set": CASE}).raise_for_status().json()
@@ -75,18 +75,18 @@ def of_a_large_dataset(address: str, settings: Settings) -> tuple[float, list[He
     job_id = str(job["id"])
     path, published = _published(job_id, parse_case(case), settings)
     servers = started_here("api")
-    return path.stat().st_size, [published, *(_read(address, job_id, what, servers) for what in READS)]
+    return path.stat().st_size, [published, *(_read(address, job_id, label, servers) for label in READS)]
 
 
-def _read(address: str, job_id: str, what: str, servers: list[int]) -> Held:
+def _read(address: str, job_id: str, label: str, servers: list[int]) -> Cost:
     figures: list[float] = []
     with tempfile.TemporaryDirectory() as directory:
-        command = [sys.executable, "-c", CLIENT, address, job_id, f"{directory}/run.nc", READS[what]]
+        command = [sys.executable, "-c", CLIENT, address, job_id, f"{directory}/run.nc", READS[label]]
         server = peak_of(servers, lambda: figures.extend(json.loads(subprocess.check_output(command))))
-    return Held(what, figures[0], server, figures[1])
+    return Cost(label, figures[0], server, figures[1])
 
 
-def _published(job_id: str, spec: CaseSpec, settings: Settings) -> tuple[Path, Held]:
+def _published(job_id: str, spec: CaseSpec, settings: Settings) -> tuple[Path, Cost]:
     """The job ended, with a dataset of chance numbers, which cannot be packed; as a worker does it."""
     path, took, published = settings.datasets / f"{job_id}.1.nc", [0.0], []
     with tempfile.TemporaryDirectory(dir=settings.data) as directory:
@@ -100,7 +100,7 @@ def _published(job_id: str, spec: CaseSpec, settings: Settings) -> tuple[Path, H
 
         grown = peak_of([os.getpid()], publish)
     _end(job_id, Dataset(path.name, published[0].sha256, published[0].bytes), settings)
-    return path, Held("put together, verified and published, from its segments", took[0], None, grown)
+    return path, Cost("put together, verified and published, from its segments", took[0], None, grown)
 
 
 def _end(job_id: str, dataset: Dataset, settings: Settings) -> None:
@@ -128,11 +128,11 @@ def _chance(rng: np.random.Generator, variable: Variable, shape: tuple[int, ...]
     return rng.standard_normal((IN_BLOCK, *shape)) * np.exp2(rng.integers(-500, 500, (IN_BLOCK, *shape)))
 
 
-def lines(size: float, rows: list[Held]) -> list[str]:
+def lines(size: float, rows: list[Cost]) -> list[str]:
     """The table in Markdown."""
     aim = f"<= {LEAST * size / 1e6:.0f}"
     head = [f"A dataset of {size / 1e9:.2f} GB: chance numbers, {INTERVALS + 1} nodes, written as a worker does. MB is",
             "the most by which resident memory grew meanwhile, of one API process, and of the process that reads (or",
             "publishes).", "", "| what | s | MB of the server | MB of the client | aim, MB |", "|---|---|---|---|---|"]
-    return ["", *head, *(f"| {row.what} | {row.seconds:.2f} | {'' if row.server is None else f'{row.server:.0f}'} | "
+    return ["", *head, *(f"| {row.label} | {row.seconds:.2f} | {'' if row.server is None else f'{row.server:.0f}'} | "
                          f"{row.client:.0f} | {aim} |" for row in rows)]  # fmt: skip

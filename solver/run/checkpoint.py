@@ -21,43 +21,43 @@ Saved = dict[str, Array | float | int | bool | None]
 NUMBERS = (bool, int, float, np.number)
 
 
-def saved(thing: object) -> Saved:
-    """A copy of all arrays and numbers in `thing`. Raises TypeError where it holds what is neither, nor fixed."""
-    found: Saved = {}
-    _save(thing, "", found, set())
-    return found
+def saved(root: object) -> Saved:
+    """A copy of all arrays and numbers in `root`. Raises TypeError where it holds what is neither, nor fixed."""
+    state: Saved = {}
+    _save(root, "", state, set())
+    return state
 
 
-def restore(thing: object, values: Mapping[str, Any]) -> None:
-    """Give `thing`, made from the same scene, the values that were saved. Raises ValueError if any is left over."""
+def restore(root: object, values: Mapping[str, Any]) -> None:
+    """Give `root`, made from the same scene, the values that were saved. Raises ValueError if any is left over."""
     unused = set(values)
-    _restore(thing, "", values, unused, set())
+    _restore(root, "", values, unused, set())
     if unused:
         raise ValueError(f"not a checkpoint of this run: nothing here is called {min(unused)}")
 
 
-def _save(value: object, path: str, found: Saved, seen: set[int]) -> None:
+def _save(value: object, path: str, state: Saved, visited: set[int]) -> None:
     if value is None or isinstance(value, NUMBERS):
-        found[path] = value.item() if isinstance(value, np.number) else value
+        state[path] = value.item() if isinstance(value, np.number) else value
     elif isinstance(value, np.ndarray):
-        found[path] = value.copy()
+        state[path] = value.copy()
     elif _is_record(value):
         for name in value._fields:  # type: ignore[attr-defined]
-            _save(getattr(value, name), f"{path}.{name}", found, seen)
+            _save(getattr(value, name), f"{path}.{name}", state, visited)
     elif isinstance(value, (list, tuple)):
-        found[f"{path}[]"] = len(value)
+        state[f"{path}[]"] = len(value)
         for i, item in enumerate(value):
-            _save(item, f"{path}[{i}]", found, seen)
+            _save(item, f"{path}[{i}]", state, visited)
     elif _is_ours(value):
-        if id(value) not in seen:
-            seen.add(id(value))
+        if id(value) not in visited:
+            visited.add(id(value))
             for name in sorted(vars(value)):
-                _save(getattr(value, name), f"{path}.{name}", found, seen)
+                _save(getattr(value, name), f"{path}.{name}", state, visited)
     elif not (isinstance(value, str) or _is_frozen(value) or callable(value)):
         raise TypeError(f"{path} is a {type(value).__name__}, which a checkpoint cannot hold")
 
 
-def _restore(value: Any, path: str, values: Mapping[str, Any], unused: set[str], seen: set[int]) -> Any:
+def _restore(value: Any, path: str, values: Mapping[str, Any], unused: set[str], visited: set[int]) -> Any:
     """The value that stands at `path` now: `value` itself, changed in place, wherever that can be."""
     if path in unused:
         unused.remove(path)
@@ -67,26 +67,26 @@ def _restore(value: Any, path: str, values: Mapping[str, Any], unused: set[str],
             return value
         return new
     if _is_record(value):
-        parts = {name: _restore(part, f"{path}.{name}", values, unused, seen) for name, part in _parts(value)}
+        parts = {name: _restore(part, f"{path}.{name}", values, unused, visited) for name, part in _parts(value)}
         same = all(parts[name] is part for name, part in _parts(value))
         return value if same else value._replace(**parts)
     if f"{path}[]" in unused:
-        return _sequence(value, path, values, unused, seen)
-    if _is_ours(value) and id(value) not in seen:
-        seen.add(id(value))
+        return _sequence(value, path, values, unused, visited)
+    if _is_ours(value) and id(value) not in visited:
+        visited.add(id(value))
         for name in sorted(_names_below(path, unused) | set(vars(value))):
             part = getattr(value, name, None)
-            new = _restore(part, f"{path}.{name}", values, unused, seen)
+            new = _restore(part, f"{path}.{name}", values, unused, visited)
             if new is not part:
                 setattr(value, name, new)
     return value
 
 
-def _sequence(value: Any, path: str, values: Mapping[str, Any], unused: set[str], seen: set[int]) -> Any:
+def _sequence(value: Any, path: str, values: Mapping[str, Any], unused: set[str], visited: set[int]) -> Any:
     unused.remove(f"{path}[]")
     old = list(value) if isinstance(value, (list, tuple)) else []
     items = [
-        _restore(old[i] if i < len(old) else None, f"{path}[{i}]", values, unused, seen)
+        _restore(old[i] if i < len(old) else None, f"{path}[{i}]", values, unused, visited)
         for i in range(values[f"{path}[]"])
     ]
     return items if isinstance(value, list) else tuple(items)

@@ -61,18 +61,18 @@ class Equilibria(Run):
         return self._frame(0.0)
 
     def _next_frame(self, output: float) -> Frame | None:
-        there = self._advance(output / self._scene.t_end)
+        reached = self._advance(output / self._scene.t_end)
         self.t = self._path.travelled * self._scene.t_end
-        return self._frame(output) if there else None
+        return self._frame(output) if reached else None
 
     def _advance(self, stop: float) -> bool:
-        path, told = self._path, self.statistics
+        path, statistics = self._path, self.statistics
         steps, failed, iterations = path.steps, path.failed, path.iterations
-        there = path.advance(stop)
-        told.steps += path.steps - steps
-        told.failed_steps += path.failed - failed
-        told.newton_iterations += path.iterations - iterations
-        return there
+        reached = path.advance(stop)
+        statistics.steps += path.steps - steps
+        statistics.failed_steps += path.failed - failed
+        statistics.newton_iterations += path.iterations - iterations
+        return reached
 
     def _corners(self) -> list[float]:
         """Values of q at which a schedule bends."""
@@ -90,8 +90,8 @@ class Equilibria(Run):
         equations, path, point = self._equations, self._path, self._path.point
         equations.look_at(point)
         if equations.strain() > LARGEST_STRAIN:
-            told = f"stretched by {equations.strain():.2g} of its length"
-            raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, told)
+            detail = f"stretched by {equations.strain():.2g} of its length"
+            raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, detail)
         fields = self._fields(point)
         stages = equations.stages
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])

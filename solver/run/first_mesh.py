@@ -33,4 +33,4 @@ def twisted(scene: Scene) -> float:
     ends = DrivenEnd(scene.start), DrivenEnd(scene.end)
     times = np.linspace(0.0, scene.t_end, TIMES).tolist()
     turned = [[end.rotation_prescribed(t) or 0.0 for end in ends] for t in times]
-    return max(abs(one - two) for one, two in turned)
+    return max(abs(start - end) for start, end in turned)

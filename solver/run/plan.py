@@ -96,11 +96,11 @@ def allowance(history: Sequence[Attempt], trial: Trial) -> float:
     complete = [attempt for attempt in history if attempt.complete]
     if not complete:
         return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else LAST_PART)
-    left = MOST_WORK - _work(history)
+    remaining = MOST_WORK - _work(history)
     meshes = {attempt.mesh for attempt in complete}
     if len(complete) == 1 or (len(meshes) == 1 and trial.mesh not in meshes):
-        return max(left, PATIENCE * expected(complete, trial))  # without it nothing is known of the error
-    return max(left, 0.0)
+        return max(remaining, PATIENCE * expected(complete, trial))  # without it nothing is known of the error
+    return max(remaining, 0.0)
 
 
 def expected(complete: Sequence[Attempt], trial: Trial) -> float:
@@ -111,8 +111,8 @@ def expected(complete: Sequence[Attempt], trial: Trial) -> float:
     mesh_growth = _growth(complete, Trial(1, 0)) or size ** (1.0 / max(meshes, 1))
     together = _growth(complete, Trial(1, 1))
     if together and meshes > 0 and steps > 0:
-        both = min(meshes, steps)
-        return float(nearest.work * together**both * mesh_growth ** (meshes - both) * BY_STEPS ** (steps - both))
+        common = min(meshes, steps)
+        return float(nearest.work * together**common * mesh_growth ** (meshes - common) * BY_STEPS ** (steps - common))
     step_growth = _growth(complete, Trial(0, 1)) or BY_STEPS
     return float(nearest.work * (mesh_growth**meshes if meshes > 0 else size) * step_growth**steps)
 
@@ -176,8 +176,8 @@ def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], errors
     # by two kinds of steps the error of the shorter is told as 2 / 3 of their difference, which is that of the longer
     longer = len(steps) > 1 and 1.5 * max(excess.steps for excess in errors) <= STEP_SHARE
     longer = longer or _steps_are_dear(complete, errors)
-    wanted = steps[-2] if longer else steps[-1]
-    finer = Trial(max(attempt.mesh for attempt in history) + 1, wanted)
+    finer_steps = steps[-2] if longer else steps[-1]
+    finer = Trial(max(attempt.mesh for attempt in history) + 1, finer_steps)
     if not longer and len(steps) > 1 and not _is_for(history, finer, most_intervals):
         finer = Trial(finer.mesh, steps[-2])
     if mesh > 0 and not _is_for(history, finer, most_intervals):
@@ -237,10 +237,10 @@ def _all_of(complete: Sequence[Attempt], excess: Excess, trial: Trial) -> float:
     quarter from one to the next."""
     nearest = _finest(complete)
     fall = min(max(excess.before / excess.total, LEAST_FALL), 4.0)
-    each = expected(complete, trial)
-    growth = max(each / max(nearest.work, 1.0), 1.1)
+    work = expected(complete, trial)
+    growth = max(work / max(nearest.work, 1.0), 1.1)
     many = min(max(ceil(log(max(excess.total, 1.0)) / log(fall)), 1), 20)
-    return float(each * (growth**many - 1.0) / (growth - 1.0))
+    return float(work * (growth**many - 1.0) / (growth - 1.0))
 
 
 def _work(history: Sequence[Attempt]) -> float:
@@ -250,10 +250,10 @@ def _work(history: Sequence[Attempt]) -> float:
 def to_come(history: Sequence[Attempt], errors: Sequence[Excess], trial: Trial) -> float:
     """The work that is likely to follow an attempt, for the progress."""
     complete = [attempt for attempt in history if attempt.complete]
-    left = max(MOST_WORK - _work(history), 0.0)
+    remaining = max(MOST_WORK - _work(history), 0.0)
     if not complete:
         return MOST_WORK * FIRST_PART
-    each = expected(complete, trial)
+    work = expected(complete, trial)
     if any(excess.total == inf for excess in errors):
-        return min(2.0 * each, left)
-    return min(max(max(_all_of(complete, excess, trial) for excess in errors) - each, 0.0), left)
+        return min(2.0 * work, remaining)
+    return min(max(max(_all_of(complete, excess, trial) for excess in errors) - work, 0.0), remaining)

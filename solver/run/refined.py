@@ -81,12 +81,12 @@ class Refined(Run):
         """The part of the work that is done, as far as it can be known; it never falls."""
         if self._decided:
             return 1.0
-        done, part = self._work, min(self._run.t / self._scene.t_end, 1.0)
+        current, part = self._work, min(self._run.t / self._scene.t_end, 1.0)
         attempts = self._attempts
         spent = sum(attempt.work for attempt in attempts)
         rest = to_come(attempts, self._errors, Trial(self._mesh, self._steps))
-        whole = spent + done / max(part, 0.01) + rest
-        self._progress = max(self._progress, (spent + done) / max(whole, 1.0))
+        whole = spent + current / max(part, 0.01) + rest
+        self._progress = max(self._progress, (spent + current) / max(whole, 1.0))
         return self._progress
 
     @property
@@ -166,8 +166,8 @@ class Refined(Run):
             self._detail = failure.detail
             self._ended(failure.t, OUTCOMES.index(failure.outcome), slow=False)
             return
-        each = (intervals_of(self._mesh) + OVERHEAD) * (IN_CONTACT if self._run.presses else 1.0)
-        self._work += (self.statistics.newton_iterations - before) * each
+        per_iteration = (intervals_of(self._mesh) + OVERHEAD) * (IN_CONTACT if self._run.presses else 1.0)
+        self._work += (self.statistics.newton_iterations - before) * per_iteration
         if frame is not None:
             self._rows.append(row_of(frame))
         if self._run.finished:
@@ -184,9 +184,9 @@ class Refined(Run):
         self._noticed.append(astuple(self._run.remarks))
         self._rows, self._work = [], 0.0
         if complete:
-            done = [attempt.complete for attempt in self._attempts]
-            self._recorded = [rows if there else rows[:0] for rows, there in zip(self._recorded, done, strict=True)]
-            self._excesses = [tuple(each) for each in self._together.excesses(self._errors)]
+            completed = [attempt.complete for attempt in self._attempts]
+            self._recorded = [rows if kept else rows[:0] for rows, kept in zip(self._recorded, completed, strict=True)]
+            self._excesses = [tuple(excess) for excess in self._together.excesses(self._errors)]
         then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
         if then is None:
             self._decided, self._errors_of_frames = True, self._together.errors()

@@ -31,33 +31,33 @@ class Remarks:
 
     def sentences(self) -> list[str]:
         """What a user is to read, a sentence for each remark."""
-        told = []
+        sentences = []
         if self.crossings:
-            told.append(
+            sentences.append(
                 f"The rod passed through itself {_times(self.crossings)}, first before "
                 f"t = {self.first_crossing:.6g} s: give contact to hold it apart."
             )
         if self.end_hops:
-            told.append(
+            sentences.append(
                 f"A loop hopped over an end of the rod {_times(self.end_hops)}: no crossing, but Tw + Wr differs from "
                 "Lk by 2 turns more for each."
             )
         if self.deepest_overlap:
-            told.append(
+            sentences.append(
                 f"Strands overlapped, at the most by {self.deepest_overlap:.3g} m "
                 f"at t = {self.deepest_overlap_at:.6g} s."
             )
         if self.energy_lost:
-            told.append(
+            sentences.append(
                 f"Energy went nowhere, {self.energy_lost:.0%} of the largest that the rod's motion and strain had: the "
                 "steps are too long for the waves that had it."
             )
         if self.axial_stiffness:
-            told.append(
+            sentences.append(
                 "The rod is held so that it has to stretch: it has the axial stiffness EA = "
                 f"{self.axial_stiffness:.3g} N."
             )
-        return told
+        return sentences
 
 
 def _times(number: int) -> str:

@@ -36,8 +36,8 @@ def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, 
     nodes, steps = fine.shape[1], [k if fine.shape[1] > 1 else 1 for k in ratios]
     if not ratios:
         return fine, np.full_like(fine, np.nan)
-    apart = [two[:, ::step] - one for one, two, step in zip(meshes, meshes[1:], steps, strict=False)]
-    corrections = [each / (k**2 - 1.0) for each, k in zip(apart, ratios, strict=True)]
+    apart = [finer[:, ::step] - coarser for coarser, finer, step in zip(meshes, meshes[1:], steps, strict=False)]
+    corrections = [difference / (k**2 - 1.0) for difference, k in zip(apart, ratios, strict=True)]
     last = corrections[-1]
     correction = np.nan_to_num(_spread(last, nodes))
     if len(meshes) == 2:

@@ -43,19 +43,19 @@ def chosen(attempts: Sequence[Attempt]) -> Chosen:
     finest = max(complete, key=lambda i: (attempts[i].mesh, attempts[i].steps))
     series = step_series(attempts)
     until = [i for i in series if attempts[i].steps <= attempts[finest].steps + 1]
-    told = until[-3:] if len(until) > 1 else []
+    by_steps = until[-3:] if len(until) > 1 else []
     same = _chain(attempts, finest, 0)
     if len(same) > 1:
-        return Chosen(finest, same, told)
+        return Chosen(finest, same, by_steps)
     diagonal = _chain(attempts, finest, 1)
     on_mesh = [i for i in complete if attempts[i].mesh == attempts[finest].mesh]
-    others = [_chain(attempts, i, 0) for i in sorted(on_mesh, key=lambda i: -attempts[i].steps)]
-    longer = next((chain for chain in others if len(chain) > 1), [])
-    if longer and finest in told:
-        return Chosen(finest, longer, told)
+    chains = [_chain(attempts, i, 0) for i in sorted(on_mesh, key=lambda i: -attempts[i].steps)]
+    longer = next((chain for chain in chains if len(chain) > 1), [])
+    if longer and finest in by_steps:
+        return Chosen(finest, longer, by_steps)
     if len(diagonal) > 1:
         return Chosen(finest, diagonal, [])
-    return Chosen(finest, longer or [finest], told)
+    return Chosen(finest, longer or [finest], by_steps)
 
 
 def is_diagonal(attempts: Sequence[Attempt]) -> bool:
@@ -76,10 +76,10 @@ def step_series(attempts: Sequence[Attempt]) -> list[int]:
 def _chain(attempts: Sequence[Attempt], end: int, shift: int) -> list[int]:
     """Up to three complete attempts on ever finer meshes, the last of them `end`; each has steps that are shorter by
     `shift` for every doubling of the mesh."""
-    there = {(attempt.mesh, attempt.steps): i for i, attempt in enumerate(attempts) if attempt.complete}
+    by_resolution = {(attempt.mesh, attempt.steps): i for i, attempt in enumerate(attempts) if attempt.complete}
     mesh, steps, chain = attempts[end].mesh, attempts[end].steps, [end]
     for coarser in range(mesh - 1, -1, -1):
-        before = there.get((coarser, steps - shift * (mesh - coarser)))
+        before = by_resolution.get((coarser, steps - shift * (mesh - coarser)))
         if before is not None and len(chain) < 3:
             chain.insert(0, before)
     return chain

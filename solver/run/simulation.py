@@ -79,14 +79,14 @@ class Simulation(Run):
             return None
         frame = self._accounts.frame(output)
         made = self._accounts.made
-        told = f"{abs(made):.2g} of all that changed hands"
+        detail = f"{abs(made):.2g} of all that changed hands"
         if made > LARGEST_MADE:
-            raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, told)
+            raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, detail)
         if output == self._outputs[-1]:  # much of what was at first may be little of all
             if self._accounts.lost > LARGEST_MADE:
                 self.remarks.energy_lost = self._accounts.lost
             if made < -LARGEST_MADE and not self._goes_on:
-                raise RunFailed(Outcome.ENERGY_LOST, self.t, self.statistics.steps, told)
+                raise RunFailed(Outcome.ENERGY_LOST, self.t, self.statistics.steps, detail)
         crossed = self._watch.see(frame)
         if crossed:
             raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, crossed)

@@ -82,13 +82,13 @@ class Together:
         here = range(i, min(i + self._many, self.frames))
         first, last = max(i - BESIDE, 0), min(here.stop + BESIDE, self.frames)
         value, error = self._of_frames(slice(first, last))
-        sizes_there = [np.linalg.norm(value.along[..., rows], axis=-1).max(axis=-1) for rows in (OMEGA, FORCE)]
+        magnitudes = [np.linalg.norm(value.along[..., rows], axis=-1).max(axis=-1) for rows in (OMEGA, FORCE)]
         rows = self._recorded[self._chosen.finest]
         lost = np.maximum.accumulate([abs(number_of(row, BALANCE)) for row in rows[: here.stop]])
         frames = []
         for k in here:
             beside = slice(max(k - BESIDE, 1) - first, min(k + BESIDE + 1, last) - first) if k > 0 else slice(0, 1)
-            largest = [float(size[beside].max()) for size in sizes_there]
+            largest = [float(magnitude[beside].max()) for magnitude in magnitudes]
             columns = Columns(value.along[k - first], value.numbers[k - first])
             along, numbers = error.along[beside].max(axis=0), error.numbers[beside].max(axis=0)
             frames.append(self._frame(float(rows[k][0]), columns, Columns(along, numbers), largest, float(lost[k])))
@@ -130,9 +130,9 @@ class Together:
         of_steps = excess(target, np.concatenate(steps)) if self._chosen.series else unknown
         if self._diagonal:
             of_mesh = of_steps = 0.5 * of_mesh
-        totals = [each.total for each in before]
+        totals = [previous.total for previous in before]
         hopeless = [HOPELESS.get(name, np.inf) for name in QUANTITIES]
-        return [Excess(*map(float, each)) for each in zip(of_mesh, of_steps, totals, hopeless, strict=True)]
+        return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, hopeless, strict=True)]
 
     @cached_property
     def _unseen(self) -> dict[str, Array]:
@@ -180,11 +180,11 @@ class Together:
         if not series:
             many = min(here.stop, self.frames) - here.start
             return Columns(np.zeros((many, nodes, len(JUDGED) if judged else WIDTH)), np.zeros((many, 1, len(NUMBERS))))
-        told = [self._columns(k, here, judged) for k in series]
-        along, numbers = zip(*(_aligned(columns, told[-1], judged) for columns in told), strict=True)
+        columns = [self._columns(k, here, judged) for k in series]
+        along, numbers = zip(*(_aligned(attempt, columns[-1], judged) for attempt in columns), strict=True)
         longer = self.finest.steps - self._attempts[series[-1]].steps
         part = FALL ** -max(longer, 0)
-        return Columns(*(part * error_of_steps(each, longer < 0, n) for each, n in ((along, nodes), (numbers, 1))))
+        return Columns(*(part * error_of_steps(values, longer < 0, n) for values, n in ((along, nodes), (numbers, 1))))
 
 
 def _aligned(columns: Columns, fine: Columns, judged: bool) -> Columns:

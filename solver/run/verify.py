@@ -66,18 +66,18 @@ def extrapolate(coarse: Frame, fine: Frame, least: Mapping[str, Array]) -> Verif
     errors: dict[str, Any] = {"t": fine.t}
     for output in OUTPUTS:
         name = output.name
-        one, two = getattr(coarse, name), getattr(fine, name)
+        coarse_values, fine_values = getattr(coarse, name), getattr(fine, name)
         if output.along_rod:
-            two = two[::2]
+            fine_values = fine_values[::2]
         if not output.verified:
-            values[name], errors[name] = two, two
+            values[name], errors[name] = fine_values, fine_values
             continue
         if output.axes == "quaternion":  # a quaternion and its opposite are the same rotation
-            two = two * np.sign(np.sum(one * two, axis=-1, keepdims=True))
-        error = np.abs(two - one) / 3.0
+            fine_values = fine_values * np.sign(np.sum(coarse_values * fine_values, axis=-1, keepdims=True))
+        error = np.abs(fine_values - coarse_values) / 3.0
         if output.along_rod:
             error = np.maximum(np.maximum(error, np.sqrt(np.mean(error**2, axis=0))), least.get(name, 0.0))
-        value = two + (two - one) / 3.0
+        value = fine_values + (fine_values - coarse_values) / 3.0
         if output.axes == "quaternion":
             value /= np.linalg.norm(value, axis=-1, keepdims=True)
         values[name], errors[name] = value, error

@@ -28,10 +28,10 @@ def load(method: str, touching: bool, linear_solver: str = Numerics.linear_solve
 
     `linear_solver` of the box method; `wide`: with auxiliary derivatives along s, rho_inf_space < 1.
     """
-    chosen = (method, touching, linear_solver, wide)
+    arguments = (method, touching, linear_solver, wide)
     parts = [method, "touching" * touching, linear_solver * (linear_solver != Numerics.linear_solver), "wide" * wide]
-    compile_apart("-".join(filter(None, parts)), f"from solver.run.warming import exercise; exercise(*{chosen!r})")
-    exercise(*chosen)
+    compile_apart("-".join(filter(None, parts)), f"from solver.run.warming import exercise; exercise(*{arguments!r})")
+    exercise(*arguments)
 
 
 def exercise(method: str, touching: bool, linear_solver: str = Numerics.linear_solver, wide: bool = False) -> None:

@@ -56,8 +56,8 @@ class Watch:
     def _keep(self, shape: Shape) -> None:
         if not self._last:
             self._last = shape.r.copy(), shape.tangents.copy()
-        for mine, new in zip(self._last, shape, strict=True):
-            mine[:] = new
+        for old, new in zip(self._last, shape, strict=True):
+            old[:] = new
 
     def _enter(self, crossings: int, hops: int, t: float) -> None:
         if crossings and not self._remarks.crossings:

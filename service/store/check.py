@@ -56,7 +56,7 @@ def _left_over(database: Database, settings: Settings) -> Iterator[Finding]:
         named = FILE.fullmatch(path.name)
         if named is None:
             continue  # hidden directories of datasets that are being written, or nothing of ours
-        job = _known(registry, named[1])  # read after the file was seen: what is published now is named
+        job = _job(registry, named[1])  # read after the file was seen: what is published now is named
         if job is None:
             yield Finding(f"{path.name} is the dataset of no job that the registry knows", repaired=False)
         elif job.status in ENDED and (job.dataset is None or job.dataset.file != path.name):
@@ -64,7 +64,7 @@ def _left_over(database: Database, settings: Settings) -> Iterator[Finding]:
             yield Finding(f"{path.name} was left over, and is removed", repaired=True)
 
 
-def _known(registry: Registry, job_id: str) -> Job | None:
+def _job(registry: Registry, job_id: str) -> Job | None:
     try:
         return registry.get(job_id)
     except DeletedJob as deleted:

@@ -13,7 +13,7 @@ import pytest
 import yaml
 from prometheus_client import CollectorRegistry, generate_latest
 
-from service.api.watching import _Parts, _Told
+from service.api.watching import _Measures, _Parts
 from service.jobs import Database
 from service.jobs.measures import Histogram, measure
 
@@ -35,7 +35,7 @@ def told(tmp_path) -> set[str]:
     well = SimpleNamespace(database="ok", broker="ok", disk="ok", workers="ok", leader="ok", silent=["w"],
                            ages={"w": 1.0})
     registry = CollectorRegistry()
-    for part in (_Parts(well), _Told(measures, 1)):
+    for part in (_Parts(well), _Measures(measures, 1)):
         registry.register(part)
     return set(re.findall(r"^(hockle_\w+)", generate_latest(registry).decode(), re.M))
 

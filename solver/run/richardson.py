@@ -16,11 +16,12 @@ WARY = 2.0
 """By how much the error of two meshes is taken larger: nothing shows yet that the order is 2."""
 AGREEMENT = 0.6
 """Part of what order 2 would make the differences of successive meshes fall by, from which on it is believed."""
-CLEAN, LEFT = 0.1, (1.0 / 3.0, 1.0 / 7.5)
-"""What is left of the change from one extrapolated solution to the next: a third if that is still of order 2, half as
-much again as a fifth if it is of order 4; this is taken where order 2 shows in the meshes to within `CLEAN`. Three such
-errors are more than the third."""
-LEAST = 0.02, 0.005
+CLEAN = 0.1
+"""How far from what order 2 has it the differences may fall for order 2 to show without doubt."""
+LEFT, LEFT_IF_CLEAN = 1.0 / 3.0, 2.0 / 15.0
+"""Part of the change from one extrapolated solution to the next that is left: as order 2 would leave it; and twice what
+order 4 would, where order 2 shows in the meshes. Three such errors are more than the third."""
+LEAST, LEAST_IF_CLEAN = 0.02, 0.005
 """Part of the finest mesh's own error that the extrapolated one is never told to be below; and where order 2 shows."""
 
 
@@ -47,8 +48,8 @@ def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, 
     believed = fall >= AGREEMENT * ratios[1] ** 2
     change = far + last[:, :: steps[0]] - corrections[0]
     clean = np.abs(fall / ratios[1] ** 2 - 1.0) <= CLEAN
-    settled = np.maximum(np.where(clean, *LEFT[::-1]) * np.abs(change),
-                         np.where(clean, *LEAST[::-1]) * np.abs(last[:, :: steps[0]]))  # fmt: skip
+    settled = np.maximum(np.where(clean, LEFT_IF_CLEAN, LEFT) * np.abs(change),
+                         np.where(clean, LEAST_IF_CLEAN, LEAST) * np.abs(last[:, :: steps[0]]))  # fmt: skip
     left = np.clip(1.0 / np.maximum(fall - 1.0, 1e-3), 1.0 / (ratios[1] ** 2 - 1.0), 1.0)
     errors = nowhere_small(settled, nodes), nowhere_small(left * np.abs(apart[1]), nodes)
     return fine + np.where(believed, correction, 0.0), np.where(believed, *errors)

@@ -256,4 +256,5 @@ def to_come(history: Sequence[Attempt], errors: Sequence[Excess], trial: Trial) 
     work = expected(complete, trial)
     if any(excess.total == inf for excess in errors):
         return min(2.0 * work, remaining)
-    return min(max(max(_all_of(complete, excess, trial) for excess in errors) - work, 0.0), remaining)
+    wanted = [_all_of(complete, excess, trial) for excess in errors if excess.total > 1.0]
+    return min(max(max(wanted, default=work) - work, 0.0), remaining)

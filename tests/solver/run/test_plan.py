@@ -7,7 +7,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from solver.run.plan import MOST_WORK, Excess, Trial, expected, following, step_tolerance
+from solver.run.plan import MOST_WORK, Excess, Trial, expected, following, step_tolerance, to_come
 from solver.run.series import Attempt, Chosen, chosen
 
 SMALL = 0.01 * MOST_WORK
@@ -128,3 +128,10 @@ def test_it_comes_to_an_end_and_tries_nothing_twice(seed: int) -> None:
         excess = Excess(*(10 ** rng.uniform(-2, 2, 2)), excess.total)
         assert len(history) < 60
     assert len({attempt[:2] for attempt in history}) == len(history)
+
+
+def test_an_error_of_exactly_nothing_wants_no_more_work() -> None:
+    history = [ran(0, 0), ran(0, 1), ran(1, 0)]
+    place, topology = Excess(9.0, 0.1, 36.0), Excess(0.0, 0.0, 0.0)
+    assert to_come(history, [place, topology], Trial(2, 0)) == to_come(history, [place], Trial(2, 0)) > 0.0
+    assert to_come(history, [topology], Trial(2, 0)) == 0.0

@@ -42,6 +42,7 @@ def run(kind: str, number: int, cpu: float) -> Report:
     try:
         while not begun.finished:
             report.frames += begun.advance() is not None
+            assert 0.0 <= begun.progress <= 1.0  # what every user's command asks after each step
             if process_time() - started > cpu:
                 report.ending, report.outcome = LATE, begun.phase
                 break

@@ -12,6 +12,7 @@ early, instead of by chance in the last quarter.
 
 from __future__ import annotations
 
+import json
 import os
 import time
 from contextlib import suppress
@@ -82,6 +83,11 @@ class Growth:
         sizes = [f"{mean(part):.1f}" for part in _quarters(self.disk)]
         row = ["disk", str(len(self.disk)), *sizes, "", "", "flat" if self.disk_flat else "GROWS"]
         return [*lines, "| " + " | ".join(row) + " |"]
+
+    def as_json(self) -> str:
+        """Every sample, a line for each process: for whoever asks why a verdict is what it is."""
+        lines = [json.dumps([role, samples]) for (role, _), samples in self.samples.items()]
+        return "[\n" + ",\n".join([*lines, json.dumps(["disk", self.disk])]) + "\n]\n"
 
     def _processes(self) -> list[tuple[str, int]]:
         served = self.served

@@ -99,6 +99,7 @@ def main() -> int:
     print(text)
     RESULTS.mkdir(exist_ok=True)
     (RESULTS / "soak.md").write_text(text, encoding="utf-8")
+    (RESULTS / "soak.json").write_text(growth.as_json(), encoding="utf-8")
     return 0 if good else 1
 
 

@@ -28,7 +28,7 @@ def kernels():
 def compiled():
     return {(str(kernel), str(signature)) for kernel in kernels() for signature in kernel.signatures}
 
-solver.warm(sys.argv[1])
+solver.warm(*sys.argv[2:])
 before = compiled()
 for name, settings in %s.items():
     case = apply_settings(load_case(name), settings | {"numerics.method": sys.argv[1]})
@@ -40,10 +40,10 @@ print([str(kernel) for kernel in kernels() if kernel.targetoptions.get("fastmath
 """
 
 
-@pytest.mark.parametrize("method", ["box", "staggered"])
-def test_a_warm_process_compiles_nothing(method):
+@pytest.mark.parametrize(("method", "named"), [("box", ["box"]), ("staggered", ["staggered"]), ("staggered", [])])
+def test_a_warm_process_compiles_nothing(method, named):
     """Found under stress: two kernels were left to the run."""
-    command = [sys.executable, "-c", PROGRAM % SCENES, method]
+    command = [sys.executable, "-c", PROGRAM % SCENES, method, *named]
     told = subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
     assert any(int(line.split()[1]) > 0 for line in told[:-3])  # there was contact
     assert told[-3:-1] == ["[]", "[]"]
@@ -62,6 +62,35 @@ def test_what_is_not_in_the_cache_is_compiled_by_another_process_and_once(tmp_pa
     found = marks.read_text().split()
     assert len(found) == len(set(found)) == 3  # after the first, which failed, once for each name
     assert str(os.getpid()) not in found
+
+
+COMPILE = """
+import sys
+from numba import config
+config.CACHE_DIR = sys.argv[1]
+from solver.kernels import kernel
+kernel.compile_apart("some", sys.argv[2])
+"""
+
+
+def test_whoever_finds_others_compiling_waits_for_them_even_if_who_began_was_killed(tmp_path, until):
+    """Workers killed on a cold cache once left a dozen compilations behind, all of the same kernels."""
+    marks, go_on = tmp_path / "marks", tmp_path / "go on"
+    slowly = (f"import time; from pathlib import Path; open({str(marks)!r}, 'a').write('compiling ');"
+              f"[time.sleep(.01) for _ in range(6000) if not Path({str(go_on)!r}).exists()];"
+              f"open({str(marks)!r}, 'a').write('compiled ')")  # fmt: skip
+    command = [sys.executable, "-c", COMPILE, str(tmp_path), slowly]
+    first = subprocess.Popen(command)
+    until(marks.exists, "the first compiles")
+    others = [subprocess.Popen(command) for _ in range(2)]
+    first.kill()
+    first.wait()
+    with pytest.raises(subprocess.TimeoutExpired):
+        others[0].wait(3.0)  # seconds, in which it would have begun
+    assert marks.read_text().split() == ["compiling"]
+    go_on.touch()
+    assert [process.wait() for process in others] == [0, 0]
+    assert marks.read_text().split() == ["compiling", "compiled"] * 2  # who was killed could not say that it is done
 
 
 def test_another_checkout_of_the_same_code_that_shares_the_cache_compiles_for_itself(tmp_path, monkeypatch):

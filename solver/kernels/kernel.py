@@ -25,8 +25,8 @@ import stat
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from functools import cache, wraps
 from pathlib import Path
 from typing import Any, TypeVar
@@ -129,10 +129,33 @@ def compile_apart(name: str, statement: str) -> None:
         return
     path = os.pathsep.join([str(_sources()), *filter(None, [os.environ.get("PYTHONPATH")])])
     environment = os.environ | {"PYTHONPATH": path, APART: "1"}
-    ended = subprocess.run([sys.executable, "-c", statement], env=environment, check=False)
-    if ended.returncode == 0:
-        with suppress(OSError):
-            done.touch()
+    with _alone(done.with_suffix(".lock")) as lock:
+        if done.exists():
+            return  # another process has compiled them meanwhile
+        ended = subprocess.run([sys.executable, "-c", statement], env=environment, check=False, pass_fds=lock)
+        if ended.returncode == 0:
+            with suppress(OSError):
+                done.touch()
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[list[int]]:
+    """Wait until no other process is in here, nor one that it has started with these descriptors, which hold the lock.
+
+    Workers whose processes are killed while kernels are compiled would else start one compilation after the other.
+    Where files cannot be locked, or the folder can only be read, nobody waits.
+    """
+    lock: list[int] = []
+    with suppress(OSError, ImportError):
+        import fcntl
+
+        lock.append(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
+        fcntl.flock(lock[0], fcntl.LOCK_EX)
+    try:
+        yield lock
+    finally:
+        for descriptor in lock:
+            os.close(descriptor)
 
 
 def _sources() -> Path:

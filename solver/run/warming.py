@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 
 from solver.kernels.kernel import compile_apart
@@ -16,10 +17,20 @@ from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 
 
-def warm(method: str = Numerics.method) -> None:
-    """Load every kernel of a method from the cache, after another process has compiled what is not there; once."""
+def warm(*methods: str) -> None:
+    """Load every kernel of some methods, or of all, from the cache, after other processes have compiled, side by side,
+    what is not there; once."""
+    chosen = methods or tuple(METHODS)
+    with ThreadPoolExecutor(len(chosen)) as pool:
+        list(pool.map(_compile, chosen))
+    for method in chosen:
+        for kind in METHODS[method]:
+            load(method, kind.touches)
+
+
+def _compile(method: str) -> None:
     for kind in METHODS[method]:
-        load(method, kind.touches)
+        compile_for(method, kind.touches)
 
 
 @cache
@@ -28,10 +39,15 @@ def load(method: str, touching: bool, linear_solver: str = Numerics.linear_solve
 
     `linear_solver` of the box method; `wide`: with auxiliary derivatives along s, rho_inf_space < 1.
     """
+    compile_for(method, touching, linear_solver, wide)
+    exercise(method, touching, linear_solver, wide)
+
+
+def compile_for(method: str, touching: bool, linear_solver: str = Numerics.linear_solver, wide: bool = False) -> None:
+    """Have another process compile those kernels, if nobody has."""
     arguments = (method, touching, linear_solver, wide)
     parts = [method, "touching" * touching, linear_solver * (linear_solver != Numerics.linear_solver), "wide" * wide]
     compile_apart("-".join(filter(None, parts)), f"from solver.run.warming import exercise; exercise(*{arguments!r})")
-    exercise(*arguments)
 
 
 def exercise(method: str, touching: bool, linear_solver: str = Numerics.linear_solver, wide: bool = False) -> None:

@@ -103,8 +103,8 @@ class Refined(Run):
 
     @property
     def accuracy(self) -> Accuracy | None:
-        """The errors of its frames, once these come."""
-        if not self._decided:
+        """The errors of its frames, once these come; None where there are none."""
+        if not len(self._errors_of_frames):
             return None
         return judge(self._scene.numerics.tolerance or 0.0, self._errors_of_frames)
 

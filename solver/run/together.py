@@ -112,8 +112,9 @@ class Together:
 
     def errors(self) -> Array:
         """The errors of the quantities of a tolerance (frames, 4), relative; see `accuracy`."""
-        size = self._sizes()
-        return np.concatenate([errors_of(self._of_frames(here, judged=True)[1], size) for here in self._pieces()])
+        size, none = self._sizes(), np.zeros((0, len(QUANTITIES)))
+        pieces = (errors_of(self._of_frames(here, judged=True)[1], size) for here in self._pieces())
+        return np.concatenate([none, *pieces])
 
     def excesses(self, before: Sequence[Excess]) -> list[Excess]:
         """Of each quantity the errors of the finest mesh and of its steps, over the tolerance; `before`: those before

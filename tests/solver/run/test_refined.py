@@ -111,6 +111,16 @@ def test_a_run_that_fails_on_every_mesh_gives_the_frames_until_then_and_fails_by
     assert run.t == failure.value.t or run.t < failure.value.t
 
 
+def test_a_run_that_cannot_even_start_fails_by_name_and_can_be_asked_for_its_errors() -> None:
+    """It ended with a traceback: a rod that spins where both its ends are held."""
+    spinning = Initial.straight(direction=(0.0, 0.0, 1.0), angular_velocity=(300.0, 0.0, 0.0))
+    run = simulate(replace(tolerated(1e-3, most_intervals=32), initial=spinning, points=(), end=End.clamp()))
+    with pytest.raises(RunFailed) as failure:
+        list(run)
+    assert (failure.value.outcome, failure.value.t) == (Outcome.NO_CONSISTENT_START, 0.0)
+    assert not any("error" in note for note in run.notes())
+
+
 def test_a_rod_at_rest_needs_no_fine_mesh() -> None:
     scene = replace(tolerated(1e-4), points=(), initial=Initial.straight(direction=(1.0, 1.0, 1.0)))
     assert len(next(iter(simulate(scene))).r) - 1 <= 4 * FIRST_INTERVALS

@@ -215,9 +215,21 @@ def _is_own(kind: Any) -> bool:
 
 def _compiled(function: Function, **options: Any) -> Function:
     dispatcher = numba.njit(**(OPTIONS | options))(function)
+    _take_constants_as_numbers(dispatcher._compiler)
     if numba.config.CACHE_DIR:  # type: ignore[attr-defined]
         dispatcher._cache = _Cache(function)  # type: ignore[no-untyped-call]
     return dispatcher  # type: ignore[no-any-return]
+
+
+def _take_constants_as_numbers(compiler: Any) -> None:
+    """Let an argument that is written in figures be any number of its type, else numba compiles a function for each."""
+    fold = compiler.fold_argument_types
+
+    def fold_numbers(arguments: Any, named: Any) -> Any:
+        signature, kinds = fold(arguments, named)
+        return signature, tuple(map(types.unliteral, kinds))
+
+    compiler.fold_argument_types = fold_numbers
 
 
 def kernel(function: Function) -> Function:

@@ -49,6 +49,23 @@ def test_other_threads_run_while_a_kernel_does():
     thread.join()
 
 
+@kernel
+def twice(i):
+    """A number."""
+    return 2 * i
+
+
+@kernel
+def sum_of_twice(i):
+    """What is called with a number, and with two that are written in figures."""
+    return twice(i) + twice(0) + twice(1)
+
+
+def test_a_kernel_is_compiled_once_for_all_numbers_that_callers_write_in_figures():
+    assert sum_of_twice(3) == 8
+    assert len(twice.signatures) == 1
+
+
 WRITTEN = """
 import numpy as np
 from typing import NamedTuple

@@ -52,6 +52,13 @@ UPSTAIRS = "run"
 APART = "HOCKLE_COMPILES"
 """The environment variable that tells a process that it is the one that compiles."""
 
+SPARE_COLLECTIONS = "import gc; gc.set_threshold(700, 10, 100); "
+"""What a process that compiles does first: what numba makes is there to stay, and to look through all of it whenever it
+has grown by a quarter, as Python does, takes a sixth of the time."""
+
+PLAIN_MESSAGES = "NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING"
+"""The environment variable that spares numba to colour the messages of what it tries in vain, and nobody reads."""
+
 
 @cache
 def code_digest() -> str:
@@ -128,11 +135,12 @@ def compile_apart(name: str, statement: str) -> None:
     if done.exists() or os.environ.get(APART):
         return
     path = os.pathsep.join([str(_sources()), *filter(None, [os.environ.get("PYTHONPATH")])])
-    environment = os.environ | {"PYTHONPATH": path, APART: "1"}
+    environment = os.environ | {"PYTHONPATH": path, APART: "1", PLAIN_MESSAGES: "1"}
+    command = [sys.executable, "-c", SPARE_COLLECTIONS + statement]
     with _alone(done.with_suffix(".lock")) as lock:
         if done.exists():
             return  # another process has compiled them meanwhile
-        ended = subprocess.run([sys.executable, "-c", statement], env=environment, check=False, pass_fds=lock)
+        ended = subprocess.run(command, env=environment, check=False, pass_fds=lock)
         if ended.returncode == 0:
             with suppress(OSError):
                 done.touch()

@@ -272,6 +272,14 @@ def overloads(call: Callable[..., Any], choose: Callable[..., Any]) -> None:
     overload(call, jit_options=options, strict=False)(choose)
 
 
+def inlined_late(function: Function) -> Function:
+    """Compile a function that LLVM puts into its callers, always: one that a kernel calls in several places.
+
+    It is compiled once. What is `inlined` is typed and written out for LLVM again wherever it is called.
+    """
+    return _compiled(function, no_cpython_wrapper=True, forceinline=True)
+
+
 def inlined(function: Function) -> Function:
     """Compile a function that is to vanish into its callers: one that is called for every node or interval.
 

@@ -18,7 +18,7 @@ The pivots of V and F are not the largest of their columns, but the multipliers 
 from __future__ import annotations
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, inner
+from solver.kernels.kernel import inlined, inlined_late, inner
 from solver.methods.linear.panels import Swaps
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, V
 
@@ -127,7 +127,7 @@ def factor_as_before(left: Array, swaps: Swaps, inverse: Array) -> bool:
     return suits
 
 
-@inlined
+@inlined_late
 def _eliminate_row(i: int, pivots: int, left: Array, inverse: Array) -> bool:
     """Eliminate the first `pivots` entries of row i; False if a multiplier is large. Row i < 6 is the next pivot's."""
     x0, x1, x2, x3, x4, x5 = left[i, 0], left[i, 1], left[i, 2], left[i, 3], left[i, 4], left[i, 5]
@@ -213,7 +213,7 @@ def eliminate_right(L: Array, swaps: Swaps, right: Array, upper: Array, carried:
         carried[5, c] = right[11, c] - _product(L, 11, x0, x1, x2, x3, x4, x5)
 
 
-@inlined
+@inlined_late
 def _product(L: Array, i: int, x0: float, x1: float, x2: float, x3: float, x4: float, x5: float) -> float:
     """Row i of L times x."""
     return float(L[i, 0] * x0 + L[i, 1] * x1 + L[i, 2] * x2 + (L[i, 3] * x3 + L[i, 4] * x4 + L[i, 5] * x5))

@@ -14,7 +14,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.copying import copy
-from solver.kernels.kernel import inlined, inner, kernel
+from solver.kernels.kernel import inlined_late, inner, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.linear.tridiagonal import invert3
 from solver.methods.space.one_axis.balances import Driven, Tangents
@@ -141,7 +141,7 @@ def direction(driven: Driven, tangents: Tangents, side: int, k: int) -> complex:
     return complex(driven.direction[side, k] * (T if driven.kinds[side, k] in (RATE, LOAD) else 1.0))
 
 
-@inlined
+@inlined_late
 def _times(A: Array, x: tuple) -> tuple:  # type: ignore[type-arg]
     """A (3, 3) times x (3)."""
     return (A[0, 0] * x[0] + A[0, 1] * x[1] + A[0, 2] * x[2],

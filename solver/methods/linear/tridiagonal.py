@@ -17,7 +17,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.copying import copy
-from solver.kernels.kernel import inlined, inner, kernel
+from solver.kernels.kernel import inlined_late, inner, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
@@ -197,7 +197,7 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
                 frame[3 + k, m] += tangents.turn[side, k, m]
 
 
-@inlined
+@inlined_late
 def _times(A: Array, i: int, j: int, B: Array, k: int, m: int, out: Array, row: int, column: int) -> None:
     """Write the 3 x 3 block (i, j) of A times the block (k, m) of B into the block of `out`."""
     for p in range(3):
@@ -206,7 +206,7 @@ def _times(A: Array, i: int, j: int, B: Array, k: int, m: int, out: Array, row: 
             out[row + p, column + q] = x * B[k, m + q] + y * B[k + 1, m + q] + z * B[k + 2, m + q]
 
 
-@inlined
+@inlined_late
 def _subtract_times(A: Array, i: int, j: int, B: Array, k: int, m: int, out: Array, row: int, column: int) -> None:
     """Subtract the 3 x 3 block (i, j) of A times the block (k, m) of B from the block of `out`."""
     for p in range(3):
@@ -318,7 +318,7 @@ def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: compl
                 b[node, 3 + k] = -ends[side, k]
 
 
-@inlined
+@inlined_late
 def _row(A: Array, k: int, x: tuple) -> complex:  # type: ignore[type-arg]
     """Row k of A (6, 6) times x (6)."""
     total: complex = (A[k, 0] * x[0] + A[k, 1] * x[1] + A[k, 2] * x[2]

@@ -79,17 +79,17 @@ def cache_folder() -> Path | None:
     wanted = _wanted_folder()
     if wanted and (_is_writable(wanted) or any(wanted.glob("*.compiled"))):
         return wanted
-    found = _temporary_folder()
+    folder = _temporary_folder()
     log.warning("the compiled solver cannot be kept in %s, it is kept in %s (NUMBA_CACHE_DIR names another folder)",
-                wanted or "a home directory", found or "no file")
-    if found:
-        os.environ["NUMBA_CACHE_DIR"] = str(found)  # of the processes that this one starts too
-    return found
+                wanted or "a home directory", folder or "no file")
+    if folder:
+        os.environ["NUMBA_CACHE_DIR"] = str(folder)  # of the processes that this one starts too
+    return folder
 
 
 def _wanted_folder() -> Path | None:
-    if told := os.environ.get("NUMBA_CACHE_DIR"):
-        return Path(told)
+    if named := os.environ.get("NUMBA_CACHE_DIR"):
+        return Path(named)
     try:
         home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     except RuntimeError:  # this user has no home
@@ -112,8 +112,8 @@ def _temporary_folder() -> Path | None:
         own = Path(tempfile.gettempdir()) / f"hockle-{getattr(os, 'geteuid', int)()}"
         with suppress(FileExistsError):
             own.mkdir(mode=0o700)
-        told = own.lstat()
-        if not (stat.S_ISDIR(told.st_mode) and told.st_uid == os.geteuid() and not told.st_mode & 0o077):
+        status = own.lstat()
+        if not (stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid() and not status.st_mode & 0o077):
             own = Path(tempfile.mkdtemp(prefix="hockle-"))
         folder = own / f"kernels-{code_digest()}"
         return folder if _is_writable(folder) else None
@@ -176,8 +176,8 @@ def _good_for() -> str:
     """A digest of all by which numba tells whether a kernel in a cache is the one that is called: the code and its
     place, numba's and Python's versions, the CPU."""
     cpu = cpu_target.target_context.codegen().magic_tuple()
-    told = (code_digest(), str(_sources()), numba.__version__, sys.version_info[:2], cpu)
-    return hashlib.sha256(repr(told).encode()).hexdigest()[:16]
+    parts = (code_digest(), str(_sources()), numba.__version__, sys.version_info[:2], cpu)
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
 
 
 class _Folder(UserProvidedCacheLocator):

@@ -52,9 +52,9 @@ def _zeros(dtype: Any, shape: Any) -> Generated:
         strides = [size * prod(lengths[k + 1 :]) for k in range(len(lengths))]
         shape, strides, itemsize = ([target.get_constant(types.intp, n) for n in ns]
                                     for ns in (lengths, strides, [size]))  # fmt: skip
-        made = target.make_array(array)(target, builder)
-        target.populate_array(made, data=place, shape=shape, strides=strides, itemsize=itemsize[0], meminfo=None)
-        return made._getvalue()
+        structure = target.make_array(array)(target, builder)
+        target.populate_array(structure, data=place, shape=shape, strides=strides, itemsize=itemsize[0], meminfo=None)
+        return structure._getvalue()
 
     return array, make
 

@@ -69,5 +69,5 @@ def _jumps(before: Shape, after: Shape, first: Array, last: Array, divisions: in
     if not np.linalg.norm(middle.tangents, axis=1).all():
         return round(0.5 * change[0]), round(0.5 * change[1])
     half = np.array(_shares(middle))
-    one, two = _jumps(before, middle, first, half, divisions - 1), _jumps(middle, after, half, last, divisions - 1)
-    return one[0] + two[0], one[1] + two[1]
+    early, late = _jumps(before, middle, first, half, divisions - 1), _jumps(middle, after, half, last, divisions - 1)
+    return early[0] + late[0], early[1] + late[1]

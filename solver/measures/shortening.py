@@ -121,18 +121,18 @@ def _alone(r: Array, first: Vector, last: Vector) -> NDArray[np.bool_]:
     centres, radii = _spheres(r)
     blocks = len(radii)
     alone = np.ones(blocks, np.bool_)
-    for one in range(blocks):
-        arrives, leaves = minus(vector(centres, one), _vertex(r, 0)), minus(vector(centres, one), _vertex(r, -1))
-        if one > 0 and not _ray_apart(arrives, radii[one], (-first[0], -first[1], -first[2])):
-            alone[one] = False
-        if one < blocks - 1 and not _ray_apart(leaves, radii[one], last):
-            alone[one] = False
-        for other in range(one + 2, blocks):
+    for block in range(blocks):
+        arrives, leaves = minus(vector(centres, block), _vertex(r, 0)), minus(vector(centres, block), _vertex(r, -1))
+        if block > 0 and not _ray_apart(arrives, radii[block], (-first[0], -first[1], -first[2])):
+            alone[block] = False
+        if block < blocks - 1 and not _ray_apart(leaves, radii[block], last):
+            alone[block] = False
+        for other in range(block + 2, blocks):
             apart = 0.0
             for k in range(3):
-                apart += (centres[one, k] - centres[other, k]) ** 2
-            if not apart > (radii[one] + radii[other]) ** 2:
-                alone[one] = alone[other] = False
+                apart += (centres[block, k] - centres[other, k]) ** 2
+            if not apart > (radii[block] + radii[other]) ** 2:
+                alone[block] = alone[other] = False
     return alone
 
 

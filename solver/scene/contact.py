@@ -60,5 +60,5 @@ class Contact:
     def _check_presence(self, name: str) -> None:
         """All constants of eq. (6) or none."""
         if getattr(self, name) is None and not self.automatic:
-            given = next(f"{other} = {getattr(self, other)}" for other in LAW if getattr(self, other) is not None)
-            raise ValueError(f"contact {name} must be given with the other constants of eq. (6), or none: got {given}")
+            value = next(f"{other} = {getattr(self, other)}" for other in LAW if getattr(self, other) is not None)
+            raise ValueError(f"contact {name} must be given with the other constants of eq. (6), or none: got {value}")

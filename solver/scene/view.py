@@ -80,6 +80,6 @@ def answer(part: object, view: View) -> bool:
         return True
     if hasattr(part, "keeps"):
         return bool(part.keeps(view))
-    if isinstance(part, tuple) and all(hasattr(one, "keeps") for one in part):
-        return all(one.keeps(view) for one in part)
+    if isinstance(part, tuple) and all(hasattr(each, "keeps") for each in part):
+        return all(each.keeps(view) for each in part)
     return False

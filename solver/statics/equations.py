@@ -250,12 +250,12 @@ Places = tuple[tuple[NDArray[np.bool_], tuple[NDArray[np.int64], NDArray[np.int6
 def _places(n: int) -> Places:
     """Where the entries of the diagonal, lower and upper blocks lie in LAPACK's band storage."""
     a, p, q = np.meshgrid(np.arange(n), np.arange(BLOCK), np.arange(BLOCK), indexing="ij")
-    found = []
+    places = []
     for shift in (0, -1, 1):
         row, column = BLOCK * a + p, BLOCK * (a + shift) + q
         keep = (np.abs(row - column) <= BAND) & (column >= 0) & (column < BLOCK * n)
-        found.append((keep, (2 * BAND + (row - column)[keep], column[keep])))
-    return tuple(found)
+        places.append((keep, (2 * BAND + (row - column)[keep], column[keep])))
+    return tuple(places)
 
 
 class Solver:

@@ -102,16 +102,16 @@ class Path:
             length = min(length, room / max(abs(dq), REACHED))
             lands = abs(dq) > STEEP and length * abs(dq) > room * (1.0 - 1e-9)
             guess = point.moved(length * self.direction.z, forward * room if lands else length * dq)
-            found = self._correct(guess, None if lands else self.direction)
-            if found is not None:
+            end = self._correct(guess, None if lands else self.direction)
+            if end is not None:
                 cornered = lands and room == to_corner
-                direction = self._direction(found, forward if cornered else 0.0)
+                direction = self._direction(end, forward if cornered else 0.0)
                 modes = negative_modes(self._equations)
                 smooth = cornered or direction.dot(self.direction.z, dq) > SHARPEST
                 if smooth and (modes == self.modes or direction.dq * dq < 0.0 or length < CROSSING):
-                    swept, part = (room, 1.0) if lands else _sweep(found.q - point.q, dq, direction.dq, length, room)
+                    swept, part = (room, 1.0) if lands else _sweep(end.q - point.q, dq, direction.dq, length, room)
                     if part > 0.99:
-                        self._accept(found, direction, modes, swept, length)
+                        self._accept(end, direction, modes, swept, length)
                         return
                     length *= part
                     continue
@@ -122,9 +122,9 @@ class Path:
             raise self._failure(Outcome.SINGULAR_SYSTEM, "a pivot vanished")
         raise self._failure(Outcome.EQUILIBRIUM_LOST, "no step was short enough")
 
-    def _accept(self, found: Point, direction: Direction, modes: int, swept: float, length: float) -> None:
-        self.last_dq = found.q - self.point.q
-        self.point, self.direction, self.modes = found, direction, modes
+    def _accept(self, end: Point, direction: Direction, modes: int, swept: float, length: float) -> None:
+        self.last_dq = end.q - self.point.q
+        self.point, self.direction, self.modes = end, direction, modes
         self.travelled += swept
         self.steps += 1
         self._length = min(LONGEST, 2.0 * length if self._easy else length, 4.0 * self._length)

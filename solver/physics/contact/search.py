@@ -112,21 +112,21 @@ def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None
     """List the pairs nearer than `radius`; counts[1] says how many did not fit."""
     M, pitch = len(points.p), longest_spacing(points)
     apart = neighbours(points, skip)
-    found = 0
+    count = 0
     for a in range(M):
         b = farthest(points, skip, a)
         while b >= a + apart:
             d = _distance(points, a, b)
             if d < radius:
-                if found < len(pairs.first):
-                    pairs.first[found] = a
-                    pairs.second[found] = b
-                found += 1
+                if count < len(pairs.first):
+                    pairs.first[count] = a
+                    pairs.second[count] = b
+                count += 1
                 b -= 1
             else:
                 b -= max(1, int((d - radius) / pitch))
-    pairs.counts[0] = min(found, len(pairs.first))
-    pairs.counts[1] = found - pairs.counts[0]
+    pairs.counts[0] = min(count, len(pairs.first))
+    pairs.counts[1] = count - pairs.counts[0]
     dismiss(pairs.members)
     for pair in range(pairs.counts[0]):
         take_in(pairs.members, points, pairs.first[pair])

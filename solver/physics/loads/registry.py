@@ -43,9 +43,9 @@ def sources_of(scene: Scene, samples: Samples) -> tuple[Source, ...]:
 
     Raises TypeError for one of which no law is known.
     """
-    for one in scene.loads:
-        if not any(isinstance(one, load.Given) for load in LOADS if hasattr(load, "Given")):
-            raise TypeError(f"a load must be of a kind that physics.loads.registry lists, got {one!r}")
+    for source in scene.loads:
+        if not any(isinstance(source, load.Given) for load in LOADS if hasattr(load, "Given")):
+            raise TypeError(f"a load must be of a kind that physics.loads.registry lists, got {source!r}")
     return tuple(load.of(scene, samples) for load in LOADS)
 
 

@@ -77,12 +77,12 @@ class UserLoads(Source):
         load, s = self.record, self._s
         for array in (load.forces, load.stored, load.K, load.C):
             array[:] = 0.0
-        for one in self._loads:
-            load.forces[:] += one.force(t, s, load.r, load.V)
-            if one.account == "stored":
-                load.stored[:] += one.energy(t, s, load.r)
+        for source in self._loads:
+            load.forces[:] += source.force(t, s, load.r, load.V)
+            if source.account == "stored":
+                load.stored[:] += source.energy(t, s, load.r)
             if linearise:
-                K, C = one.tangents(t, s, load.r, load.V)
+                K, C = source.tangents(t, s, load.r, load.V)
                 load.K[:] += K
                 load.C[:] += C
 

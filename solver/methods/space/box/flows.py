@@ -65,14 +65,14 @@ class Flows(NamedTuple):
 
 
 @kernel
-def enter_step(given: Reference, old: State, new: State, contact: Array, c0: float, dt: float, late: float, h: float,
-               flows: Flows) -> None:  # fmt: skip
+def enter_step(reference: Reference, old: State, new: State, contact: Array, c0: float, dt: float, late: float,
+               h: float, flows: Flows) -> None:  # fmt: skip
     """Write what flowed in the step of dt from `old` to `new` into `flows`.
 
-    `given`: see `newton.step`; `contact` (2,): power stored and taken by it; c0: see `history`; `late`: the part in the
-    means over the step of what acts at its end.
+    `reference`: see `newton.step`; `contact` (2,): power stored and taken by it; c0: see `history`; `late`: the part in
+    the means over the step of what acts at its end.
     """
-    section, loads, _, _, work = given.records
+    section, loads, _, _, work = reference.records
     past, early, power = work.past, 1.0 - late, flows.power
     copy(flows.given[0], flows.given[1])
     flows.given[0, :] = 0.0

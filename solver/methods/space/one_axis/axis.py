@@ -23,10 +23,10 @@ Plane = NDArray[np.complex128]
 @allocating
 def directions(phi: Array) -> Plane:
     """exp(i phi) (n,), the same on every CPU, which numpy's is not."""
-    found = np.empty(len(phi), np.complex128)
+    units = np.empty(len(phi), np.complex128)
     for j in range(len(phi)):
-        found[j] = complex(np.cos(phi[j]), np.sin(phi[j]))
-    return found
+        units[j] = complex(np.cos(phi[j]), np.sin(phi[j]))
+    return units
 
 
 @dataclass(frozen=True)

@@ -96,12 +96,12 @@ class Residuals(NamedTuple):
 
 def about_axis(axis: Axis, chain: space.Chain, state: space.State) -> tuple[Chain, State]:
     """What chain and state in space are about the axis."""
-    p, found = axis.index, State.empty(len(chain.mass))
+    p, reduced = axis.index, State.empty(len(chain.mass))
     a, v, b, u = axis.quaternion[0], axis.quaternion[1:], state.quaternion[:, 0], state.quaternion[:, 1:]
     turned = a * u - np.outer(b, v) - np.cross(v, u)
     halves = map(atan2, turned[:, p], a * b + u @ v)
-    found.phi[:] = np.unwrap([2.0 * half for half in halves])
-    found.omega[:] = state.omega[:, p]
-    found.base[:] = state.base @ axis.lab
+    reduced.phi[:] = np.unwrap([2.0 * half for half in halves])
+    reduced.omega[:] = state.omega[:, p]
+    reduced.base[:] = state.base @ axis.lab
     inertia, dry_inertia = (np.ascontiguousarray(a[:, p]) for a in (chain.inertia, chain.dry_inertia))
-    return Chain(chain.h, axis.swing, chain.mass, inertia, dry_inertia, chain.span, about(chain.elastic, p)), found
+    return Chain(chain.h, axis.swing, chain.mass, inertia, dry_inertia, chain.span, about(chain.elastic, p)), reduced

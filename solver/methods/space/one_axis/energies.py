@@ -15,12 +15,12 @@ from solver.methods.space.segments.chain import STAGES
 from solver.physics.loads.load import add_energies, add_powers
 
 
-def energies(given: Reference, chain: Chain, phi: Array, motion: Motion) -> Energies:
-    """The energies at the end of a step: angles (N + 2,), and the segments' motion; `given`: see `newton.step`."""
+def energies(reference: Reference, chain: Chain, phi: Array, motion: Motion) -> Energies:
+    """The energies at the end of a step: angles (N + 2,), and the segments' motion; `reference`: see `newton.step`."""
     strain = np.diff(phi) / chain.span - chain.elastic.kappa0
     elastic = float(0.5 * np.sum(chain.span * chain.elastic.K * strain**2))
     by_loads, V, omega = np.zeros(2), motion.V, motion.omega[1:-1]
-    _sum_loads(given, motion, by_loads)
+    _sum_loads(reference, motion, by_loads)
     kinetic = np.sum(chain.mass * (V.real**2 + V.imag**2)) + np.sum(chain.dry_inertia * omega**2)
     turning = np.sum((chain.inertia - chain.dry_inertia) * omega**2)
     return Energies(
@@ -33,18 +33,18 @@ def energies(given: Reference, chain: Chain, phi: Array, motion: Motion) -> Ener
 
 
 @kernel
-def _sum_loads(given: Reference, motion: Motion, out: Array) -> None:
-    _, loads, _, _, _, _, _ = given.records
+def _sum_loads(reference: Reference, motion: Motion, out: Array) -> None:
+    _, loads, _, _, _, _, _ = reference.records
     add_energies(loads, STAGES - 1, motion, out)
 
 
 @kernel
-def stage_powers(given: Reference, out: Array) -> None:
+def stage_powers(reference: Reference, out: Array) -> None:
     """Write the power (W) of the ends, of loads, and dissipated, at the stages, into `out`.
 
-    `given`: see `newton.step`.
+    `reference`: see `newton.step`.
     """
-    chain, loads, _, _, stages, _, _ = given.records
+    chain, loads, _, _, stages, _, _ = reference.records
     N, by_loads = len(chain.mass), scratch(2)
     for i in range(STAGES):
         by_loads[0], by_loads[1] = 0.0, 0.0

@@ -18,12 +18,12 @@ from solver.physics.loads.registry import Loads
 
 
 @kernel
-def energies(given: Reference, bend: Array, motion: Motion) -> Energies:
+def energies(reference: Reference, bend: Array, motion: Motion) -> Energies:
     """The energies at the end of a step: joints' `bend` (N + 1, 3), the segments' motion.
 
-    `given`: see `newton.step`.
+    `reference`: see `newton.step`.
     """
-    chain, loads, _, _, _, _, _ = given.records
+    chain, loads, _, _, _, _, _ = reference.records
     return energies_at(chain, loads, STAGES - 1, bend, motion)
 
 
@@ -48,12 +48,12 @@ def energies_at(chain: Chain, loads: Loads, i: int, bend: Array, motion: Motion)
 
 
 @kernel
-def stage_powers(given: Reference, ends: Array, out: Array) -> None:
+def stage_powers(reference: Reference, ends: Array, out: Array) -> None:
     """Write the power (W) of the ends, of loads, and dissipated, at the stages into `out` (3, 3).
 
-    `given`: see `newton.step`; `ends` (3, 2, 3): velocities of the first and the last node at the stages, lab.
+    `reference`: see `newton.step`; `ends` (3, 2, 3): velocities of the first and the last node at the stages, lab.
     """
-    chain, loads, _, _, stages, _, _ = given.records
+    chain, loads, _, _, stages, _, _ = reference.records
     N, by_loads = len(chain.mass), scratch(2)
     for i in range(STAGES):
         work, by_loads[0], by_loads[1] = 0.0, 0.0, 0.0

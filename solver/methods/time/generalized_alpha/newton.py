@@ -120,16 +120,16 @@ class Work(NamedTuple):
 
 
 @kernel
-def step(given: Reference, old: State, new: State, scheme: Scheme, dt: float, h: float,
+def step(reference: Reference, old: State, new: State, scheme: Scheme, dt: float, h: float,
          ends: EndValues) -> tuple[int, int]:  # fmt: skip
     """Advance `old` by dt into `new`; `new.Y` is the first guess. Returns how it ended and the iterations.
 
-    `given`: a Section, Loads, Scales, Touch and Work; `work.feedback` holds the stretch times its feedback rate.
+    `reference`: a Section, Loads, Scales, Touch and Work; `work.feedback` holds the stretch times its feedback rate.
     Convergence: the increment, or its extrapolation for a quadratically converging iteration, is below 1e-9 of the
     natural units.
     Records of many arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
-    section, loads, scales, touch, work = given.records
+    section, loads, scales, touch, work = reference.records
     c0, contact = c0_of(scheme, dt), touching(touch)
     past, nodes, system = work.past, work.nodes, work.system
     history(old, scheme, dt, past)

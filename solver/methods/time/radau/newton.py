@@ -70,9 +70,9 @@ class Work(NamedTuple):
 def mix(weights: Array, source: Array, target: Array) -> None:
     """target[i] = sum over j of weights[i, j] source[j], stages first."""
     count = source.size // STAGES
-    given, mixed = source.reshape(STAGES, count), target.reshape(STAGES, count)
+    values, mixed = source.reshape(STAGES, count), target.reshape(STAGES, count)
     for m in range(count):
-        a, b, c = given[0, m], given[1, m], given[2, m]
+        a, b, c = values[0, m], values[1, m], values[2, m]
         for i in range(STAGES):
             mixed[i, m] = weights[i, 0] * a + weights[i, 1] * b + weights[i, 2] * c
 
@@ -111,14 +111,14 @@ def diverges(iteration: int, size: float, before: float) -> bool:
 
 
 @kernel
-def step(given: Reference, dt: float, unit: float, part: float, state: Record) -> tuple[int, int]:
+def step(reference: Reference, dt: float, unit: float, part: float, state: Record) -> tuple[int, int]:
     """Solve for the stages of a step of dt; theta, shift and F hold the first guess. `unit` = EJ/L^2 (N).
 
-    `given`: a Chain, Loads, Driven, Scheme, Stages, Touch and Work. `part` of the step's largest departure from steady
-    rotation may be left, where that is more than TOLERANCE. Returns how it ended and the iterations. Records of many
-    arrays go only to where they are needed: each one passed on costs some ns in every iteration.
+    `reference`: a Chain, Loads, Driven, Scheme, Stages, Touch and Work. `part` of the step's largest departure from
+    steady rotation may be left, where that is more than TOLERANCE. Returns how it ended and the iterations. Records of
+    many arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
-    chain, loads, driven, scheme, stages, touch, work = given.records
+    chain, loads, driven, scheme, stages, touch, work = reference.records
     before, contact, fresh = 0.0, in_contact(touch), True
     residuals, transformed, tangents, real, pair = work.residuals, work.transformed, work.tangents, work.real, work.pair
     begin_step(state, scheme.nodes, dt, stages)
@@ -160,9 +160,9 @@ def step(given: Reference, dt: float, unit: float, part: float, state: Record) -
 
 
 @kernel
-def move_guess(given: Reference, dt: float, state: Record) -> None:
-    """Write how the first guess of a step of dt moves at all stages; `given`: see `step`."""
-    chain, _, _, scheme, stages, _, _ = given.records
+def move_guess(reference: Reference, dt: float, state: Record) -> None:
+    """Write how the first guess of a step of dt moves at all stages; `reference`: see `step`."""
+    chain, _, _, scheme, stages, _, _ = reference.records
     begin_step(state, scheme.nodes, dt, stages)
     move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
 
@@ -179,14 +179,14 @@ def largest_departure(theta: Array) -> float:
 
 
 @kernel
-def estimate_error(given: Reference, dt: float, state: Record, centres: Array) -> tuple[float, float, float, float]:
+def estimate_error(reference: Reference, dt: float, state: Record, centres: Array) -> tuple[float, float, float, float]:
     """The embedded estimate of the step's error, and the motion: rotation (rad) error, motion; position (m) likewise.
 
-    `given`: see `step`; `centres` (3, N, ...): position, velocity and acceleration of the centres at the start
+    `reference`: see `step`; `centres` (3, N, ...): position, velocity and acceleration of the centres at the start
     of the step. The estimate of order 3, g = dt/gamma y'(t) + sum of e_i (Y_i - y), is smoothed by the real system,
     M mu^2 + C mu + K, as it was factored.
     """
-    chain, _, driven, scheme, stages, _, work = given.records
+    chain, _, driven, scheme, stages, _, work = reference.records
     factors, mu = work.real, scheme.gamma / dt
     turned = _load_rotation(chain, state, stages, scheme.error, mu, dt, factors)
     moved = _delay(centres, stages.r, stages.V, scheme.error, mu, work.velocities)

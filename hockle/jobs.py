@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from datetime import UTC, datetime
 from itertools import islice
 from typing import Any
 
@@ -16,6 +17,9 @@ def register(subparsers: Any) -> None:
     listing = subparsers.add_parser("jobs", help="list jobs, newest first")
     listing.add_argument("--status", choices=STATUSES, help="only jobs of this status")
     listing.add_argument("--label", help="only jobs with exactly this label")
+    listing.add_argument("--since", type=time, metavar="TIME",
+                         help="only jobs submitted then or later: a day, or a time as in the list (UTC)")
+    listing.add_argument("--until", type=time, metavar="TIME", help="only jobs submitted before")
     listing.add_argument("--ensemble", metavar="ID", help="only members of this ensemble")
     listing.add_argument("-n", type=int, default=20, metavar="NUMBER", dest="many", help="at most so many (default 20)")
     listing.set_defaults(run=jobs)
@@ -37,7 +41,8 @@ def register(subparsers: Any) -> None:
 def jobs(arguments: argparse.Namespace) -> int:
     """Print a line for each job: id, status, progress, when it was submitted, label, title."""
     with connected(arguments.server) as client:
-        listed = client.jobs(status=arguments.status, label=arguments.label, ensemble=arguments.ensemble)
+        listed = client.jobs(status=arguments.status, label=arguments.label, since=arguments.since,
+                             until=arguments.until, ensemble=arguments.ensemble)
         for job in islice(listed, arguments.many):
             state = job.state
             print(f"{state.id}  {state.status:10}  {state.progress:4.0%}  {state.created:%Y-%m-%d %H:%M}"
@@ -85,3 +90,9 @@ def watch(arguments: argparse.Namespace) -> int:
         ended = follow(client, arguments.id)
     print(sentence(ended))
     return 0 if ended.status == "successful" else 1
+
+
+def time(text: str) -> datetime:
+    """A day or a time in ISO 8601; UTC where it does not say. Raises ValueError."""
+    named = datetime.fromisoformat(text)
+    return named if named.tzinfo else named.replace(tzinfo=UTC)

@@ -8,7 +8,8 @@ import { actions, bar, byId, element, isOpen, standing } from "./page.js";
 /** @typedef {import("./api.js").Job} Job */
 const PAGE = 50, LARGEST_PAGE = 200;
 const STREAMS = 3; // a browser keeps at most six connections to a host
-const FILTERS = ["status", "label", "owner", "since", "ensemble"];
+const FILTERS = ["status", "label", "owner", "since", "until", "ensemble"];
+const DAYS = ["since", "until"]; // filters whose value is a day, which begins at midnight here
 
 export class JobsTable {
   /** @param {URLSearchParams} chosen the filters, as in the address of this page */
@@ -38,7 +39,7 @@ export class JobsTable {
     const query = new URLSearchParams({ limit: String(limit) });
     for (const name of FILTERS) {
       const value = this.chosen.get(name);
-      if (value) query.set(name, name === "since" ? new Date(`${value}T00:00`).toISOString() : value);
+      if (value) query.set(name, DAYS.includes(name) ? new Date(`${value}T00:00`).toISOString() : value);
     }
     for (const [name, value] of Object.entries(more)) query.set(name, value);
     return `/v1/jobs?${query}`;

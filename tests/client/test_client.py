@@ -99,6 +99,7 @@ def test_lists_hold_what_is_asked_for_over_all_pages(client, quick, capsys):
     now = datetime.now(UTC)
     assert [job.id for job in client.jobs(label="many", since=now - timedelta(hours=1))][:5] == made[::-1]
     assert list(client.jobs(since=now + timedelta(hours=1))) == []
+    assert [job.id for job in client.jobs(label="many", until=client.job(made[1]).state.created)][:1] == made[:1]
 
 
 def test_a_job_is_cancelled(client, slow):

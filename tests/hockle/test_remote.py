@@ -100,6 +100,21 @@ def test_jobs_are_listed_newest_first_by_status_and_label(case_file, capsys):
     assert capsys.readouterr().out == ""
 
 
+def test_jobs_are_listed_from_a_time_on_and_before_another(case_file, capsys):
+    assert main(["submit", case_file, "--label", "timed"]) == 0
+    job_id = capsys.readouterr().out.strip()
+    assert main(["status", job_id, "--json"]) == 0
+    created = json.loads(capsys.readouterr().out)["created"]
+    for options, listed in ((["--since", created], True), (["--until", created], False),
+                            (["--since", "2000-01-01", "--until", "2999-01-01T12:00"], True),
+                            (["--until", "2000-01-01"], False)):  # fmt: skip
+        assert main(["jobs", "--label", "timed", *options]) == 0
+        assert capsys.readouterr().out.startswith(job_id) == listed
+    with pytest.raises(SystemExit):
+        main(["jobs", "--since", "yesterday"])
+    assert "argument --since: invalid time value: 'yesterday'" in capsys.readouterr().err
+
+
 def test_a_job_is_watched_and_cancelled(slow, quick, tmp_path, capsys):
     ids = []
     for case in (slow, quick):

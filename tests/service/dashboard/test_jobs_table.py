@@ -74,6 +74,17 @@ def test_filters_are_in_the_address(server, add, page):
     rows(page, 0)
 
 
+def test_days_bound_the_table_the_last_not_included(server, add, page):
+    add(2)
+    page.goto(server.address)
+    rows(page, 2)
+    today, tomorrow = page.evaluate("[0, 864e5].map((more) => new Date(Date.now() + more).toLocaleDateString('sv'))")
+    for field, day, many in (("since", tomorrow, 0), ("since", today, 2), ("until", today, 0), ("until", tomorrow, 2)):
+        page.fill(f"[name={field}]", day)
+        rows(page, many)
+    assert page.url.endswith(f"#/?since={today}&until={tomorrow}")
+
+
 def test_columns_show_what_differs_between_the_cases(server, run, page):
     quick = {"output__interval": 0.25, "numerics__intervals": 10}
     ids = [run("cantilever-vibration", t_end=end, loads__damping=2 * end, **quick) for end in (0.5, 1.0)]

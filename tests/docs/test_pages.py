@@ -1,96 +1,69 @@
-"""What the pages for beginners show is so: every command and every block, in their order."""
+"""What the pages show is so: every command and every block of every page is run, in its order."""
 
 from __future__ import annotations
 
-import re
-import shlex
-from pathlib import Path
+from collections.abc import Iterator
+from dataclasses import replace
+from subprocess import CalledProcessError
 
 import pytest
 
-from hockle.cli import main, parser
-from service.cases import load_case, parse_case
-from service.jobs import Database, NewJob, Registry
-from service.settings import Settings
+from tests.docs.blocks import PAGES, Block, blocks, cells, text_of
+from tests.docs.claims import CLAIMS
+from tests.docs.page import Page
+from tests.docs.stage import Stage
 from tests.hockle.conftest import serving
-from worker.run import run_next
 
-DOCS = Path(__file__).parents[2] / "docs"
-SHOWN = re.compile(r"^    \$ (hockle [^\n]*)$|^```(json|python)\n(.*?)^```", re.M | re.S)
-REFUSED = "rod.diameter=-1"
-
-
-def shown(page: str) -> list[tuple[str, str]]:
-    """The commands and blocks of a page: what it is, and its text."""
-    found = SHOWN.findall((DOCS / page).read_text())
-    return [(language or "command", command or block) for command, language, block in found]
-
-
-def command(line: str) -> None:
-    status = main(shlex.split(line)[1:])
-    assert status == (1 if REFUSED in line else 0), line
+NOTEBOOK = "docs/sweep.ipynb"
+SWEEPS = {"200)": "4)", '"numerics.intervals", 100': '"numerics.intervals", 20).set("output.interval", 0.1'}
+SHORTER: dict[str, dict[str, str]] = {
+    "README.md": {'set={"t_end": 30}': 'set={"t_end": 0.3}'},
+    "client/README.md": {"1e-4)": '1e-2).set("t_end", 0.3)'},
+    "docs/client.md": {**SWEEPS, "fork(5.0": "fork(0.15", "30.0": "0.3", "40.0": "0.4", "(10.0, 20.0)": "(0.1, 0.2)",
+                       "t_min=10.0": "t_min=0.1", "size=8, seed=1": 'size=2, seed=1, set={"t_end": 0.3}',
+                       'label="sweep").wait': 'label="sweep", set={"t_end": 0.3}).wait'},
+    "docs/guide.md": {'"at": 10': '"at": 0.15'},
+    "docs/tutorial.md": {'"t_end": 20.0': '"t_end": 4.0'},
+    NOTEBOOK: {**SWEEPS, '"t_end", 30.0)': '"t_end", 0.3)', '"t_end": 35.0': '"t_end": 0.4'},
+}  # fmt: skip
+"""Fewer and shorter runs: what stands on a page, and what is run instead."""
 
 
-def follow(page: str, address: str = "") -> list[str]:
-    """Do what a page shows, in the working directory; the kinds of what was done."""
-    for kind, text in shown(page):
-        if kind == "command":
-            command(text)
-        elif kind == "json":
-            Path("hose.json").write_text(text)
-        else:
-            exec(compile(text.replace("http://127.0.0.1:8000", address), page, "exec"), {})
-    return [kind for kind, _ in shown(page)]
+@pytest.fixture(scope="module")
+def stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stage]:
+    data = tmp_path_factory.mktemp("served")
+    with serving(data) as server:
+        assert server.address, server.first_line + server.process.stdout.read()
+        yield Stage(server.address, data)
 
 
-def test_the_first_ten_minutes(tmp_path, monkeypatch, capsys):
+@pytest.mark.parametrize("name", [*PAGES, NOTEBOOK])
+@pytest.mark.filterwarnings("error::FutureWarning")
+def test_what_a_page_shows_is_so(name, request, tmp_path, monkeypatch):
+    shown = shorter(name, cells(text_of(name)) if name == NOTEBOOK else blocks(text_of(name)))
+    if not shown:
+        return
+    stage: Stage = request.getfixturevalue("stage")
     monkeypatch.chdir(tmp_path)
-    assert follow("first-ten-minutes.md") == ["command"] * 5 + ["python"]
-    said = capsys.readouterr()
-    assert "completed" in said.out and "rod/diameter" in said.err
-    assert (tmp_path / "cantilever-vibration-snapshots.png").exists()
+    for variable, value in stage.environment.items():
+        monkeypatch.setenv(variable, value)
+    page = Page(stage, tmp_path)
+    page.follow(shown)
+    if name in CLAIMS:
+        CLAIMS[name](page)
 
 
-def test_the_tutorial(tmp_path, monkeypatch, capsys):
+def shorter(name: str, shown: list[Block]) -> list[Block]:
+    """The blocks, with fewer and shorter runs."""
+    for long, short in SHORTER.get(name, {}).items():
+        assert any(long in block.text for block in shown), f"{name} does not have {long} any more"
+        shown = [replace(block, text=block.text.replace(long, short)) for block in shown]
+    return shown
+
+
+def test_what_nothing_runs_is_refused(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with serving(tmp_path / "served") as server:
-        follow("tutorial.md", server.address)
-    said = capsys.readouterr().out
-    assert said.splitlines()[-3:] == ["successful completed"] * 3
-    assert (tmp_path / "hose-topology.png").exists()
-    assert (tmp_path / "hose.gif").read_bytes().startswith(b"GIF8")
-
-
-def test_accuracy(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    assert follow("accuracy.md") == ["command", "python", "command"]
-    [(met, error)] = re.findall(r"^(yes|no) (\d\S+)$", capsys.readouterr().out, re.M)
-    assert met == "yes" and 0.0 < float(error) < 1e-2
-
-
-def test_a_backup_is_restored_and_whole(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("HOCKLE_DATA", str(tmp_path / "served"))
-    settings = Settings(data=tmp_path / "served")
-    settings.make_directories()
-    database = Database(settings.database_url)
-    Registry(database).submit(NewJob(parse_case(load_case("free-flight")).document()))
-    assert run_next(database, settings)
-    database.close()
-    for kind, line in shown("deploy/backup.md"):
-        assert kind == "command"
-        command(line.replace("/backups/hockle", str(tmp_path / "backup")))
-
-
-PAGES = [DOCS.parent / "README.md", *sorted(DOCS.rglob("*.md"))]
-COMMAND = re.compile(r"^    (?:\$ |docker compose run .*?api )?(hockle [a-z].*)$", re.M)
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.relative_to(DOCS.parent).as_posix())
-def test_every_command_of_a_page_is_understood(page):
-    for line in COMMAND.findall(page.read_text()):
-        parser().parse_args(shlex.split(line, comments=True)[1:])
-
-
-def test_commands_are_found():
-    assert sum(len(COMMAND.findall(page.read_text())) for page in PAGES) > 40
+    page = Page(Stage("http://127.0.0.1:9", tmp_path), tmp_path)
+    for text in ("    kubectl get pods\n", "```fortran\nend\n```\n", "    $ make hay\n", "    hockle fly\n"):
+        with pytest.raises((AssertionError, CalledProcessError, SystemExit)):
+            page.follow(blocks(text))

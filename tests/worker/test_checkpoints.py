@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -22,6 +23,7 @@ from service.jobs import Database, Job, Limits, NewJob, Registry, Status
 from service.jobs.reconciler import beats, take_back
 from service.results import open_dataset
 from service.settings import Settings
+from tests.worker.killed import killed_after
 from worker import run
 from worker.checkpoints import Checkpoint, Checkpoints, packed, unpacked
 
@@ -31,35 +33,6 @@ CASE = apply_settings(
     {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8, "numerics.dt_max": 0.001},
 )
 
-KILLED = """
-import os, signal, sys
-from pathlib import Path
-from service.jobs import Database
-from service.settings import Settings
-from solver import simulate
-from worker import attempt, run
-
-steps = int(sys.argv[2])
-
-def begin(scene):
-    real = simulate(scene)
-    advance, before = real.advance, []
-
-    def watched():
-        before.append(1)
-        if len(before) > steps:
-            os.kill(os.getpid(), signal.SIGKILL)
-        return advance()
-
-    real.advance = watched
-    return real
-
-attempt.simulate = begin
-attempt.SHARE = 1e9  # checkpoints after every step, whatever they cost
-settings = Settings(Path(sys.argv[1]), lease=1000.0, checkpoint=float(sys.argv[3]))
-run.run_next(Database(settings.database_url), settings)
-"""
-
 
 @pytest.fixture
 def case() -> dict[str, Any]:
@@ -68,8 +41,7 @@ def case() -> dict[str, Any]:
 
 def killed(settings: Settings, registry: Registry, steps: int, checkpoint: float = 1e-9) -> None:
     """A worker takes the job and is killed after some steps; then the job is taken back."""
-    ended = subprocess.run([sys.executable, "-c", KILLED, str(settings.data), str(steps), str(checkpoint)], cwd=ROOT)
-    assert ended.returncode == -9
+    assert killed_after(steps, settings.data, checkpoint) == -signal.SIGKILL
     for beat in beats(registry.database):
         take_back(registry.database, beat, 3)
 

@@ -138,17 +138,25 @@ def test_on_a_read_only_root_he_serves_and_others_can_read_nothing_of_it(room, c
     assert not open_to_others
 
 
-@pytest.mark.parametrize(("command", "place", "rule"), [
-    ("serve", "/proc/data", "No such file or directory"), ("worker", "/proc/data", "No such file or directory"),
-    ("serve", "/usr", "this user cannot write there"), ("api", "/usr", "this user cannot write there"),
-    ("store check", "/usr", "this user cannot write there"),
-])  # fmt: skip
-def test_a_data_directory_that_is_not_his_is_named_in_one_line(room, command, place, rule):
-    told = hockle(room, AS_NOBODY, *command.split(), HOCKLE_DATA=place)
-    assert told.returncode == 1
-    assert "Traceback" not in told.stderr
-    assert told.stderr.splitlines()[-1].startswith(f"hockle: the directory {place}")
-    assert rule in told.stderr or "Permission denied" in told.stderr
+COMMANDS = """
+import os, sys
+from hockle.cli import main
+
+for place, command in zip(sys.argv[1::2], sys.argv[2::2]):
+    os.environ["HOCKLE_DATA"] = place
+    print("status", main(command.split()), file=sys.stderr, flush=True)
+"""
+
+
+def test_a_data_directory_that_is_not_his_is_named_in_one_line(room):
+    cases = [*(("/proc/data", command, "No such file or directory") for command in ("serve", "worker")),
+             *(("/usr", command, "this user cannot write there") for command in ("serve", "api", "store check"))]
+    command = [*AS_NOBODY, sys.executable, "-c", COMMANDS, *(text for case in cases for text in case[:2])]
+    told = subprocess.run(command, env=environment(room), cwd=room, capture_output=True, text=True)
+    said = [text.splitlines()[-1] for text in told.stderr.split("status 1\n")[:-1]]
+    assert "Traceback" not in told.stderr and len(said) == len(cases), told.stderr
+    for line, (place, _, rule) in zip(said, cases, strict=True):
+        assert line.startswith(f"hockle: the directory {place}") and (rule in line or "Permission denied" in line)
 
 
 def test_what_somebody_else_has_put_where_his_kernels_would_lie_is_not_executed(room):

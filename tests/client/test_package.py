@@ -17,6 +17,7 @@ from hockle_client import documents
 from service.api import cases, ensemble_data, ensembles, links
 from service.api import documents as services
 from service.cases import case_schema
+from tests.docs.blocks import blocks, text_of
 
 CLIENT = Path(__file__).parents[2] / "client"
 PROJECT = tomllib.loads((CLIENT / "pyproject.toml").read_text())["project"]
@@ -72,18 +73,29 @@ wrong = {wrong}
 '''
 
 
+def checked(text: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[str, int]:
+    """What a strict type checker says of a program, and its status."""
+    monkeypatch.setenv("MYPYPATH", str(CLIENT))
+    (folder / "mine.py").write_text(text)
+    options = ["--strict", "--python-version", "3.10", "--follow-imports", "silent", "--ignore-missing-imports"]
+    out, _, status = api.run([*options, "--cache-dir", str(folder.parent / "mypy"), str(folder / "mine.py")])
+    return out, status
+
+
 @pytest.mark.parametrize(("wrong", "said"), [
     ("1", ""), ("RodSpec(lenght=1.0, diameter=0.01)", 'Extra key "lenght"'),
     ('OutputSpec(interval="often")', 'expression has type "str"'), ("state.progess", 'no attribute "progess"'),
     ("Client().job('1').dataset().nothing()", ""),
 ])  # fmt: skip
 def test_a_type_checker_finds_what_is_misspelled(tmp_path, monkeypatch, wrong, said):
-    monkeypatch.setenv("MYPYPATH", str(CLIENT))
-    (tmp_path / "mine.py").write_text(TYPED.format(wrong=wrong))
-    cache = str(tmp_path.parent / "mypy")
-    out, _, status = api.run(["--strict", "--python-version", "3.10", "--follow-imports", "silent",
-                              "--ignore-missing-imports", "--cache-dir", cache, str(tmp_path / "mine.py")])  # fmt: skip
+    out, status = checked(TYPED.format(wrong=wrong), tmp_path, monkeypatch)
     assert (said in out and status == 1) if said else status == 0, out
+
+
+def test_a_type_checker_finds_no_fault_with_the_page_of_the_client(tmp_path, monkeypatch):
+    page = "".join(block.text for block in blocks(text_of("docs/client.md")) if block.language == "python")
+    out, status = checked(page, tmp_path, monkeypatch)
+    assert status == 0, out
 
 
 def test_every_key_of_a_case_is_offered():

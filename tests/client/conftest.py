@@ -17,7 +17,7 @@ from hockle_client import AsyncClient, AsyncEnsemble, AsyncJob, Case, Client
 from tests.hockle.conftest import Server, serving
 
 QUICK = {"t_end": 0.3, "output.interval": 0.1, "numerics.intervals": 20}
-SLOW = {"t_end": 5.0, "output.interval": 0.1, "numerics.dt_max": 0.0005}
+SLOW = {"t_end": 3.0, "output.interval": 0.1, "numerics.dt_max": 0.0005}
 
 
 class Blocking:

@@ -15,12 +15,14 @@ import uvicorn
 import xarray as xr
 from fastapi.testclient import TestClient
 
+from service.access import KeyStore, Scope
 from service.api.app import create_app
 from service.cases import apply_settings, load_case
 from service.jobs import Registry
 from service.settings import Settings
 from worker.run import run_next
 
+HOUR = 3600.0
 SMALL = {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8}
 
 
@@ -75,3 +77,31 @@ def address(client: TestClient) -> Iterator[str]:
         yield f"http://127.0.0.1:{sock.getsockname()[1]}"
         server.should_exit = True
         thread.join()
+
+
+@pytest.fixture
+def store(keyed) -> KeyStore:
+    """The keys of an interface `keyed`, which modules make."""
+    return keyed.app.state.parts.keys
+
+
+@pytest.fixture
+def key(store):
+    """Headers with a new key of an owner."""
+
+    def make(owner: str, *scopes: str, seconds: float = HOUR) -> dict[str, str]:
+        new = store.create(owner, frozenset(map(Scope, scopes or ("read", "submit"))), seconds)
+        return {"Authorization": f"Bearer {new.text}"}
+
+    return make
+
+
+@pytest.fixture
+def alices(keyed, key, case) -> str:
+    """The id of a job of alice's."""
+    return keyed.post("/v1/jobs", json=case, headers=key("alice")).json()["id"]
+
+
+def refused(answer, status, name):
+    assert answer.status_code == status, answer.text
+    assert answer.request.method == "HEAD" or answer.json()["type"] == f"urn:hockle:problem:{name}"

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import json
+import shutil
 import threading
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
+from fastapi.testclient import TestClient
 from sqlalchemy.exc import InterfaceError, OperationalError
 
 from service.api import bodies
+from service.api.app import create_app
 from service.api.bodies import LARGEST_BODY, SMALL_BODY, at_leisure, parse
 from service.api.problems import Problem
 from service.cases import CaseError
+from service.settings import Settings
 
 JSON = {"Content-Type": "application/json"}
 
@@ -49,6 +55,16 @@ CHANGES: dict[str, tuple[str, Any]] = {
     "fluid": ("fluid", {"density": -1}), "contact": ("contact", {"k1": -1}),
     "loads": ("loads", {"wind": 3}),
 }
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory, empty_registry: Path) -> Iterator[TestClient]:
+    """An interface that all refusals are asked of: none leaves anything behind."""
+    data = tmp_path_factory.mktemp("data")
+    shutil.copy(empty_registry, data / "registry.db")
+    with TestClient(create_app(Settings(data=data)), base_url="http://127.0.0.1:8000",
+                    raise_server_exceptions=False) as client:  # fmt: skip
+        yield client
 
 
 def assert_problem(answer: Any, *statuses: int) -> dict[str, Any]:
@@ -194,11 +210,6 @@ def test_every_name_of_this_machine_is_welcome(client, host):
 def test_a_page_from_elsewhere_may_not_write(client, case, origin):
     assert_problem(client.post("/v1/jobs", json=case, headers={"Origin": origin}), 403)
     assert_problem(client.delete("/v1/jobs/nobody", headers={"Origin": origin}), 403)
-
-
-def test_our_own_page_may_write(client, case):
-    own = {"Origin": "http://127.0.0.1:8000"}
-    assert client.post("/v1/jobs", json=case, headers=own).status_code == 202
 
 
 def test_a_bug_is_a_problem_without_its_details(client, monkeypatch):

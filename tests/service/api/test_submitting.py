@@ -175,3 +175,8 @@ def test_a_webhook_needs_the_key_that_signs_it(client, case):
     assert problem(client.post("/v1/jobs", json=body)) == (422, "webhook_needs_key")
     new = client.app.state.parts.keys.create("alice", frozenset({Scope.SUBMIT}), 60.0)
     assert client.post("/v1/jobs", json=body, headers={"Authorization": f"Bearer {new.text}"}).status_code == 202
+
+
+def test_our_own_page_may_write(client, case):
+    own = {"Origin": "http://127.0.0.1:8000"}
+    assert client.post("/v1/jobs", json=case, headers=own).status_code == 202

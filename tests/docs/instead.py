@@ -38,7 +38,7 @@ def docker(page: Page, words: list[str], shown: str) -> str:
         return ""
     host, _, inside = parsed.volume.partition(":")
     assert parsed.service in known
-    page.command(" ".join(host if inside and word == inside else word for word in parsed.words))
+    page.run(" ".join(host if inside and word == inside else word for word in parsed.words))
     return ""
 
 

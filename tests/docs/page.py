@@ -58,9 +58,12 @@ class Page:
         return self.stage.new_key()
 
     def command(self, line: str, shown: str = "") -> None:
+        """Run a command of the page."""
+        self.run(self.real(line), shown)
+
+    def run(self, line: str, shown: str = "") -> None:
         """Run a command. What it answers is what is shown, where something is; a refusal is shown by its sentence."""
-        self.line = self.real(line)
-        words = shlex.split(self.line, comments=True)
+        self.line, words = line, shlex.split(line, comments=True)
         assert words[0] in PROGRAMS, f"nothing runs {line!r}"
         again = words[0] == "curl" and not {"-X", "-d"} & set(words)  # a question may be asked until it is so
         deadline = time.monotonic() + PATIENCE

@@ -122,7 +122,7 @@ def make(page: Page, words: list[str], shown: str) -> str:
     ours = [line for line in dry.stdout.splitlines() if line.startswith(".venv/bin/") and " -m pip " not in line]
     assert ours, f"nothing runs {' '.join(words)}"
     for line in ours:
-        page.command(line.removeprefix(".venv/bin/").removeprefix("python -m "))
+        page.run(line.removeprefix(".venv/bin/").removeprefix("python -m "))
     return ""
 
 

@@ -29,6 +29,22 @@ class Stage:
         """A job that was successful."""
         return self.client.submit(Case.shipped("goyal-2003"), set=QUICK).wait()
 
+    @cached_property
+    def ensemble(self) -> str:
+        """The id of an ensemble."""
+        return self.client.sweep("goyal-2003", {"loads.damping": [0.1, 0.2]}, set=QUICK).id
+
+    @cached_property
+    def failed(self) -> Job:
+        """A job that failed."""
+        return self.client.submit("goyal-2003", set={"numerics.dt_max": 0.0005}, limits={"wall": 0.1}).wait()
+
+    def job_for(self, command: str) -> str:
+        """The id of a job that has ended as the command wants it."""
+        if command == "delete":
+            return self.client.submit(Case.shipped("goyal-2003"), set=QUICK, again=True).wait().id
+        return self.failed.id if command == "requeue" else self.done.id
+
     def new_key(self) -> str:
         """The text of a new API key."""
         database = Database(Settings(data=self.data).database_url)

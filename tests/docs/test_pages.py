@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from subprocess import CalledProcessError
 
 import pytest
 
+from service.cases import apply_settings, load_case
 from tests.docs.blocks import PAGES, Block, blocks, cells, text_of
 from tests.docs.claims import CLAIMS
 from tests.docs.page import Page
-from tests.docs.stage import Stage
+from tests.docs.stage import QUICK, Stage
+from tests.docs.usages import command, forms, usages
 from tests.hockle.conftest import serving
 
 NOTEBOOK = "docs/sweep.ipynb"
@@ -37,20 +41,36 @@ def stage(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Stage]:
         yield Stage(server.address, data)
 
 
-@pytest.mark.parametrize("name", [*PAGES, NOTEBOOK])
-@pytest.mark.filterwarnings("error::FutureWarning")
-def test_what_a_page_shows_is_so(name, request, tmp_path, monkeypatch):
-    shown = shorter(name, cells(text_of(name)) if name == NOTEBOOK else blocks(text_of(name)))
-    if not shown:
-        return
-    stage: Stage = request.getfixturevalue("stage")
+@pytest.fixture
+def page(stage, tmp_path, monkeypatch) -> Page:
+    """A page that nobody has followed yet, in the working directory."""
     monkeypatch.chdir(tmp_path)
     for variable, value in stage.environment.items():
         monkeypatch.setenv(variable, value)
-    page = Page(stage, tmp_path)
+    return Page(stage, tmp_path)
+
+
+@pytest.mark.parametrize("name", [*PAGES, NOTEBOOK])
+@pytest.mark.filterwarnings("error::FutureWarning")
+def test_what_a_page_shows_is_so(name, request):
+    shown = shorter(name, cells(text_of(name)) if name == NOTEBOOK else blocks(text_of(name)))
+    if not shown:
+        return
+    page: Page = request.getfixturevalue("page")
     page.follow(shown)
     if name in CLAIMS:
         CLAIMS[name](page)
+
+
+def test_every_command_of_the_guide_runs_with_each_of_its_options(page, monkeypatch):
+    Path("quick.json").write_text(json.dumps(apply_settings(load_case("goyal-2003"), {**QUICK, "name": "quick"})))
+    ran = []
+    for number, form in enumerate(form for usage in usages() for form in forms(usage)):
+        if "restore" in form:
+            monkeypatch.setenv("HOCKLE_DATA", str(page.folder / f"restored-{number}"))
+        page.run(command(form, page.stage))
+        ran.append(form.split()[1])
+    assert len(ran) > 80 and {"run", "keys", "store", "submit", "sweep", "requeue"} <= set(ran)
 
 
 def shorter(name: str, shown: list[Block]) -> list[Block]:

@@ -197,13 +197,17 @@ def test_while_the_database_goes_away_and_comes_back_there_is_only_503_and_right
         schemathesis(address, ran, waiting, tmp_path, *examples(4, seconds=60, phases="examples,fuzzing"))
 
 
-@pytest.mark.parametrize(("rate", "tries", "meets"), [
-    ("1000", examples(4, 180), {"200", "401", "403"}), ("0.5", examples(2, 60, "examples,fuzzing"), {"401", "429"}),
-])  # fmt: skip
-def test_schemathesis_finds_nothing_where_keys_are_required(ran, waiting, tmp_path, rate, tries, meets):
-    with serving(ran.settings, HOCKLE_REQUIRE_KEYS="1", HOCKLE_RATE=rate) as address:
-        met = schemathesis(address, ran, waiting, tmp_path, *tries, *OUR_KEYS, keys=ran.keys)
-        assert meets <= set(met)
+def test_schemathesis_finds_nothing_where_keys_are_required(ran, waiting, tmp_path):
+    with serving(ran.settings, HOCKLE_REQUIRE_KEYS="1", HOCKLE_RATE="1000") as address:
+        met = schemathesis(address, ran, waiting, tmp_path, *examples(4, 180), *OUR_KEYS, keys=ran.keys)
+        assert {"200", "401", "403"} <= set(met)
+
+
+@pytest.mark.parametrize("ran", ["sqlite"], indirect=True)  # the rate is counted by the process, not by the database
+def test_schemathesis_finds_nothing_where_owners_ask_too_often(ran, waiting, tmp_path):
+    with serving(ran.settings, HOCKLE_REQUIRE_KEYS="1", HOCKLE_RATE="0.5") as address:
+        few = examples(2, 60, "examples,fuzzing")
+        assert {"401", "429"} <= set(schemathesis(address, ran, waiting, tmp_path, *few, *OUR_KEYS, keys=ran.keys))
 
 
 @pytest.fixture(scope="module")

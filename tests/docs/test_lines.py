@@ -52,6 +52,11 @@ def test_a_command_that_a_line_names_is_there(text):
         assert set(OPTION.findall(text)) <= set().union(*options(named(text)[1]))
 
 
+def test_the_image_takes_what_pages_build_it_with():
+    named = {name for page in PAGES for name in re.findall(r"--build-arg (\w+)=", text_of(page))}
+    assert named and named <= set(re.findall(r"^ARG (\w+)", (ROOT / "deploy" / "Dockerfile").read_text(), re.M))
+
+
 def test_the_guide_has_every_command_with_every_option():
     shown: dict[str, set[str]] = {}
     for usage in in_lines(text_of("docs/guide.md").partition("## Command line")[2].partition("\n## ")[0]):

@@ -14,9 +14,10 @@ from service.api.app import create_app
 from service.settings import Settings
 
 ROOT = Path(__file__).parents[2]
-FOLDERS = ("benchmarks", "chaos", "client", "deploy", "docs", "stress", "validation")
-PAGES = [path.relative_to(ROOT).as_posix() for path in
-         (*sorted(ROOT.glob("*.md")), *(page for name in FOLDERS for page in sorted((ROOT / name).rglob("*.md"))))]
+MADE = ("build", "demo", "dist", "var")
+"""Folders of what commands have made."""
+PAGES = [path.relative_to(ROOT).as_posix() for path in sorted(ROOT.rglob("*.md"))
+         if not path.relative_to(ROOT).parts[0].startswith((".", *MADE))]  # fmt: skip
 INTERFACE = "<!-- interface -->"
 MARKDOWN = MarkdownIt().enable("table")
 

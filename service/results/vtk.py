@@ -4,7 +4,7 @@ time, in a ZIP archive."""
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from io import BytesIO
 from math import prod
 from typing import Any
@@ -17,6 +17,8 @@ from service.results.schema import LABELS, Variable
 
 LIMIT = 20_000_000
 """The most values that are given out at once."""
+BLOCK = 2_000_000
+"""Values that are read at once: a dataset is unpacked in chunks of many frames."""
 NAMES = {"f8": "Float64", "i8": "Int64"}
 PVD = """<?xml version="1.0"?>
 <VTKFile type="Collection" version="1.0" byte_order="LittleEndian">
@@ -45,15 +47,25 @@ def vtk_archive(source: Source, radius: NDArray[np.float64], time_stride: int = 
     times = source.time.tolist()
     frames = range(0, len(times), time_stride)
     along = [variable for variable in source.variables.values() if variable.along_rod]
-    check_size(len(frames) * len(source.s) * sum(_components(variable) for variable in along), LIMIT)
+    frame_size = len(source.s) * sum(_components(variable) for variable in along)
+    check_size(len(frames) * frame_size, LIMIT)
     archive = BytesIO()
     with zipfile.ZipFile(archive, "w") as file:
         sets = [f'<DataSet timestep="{times[frame]!r}" part="0" file="{_name(frame)}"/>\n' for frame in frames]
         file.writestr("rod.pvd", PVD.format("".join(sets)))
-        for frame in frames:
-            values = {variable.name: source.read(variable, {"time": slice(frame, frame + 1)})[0] for variable in along}
+        for frame, values in _read(source, along, frames, max(1, BLOCK // frame_size)):
             file.writestr(_name(frame), _vtp(times[frame], values, radius))
     return archive.getvalue()
+
+
+def _read(source: Source, variables: Sequence[Variable], frames: range,
+          at_once: int) -> Iterator[tuple[int, dict[str, NDArray[Any]]]]:  # fmt: skip
+    """The values of each frame by name, with its number; so many frames are read at once."""
+    for first in range(0, len(frames), at_once):
+        part = frames[first : first + at_once]
+        blocks = {v.name: source.read(v, {"time": slice(part.start, part.stop, part.step)}) for v in variables}
+        for place, frame in enumerate(part):
+            yield frame, {name: block[place] for name, block in blocks.items()}
 
 
 def _components(variable: Variable) -> int:

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import xml.etree.ElementTree as ET
 import zipfile
 
 import numpy as np
 import pytest
+
+from service.results import vtk
+from service.results.query import DatasetSource, opened
+from service.results.vtk import vtk_archive
 
 
 @pytest.fixture
@@ -50,12 +55,33 @@ def test_a_collection_names_a_file_for_each_time_with_the_values_to_the_bit(clie
     assert len(archive(client, done, "?time_stride=2").namelist()) == 1 + len(times[::2])
 
 
+def test_vtk_of_many_frames_is_read_in_blocks(settings, client, done, monkeypatch):
+    """To unpack a chunk of frames anew for each frame of it took most of the time."""
+    [path] = settings.datasets.glob(f"{done}.*.nc")
+    reads = []
+    monkeypatch.setattr(DatasetSource, "read", lambda source, variable, ranges, read=DatasetSource.read: (
+        reads.append(variable.name), read(source, variable, ranges))[1])
+    with opened(path) as source:
+        frames, radius = len(source.time), np.ones(len(source.s))
+        whole = vtk_archive(source, radius)
+        assert frames > 4 and reads.count("r") == 1
+        monkeypatch.setattr(vtk, "BLOCK", 2 * len(source.s) * 22)  # two frames of all that is stored along the rod
+        in_blocks = vtk_archive(source, radius)
+        assert reads.count("r") == 1 + math.ceil(frames / 2)
+    assert contents(in_blocks) == contents(whole)
+
+
+def contents(content):
+    files = zipfile.ZipFile(io.BytesIO(content))
+    return {name: files.read(name) for name in files.namelist()}
+
+
 def test_vtk_reads_them(client, done, values, tmp_path):
-    vtk = pytest.importorskip("vtk")
+    real = pytest.importorskip("vtk")
     from vtk.util.numpy_support import vtk_to_numpy
 
     archive(client, done).extractall(tmp_path)
-    reader = vtk.vtkXMLPolyDataReader()
+    reader = real.vtkXMLPolyDataReader()
     reader.SetFileName(str(tmp_path / "frames" / "000003.vtp"))
     reader.Update()
     line = reader.GetOutput()

@@ -97,7 +97,12 @@ def packs_well(values: NDArray[Any]) -> bool:
 
 
 def _same_bits(array: NDArray[Any], other: NDArray[Any]) -> bool:
-    return array.dtype == other.dtype and array.shape == other.shape and array.tobytes() == other.tobytes()
+    return array.dtype == other.dtype and np.array_equal(_bits(array), _bits(other))
+
+
+def _bits(array: NDArray[Any]) -> NDArray[Any]:
+    """The same as whole numbers: they are equal where their bits are, also where they stand for NaN or zero."""
+    return np.ascontiguousarray(array).view(f"u{array.itemsize}")
 
 
 @contextmanager

@@ -58,12 +58,14 @@ class Segments:
         self.written = list(written)
         self.frames = sum(segment.frames for segment in written)
         self._waiting: list[Frame] = []
+        self._joined: Block = {}
         self._frame_bytes = 0
 
     def append(self, frame: Frame) -> None:
         """Add one frame; raises OSError where it cannot be written."""
         self._frame_bytes = self._frame_bytes or sum(np.asarray(v.of(frame)).nbytes for v in self._variables)
         self._waiting.append(frame)
+        self._joined = {}
         self.frames += 1
         if self.waiting >= SEGMENT_BYTES:
             self.flush()
@@ -80,6 +82,7 @@ class Segments:
         first = self.frames - len(self._waiting)
         self.written.append(write_segment(self._directory, first, self._tag, self._block()))
         self._waiting.clear()
+        self._joined = {}
 
     def blocks(self) -> Iterator[Block]:
         """The arrays of all frames in order of time: those of the segments, then those that wait."""
@@ -90,6 +93,8 @@ class Segments:
             yield self._block()
 
     def _block(self) -> Block:
-        block: Block = {v.name: np.array([v.of(f) for f in self._waiting], v.type) for v in self._variables}
-        block["time"] = np.array([frame.t for frame in self._waiting])
-        return block
+        """Those that wait, joined once: a dataset is written from them, and then compared with them."""
+        if not self._joined:
+            block: Block = {v.name: np.array([v.of(f) for f in self._waiting], v.type) for v in self._variables}
+            self._joined = block | {"time": np.array([frame.t for frame in self._waiting])}
+        return self._joined

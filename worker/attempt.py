@@ -18,7 +18,7 @@ from service.jobs import Dataset, Drift, Reached, Status
 from service.jobs.held import HeldJob
 from service.results import Datasets, DatasetWriter, StoreUnreachable
 from service.results.durable import size_of
-from service.results.scalars import SCALARS, Value, last_values
+from service.results.scalars import Value, last_of, series_of
 from service.results.segments import Segment
 from service.settings import Settings
 from solver import Frame, Run, RunFailed, code_digest, simulate
@@ -100,7 +100,8 @@ class Attempt:
             message = " ".join([message, *simulation.notes()]).strip()
             published = self._with_room(lambda: writer.publish(outcome.value, message, simulation))
         dataset = Dataset(self._path.name, published.sha256, published.bytes, self._datasets.stamp(self._path.name))
-        return Ending(status, outcome, message, dataset, self._drift(spec), simulation.attributes(), self._scalars())
+        drift, scalars = self._numbers(spec)
+        return Ending(status, outcome, message, dataset, drift, simulation.attributes(), scalars)
 
     def _start(self, spec: CaseSpec) -> tuple[Run, tuple[Segment, ...]]:
         """The run, where it goes on or begins, and its frames until then."""
@@ -211,22 +212,16 @@ class Attempt:
         if size_of(self._directory) + writer.waiting > self._held.job.limits.disk:
             raise OutOfDisk
 
-    def _drift(self, spec: CaseSpec) -> Drift | None:
-        """Of what is published; a run is not lost because it cannot be told."""
+    def _numbers(self, spec: CaseSpec) -> tuple[Drift | None, dict[str, Value]]:
+        """The drift and the last values of what is published. A run is not lost because they cannot be read now; who
+        asks for the values then reads the dataset."""
         method = "static" if spec.analysis == "static" else spec.numerics.method
         try:
-            return drift_of(self._path, method)
+            series = series_of(self._path)
+            return drift_of(series, method), last_of(series)
         except (OSError, MemoryError):
-            log.exception("job %s: its drift cannot be read from its dataset", self._held.job.id)
-            return None
-
-    def _scalars(self) -> dict[str, Value]:
-        """The last values of what is published; where they cannot be read now, who asks for them reads the dataset."""
-        try:
-            return last_values(self._path, SCALARS)
-        except (OSError, MemoryError):
-            log.exception("job %s: its last values cannot be read from its dataset", self._held.job.id)
-            return {}
+            log.exception("job %s: its drift and last values cannot be read from its dataset", self._held.job.id)
+            return None, {}
 
     def _tell_lost(self, steps: int) -> None:
         """Tell of the steps that were taken already, but after those that this attempt begins with: they are lost with

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from service.results.part import Column
-from service.results.query import unknown
+from service.results.query import opened, unknown
 from service.results.schema import ERRORS, LABELS, VARIABLES, Variable
 
 Value = float | int | list[float | None] | None
@@ -27,11 +28,22 @@ def scalar_variables(names: Sequence[str]) -> list[str]:
     return list(names)
 
 
+def series_of(path: Path) -> dict[str, NDArray[Any]]:
+    """The values in time of those that a dataset holds."""
+    with opened(path) as source:
+        return {name: source.read(source.variables[name], {}) for name in SCALARS if name in source.variables}
+
+
+def last_of(series: Mapping[str, NDArray[Any]]) -> dict[str, Value]:
+    """The last values; None where there are none."""
+    return {name: _plain(series[name][-1]) if len(series.get(name, ())) else None for name in SCALARS}
+
+
 def last_values(path: Path, names: Sequence[str]) -> dict[str, Value]:
     """The values of the last frame; None for what the dataset does not hold, and where there is no number."""
     with h5py.File(path) as file:
         frames = len(file["time"])
-        values = {name: np.asarray(file[name][-1]) for name in names if frames and name in file}
+        values = {name: file[name][-1] for name in names if frames and name in file}
     return {name: _plain(values[name]) if name in values else None for name in names}
 
 
@@ -51,7 +63,7 @@ def _column(variable: Variable, values: Sequence[Value], along: str) -> Column:
 
 
 def _plain(value: NDArray[np.float64]) -> Value:
-    plain = value.astype(object)
+    plain = np.asarray(value).astype(object)
     plain[~np.isfinite(value)] = None
     number: Value = plain.tolist()
     return number

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import os
 import sys
+import time
 from functools import cache
 from typing import Any
 
 from celery import Celery
-from celery.signals import setup_logging, worker_init, worker_process_init, worker_process_shutdown
+from celery.signals import (
+    setup_logging,
+    worker_init,
+    worker_process_init,
+    worker_process_shutdown,
+    worker_shutting_down,
+)
 
 import solver
 from service.jobs import Database
@@ -17,9 +24,12 @@ from service.jobs.migrations import WrongSchema
 from service.jobs.reconciler import ring_for_all
 from service.logs import write_json
 from service.settings import from_environment
-from worker import run
+from worker import run, stopping
 from worker.beating import Child, Parent, step_of
 from worker.parent import die_with_parent
+
+RING_EVERY = 1.0
+"""Seconds between two rings of a process, at least: short jobs are not to be slowed down by them."""
 
 try:
     settings = from_environment()
@@ -55,10 +65,20 @@ def child() -> Child:
 
 @app.task(name=TASK)
 def run_next() -> None:
-    """Run one job; the registry says which. Then ring for those that wait: when nobody submits, nobody else does for
-    seconds. But not without having run one: messages would go round for a job that nobody can take."""
-    if run.run_next(database(), settings):
-        ring_for_all(database(), doorbell())
+    """Run jobs, one after the other, until none can be had; the registry says which. Between them ring for those that
+    wait: when nobody submits, nobody else does for seconds. But not without having run one: messages would go round
+    for a job that nobody can take."""
+    rung = -RING_EVERY
+    while not stopping.pool_ends() and run.run_next(database(), settings):
+        if time.monotonic() - rung >= RING_EVERY:
+            ring_for_all(database(), doorbell())
+            rung = time.monotonic()
+
+
+@worker_shutting_down.connect
+def end_pool(**_: Any) -> None:
+    """In the parent that is told to stop."""
+    stopping.end_pool()
 
 
 @setup_logging.connect

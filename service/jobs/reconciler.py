@@ -19,7 +19,7 @@ from service.jobs.lifecycle import Status
 from service.jobs.pauses import drain
 from service.jobs.processes import forget_lost
 from service.jobs.sharing import make_room
-from service.jobs.tables import jobs, owners
+from service.jobs.tables import jobs, owners, processes
 from service.rounds import Rounds
 from service.settings import Settings
 
@@ -121,16 +121,18 @@ def recount(database: Database | Leader) -> None:
         transaction.connection.execute(update(owners).where(of_wrong).values(unfinished=unfinished, bytes=bytes_))
 
 
-def waiting(database: Database) -> int:
-    """How many jobs wait for a worker, counted up to AT_ONCE."""
+def wanted(database: Database) -> int:
+    """How many workers should look for a job: as many as jobs wait, of those that there are, up to AT_ONCE."""
     accepted = select(jobs.c.id).where(jobs.c.status == Status.ACCEPTED).limit(AT_ONCE).subquery()
+    workers = select(func.count()).select_from(processes).where(processes.c.kind == "worker").scalar_subquery()
     with database.reading() as connection:
-        return connection.scalar(select(func.count()).select_from(accepted)) or 0
+        waiting, there = connection.execute(select(func.count(), workers).select_from(accepted)).one()
+    return int(min(waiting, max(there, 1)))  # the first worker may not be there yet
 
 
 def ring_for_all(database: Database, doorbell: Doorbell, least: int = 0) -> None:
-    """Have a message lie for each job that waits, up to AT_ONCE, and `least` in any case."""
-    if messages := max(waiting(database), least):
+    """Have a message lie for each worker that should look for a job, and `least` in any case."""
+    if messages := max(wanted(database), least):
         doorbell.leave(messages)
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import mmap
+import os
+
 import pytest
 
-from service.jobs import NewJob, Status
+from service.jobs import NewJob, Registry, Status
 from service.jobs.doorbell import Doorbell
-from service.jobs.reconciler import AT_ONCE
 from service.settings import Settings
-from worker import app
+from worker import app, stopping
 from worker.lock import job_lock
 
 
@@ -29,12 +31,43 @@ def bell(registry, settings, monkeypatch) -> Bell:
     return bell
 
 
-def test_who_has_run_a_job_rings_for_as_many_as_still_wait_up_to_a_bound(registry, case, bell):
-    for _ in range(AT_ONCE + 2):
+def statuses(registry: Registry) -> list[Status]:
+    """Those of all jobs, the newest first."""
+    return [job.status for job in registry.page(10).jobs]
+
+
+def test_who_has_run_a_job_rings_while_others_wait_and_runs_the_next(registry, case, bell, monkeypatch):
+    for _ in range(4):
         registry.submit(NewJob(case))
-    for _ in range(3):
-        app.run_next()
-    assert bell.wanted == [AT_ONCE, AT_ONCE, AT_ONCE - 1]
+    monkeypatch.setattr(app, "RING_EVERY", 0.0)
+    app.run_next()
+    assert bell.wanted == [1, 1, 1]
+    assert statuses(registry) == [Status.SUCCESSFUL] * 4
+
+
+def test_between_short_jobs_it_rings_once_in_a_while(registry, case, bell, monkeypatch):
+    for _ in range(4):
+        registry.submit(NewJob(case))
+    monkeypatch.setattr(app, "RING_EVERY", 1e9)
+    app.run_next()
+    assert bell.wanted == [1]
+
+
+def test_who_is_told_to_stop_finishes_its_job_and_takes_no_other(registry, case, bell, monkeypatch):
+    """Its parent is told, and tells by the memory that they share."""
+    for _ in range(2):
+        registry.submit(NewJob(case))
+    monkeypatch.setattr(stopping, "_pool_ends", mmap.mmap(-1, 1))
+    monkeypatch.setattr(bell, "leave", lambda _: fork_and_end_pool())
+    app.run_next()
+    assert statuses(registry) == [Status.ACCEPTED, Status.SUCCESSFUL]
+
+
+def fork_and_end_pool() -> None:
+    if os.fork() == 0:
+        app.end_pool()
+        os._exit(0)
+    os.wait()
 
 
 def test_who_has_run_the_last_job_does_not_ring(job, registry, bell):
@@ -55,4 +88,4 @@ def test_a_broker_that_is_away_costs_no_job(registry, settings, case, bell, monk
     monkeypatch.setattr(app, "doorbell", lambda: nowhere)
     first, second = (registry.submit(NewJob(case)) for _ in range(2))
     app.run_next()
-    assert [registry.get(job.id).status for job in (first, second)] == [Status.SUCCESSFUL, Status.ACCEPTED]
+    assert [registry.get(job.id).status for job in (first, second)] == [Status.SUCCESSFUL, Status.SUCCESSFUL]

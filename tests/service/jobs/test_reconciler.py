@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from sqlalchemy import select, update
+from sqlalchemy import insert, select, update
 
 from service.jobs import Database, NewJob, Reached, Registry, Status, reconciler
 from service.jobs.doorbell import Doorbell, celery_settings
@@ -20,7 +20,7 @@ from service.jobs.reconciler import (
     ring_for_all,
     take_back,
 )
-from service.jobs.tables import owners
+from service.jobs.tables import owners, processes
 from service.settings import Settings
 
 LEASE, ATTEMPTS = 10.0, 3
@@ -139,7 +139,12 @@ def test_a_cancelled_job_that_is_handed_back_is_dismissed(registry):
     assert registry.get(job.job.id).status is Status.DISMISSED
 
 
-def test_messages_are_left_for_as_many_jobs_as_wait_up_to_a_bound(registry):
+@pytest.mark.parametrize(("workers", "left"), [(0, [1, 1]), (2, [2, 2]), (1000, [3, AT_ONCE])])
+def test_messages_are_left_for_as_many_workers_as_there_are_and_jobs_wait_up_to_a_bound(registry, workers, left):
+    rows = [{"id": f"{kind} {pid}", "kind": kind, "host": "here", "pid": pid, "beat": 1, "seen": 0.0, "stuck": ""}
+            for kind, pid in [("api", 0), *(("worker", pid) for pid in range(workers))]]  # fmt: skip
+    with registry.database.writing() as transaction:
+        transaction.connection.execute(insert(processes), rows)
     bell = Bell()
     ring_for_all(registry.database, bell)
     assert bell.wanted == []
@@ -147,7 +152,7 @@ def test_messages_are_left_for_as_many_jobs_as_wait_up_to_a_bound(registry):
         for _ in range(count):
             registry.submit(NewJob({}))
         ring_for_all(registry.database, bell)
-    assert bell.wanted == [3, AT_ONCE]
+    assert bell.wanted == left
 
 
 def test_what_the_lost_have_left_is_removed_though_no_job_comes_any_more(registry, settings, monkeypatch):

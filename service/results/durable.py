@@ -8,6 +8,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
@@ -19,6 +20,18 @@ def sync(path: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+@contextmanager
+def syncing(path: Path) -> Iterator[None]:
+    """Bring a file's content to the disk while the block runs, which may read it. Raises OSError, MemoryError."""
+    with ThreadPoolExecutor(1, "sync") as thread:
+        try:
+            synced = thread.submit(sync, path)
+        except RuntimeError as error:
+            raise MemoryError("there is no memory for a thread") from error
+        yield
+        synced.result()
 
 
 def write_whole(path: Path, content: bytes | memoryview) -> None:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from service.cases import CaseSpec
 from service.results import netcdf
-from service.results.durable import discard, scratch, sha256_of, sync
+from service.results.durable import discard, scratch, sha256_of, sync, syncing
 from service.results.schema import stored_variables
 from service.results.segments import Segment, Segments
 from solver import Frame, Run
@@ -95,9 +95,9 @@ class DatasetWriter:
     def _publish(self, beside: Path, s: NDArray[np.float64], attributes: Mapping[str, Any]) -> Published:
         blocks = self._segments.blocks
         netcdf.write(beside, self._variables, s, self._segments.frames, blocks, attributes)
-        netcdf.verify(beside, blocks)
-        sync(beside)
-        published = Published(sha256_of(beside), beside.stat().st_size)
+        with syncing(beside):
+            netcdf.verify(beside, blocks)
+            published = Published(sha256_of(beside), beside.stat().st_size)
         beside.replace(self._path)
         sync(self._path.parent)
         return published

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any, get_args
 
 import netCDF4
@@ -20,7 +21,17 @@ import xarray as xr
 
 from service.cases import CaseSpec, parse_case
 from service.cases.case import FieldName
-from service.results import VARIABLES, DatasetWriter, Published, durable, netcdf, open_dataset, segments, subset
+from service.results import (
+    VARIABLES,
+    DatasetWriter,
+    Published,
+    durable,
+    netcdf,
+    open_dataset,
+    segments,
+    subset,
+    writer,
+)
 from service.results.formats import as_data
 from service.results.query import opened
 from service.results.schema import stored_variables
@@ -256,6 +267,7 @@ def test_a_full_disk_leaves_the_old_dataset_and_nothing_else(
 LIMITED = """
 import resource, signal, sys
 from pathlib import Path
+from threading import Event, Thread
 from service.results import DatasetWriter, segments
 from solver import VerifiedFrame
 from tests.service.frames import ended, frames, nodes, small_spec
@@ -284,6 +296,34 @@ def test_a_file_that_may_not_grow_is_a_clear_error(path: Path, segment: int):
     assert list(path.parent.iterdir()) == []
 
 
+def test_a_file_that_does_not_come_to_the_disk_is_not_published(path: Path, monkeypatch: pytest.MonkeyPatch):
+    """It does so while it is read back."""
+    read = Event()
+
+    def fail_late(_: int) -> None:
+        assert read.wait(60)
+        no_space()
+
+    def sha256_of(file: Path) -> str:
+        read.set()
+        return durable.sha256_of(file)
+
+    monkeypatch.setattr(durable.os, "fsync", fail_late)
+    monkeypatch.setattr(writer, "sha256_of", sha256_of)
+    with pytest.raises(OSError, match=os.strerror(errno.ENOSPC)):
+        write(path, small_spec(), 3)
+    assert list(path.parent.iterdir()) == []
+
+
+def test_a_run_without_memory_for_a_thread_is_out_of_memory(path: Path, monkeypatch: pytest.MonkeyPatch):
+    def refuse(*_: Any) -> None:
+        raise RuntimeError("can't start new thread")
+
+    monkeypatch.setattr(Thread, "start", refuse)
+    with pytest.raises(MemoryError):
+        write(path, small_spec(), 3)
+
+
 def test_a_damaged_file_is_not_published(path: Path, monkeypatch: pytest.MonkeyPatch):
     whole = netcdf.write
 
@@ -301,6 +341,7 @@ def test_a_damaged_file_is_not_published(path: Path, monkeypatch: pytest.MonkeyP
 KILLED = """
 import os, signal, sys
 from pathlib import Path
+from threading import Event, Thread
 from tests.service.frames import ended, frames, nodes, small_spec
 from service.results import DatasetWriter
 spec = small_spec()

@@ -21,7 +21,7 @@ MOST_MEMBERS = 10_000
 MOST_PARAMETERS = 50
 MOST_BYTES = 100_000_000
 """Of the cases of all members."""
-NAME = r"^[A-Za-z][A-Za-z0-9_.-]{0,99}$"
+NAME = r"[A-Za-z][A-Za-z0-9_.-]{0,99}"
 RESERVED = frozenset({"member", "time", "s", "id", "job", "label", "status", "outcome", "t", *LABELS,
                    *(variable.name for variable in (*VARIABLES, *ERRORS.values()))})
 """What else stands beside the parameters in a table or a dataset."""
@@ -118,12 +118,13 @@ class EnsembleRequest(BaseModel):
         elif not self.parameters:
             raise refusal("parameters", None, "is required, or members: what differs from member to member")
         for name in self.names:
-            if not re.match(NAME, name):
+            if not re.fullmatch(NAME, name):
                 raise refusal(self._where, name, "must be names of letters, digits, '.', '_' and '-', a letter first")
             if name in RESERVED:
                 raise refusal(self._where, name, "must not be named as what a dataset or a table has besides")
         for name, parameter in self.parameters.items():
             self._check_parameter(name, parameter)
+        self._check_paths()
         if self.many > MOST_MEMBERS:
             raise refusal("parameters", None, f"must give at most {MOST_MEMBERS:,} members, not {self.many:,}")
         return self
@@ -151,6 +152,15 @@ class EnsembleRequest(BaseModel):
         if required and getattr(parameter, required) is None:
             rule = "is required for a grid" if required == "values" else "is required for a sample, and high"
             raise refusal(f"parameters/{name}/{required}", None, rule)
+
+    def _check_paths(self) -> None:
+        """What one parameter sets, none that comes after it may set once more: its values would not be those run."""
+        within: dict[str, str] = {}
+        for name, path in zip(self.names, self.paths, strict=True):
+            if path in within:
+                raise refusal(self._where, path, f"must not be set once more: {within[path]} is set in it")
+            keys = path.split(".")
+            within |= {".".join(keys[:depth]): name for depth in range(1, len(keys) + 1)}
 
     @property
     def _where(self) -> str:

@@ -109,7 +109,7 @@ def ensemble_data(ensemble_id: str, query: Annotated[VariablesInRanges, Query()]
         if not any(member_parts):
             raise Problem(409, "not_finished", f"of the members of ensemble {ensemble.id} none has frames (yet): "
                           "see its status", {"Retry-After": "1"})  # fmt: skip
-        return response_of(combined(member_parts, own, form.limit), form)
+        return response_of(combined(member_parts, own, form.limit, form.table), form)
 
 
 @router.get("/sensitivity", responses=problems(404, 409, 422, 503))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import prod
 from typing import Any
 
@@ -16,15 +16,18 @@ from service.results.schema import LABELS
 ALONG = "member"
 
 
-def combined(parts: Sequence[Part | None], own: Sequence[Column], limit: int) -> Part:
+def combined(parts: Sequence[Part | None], own: Sequence[Column], limit: int, table: bool = False) -> Part:
     """The parts one beside the other; NaN where one has no such time or node, or is not there at all.
 
-    `own`: coordinates along the new dimension. Raises SubsetTooLarge for more than `limit` values.
+    `own`: coordinates along the new dimension. Raises SubsetTooLarge for more than `limit` values, or, for a `table`,
+    for as many in it: what has no place along the rod is repeated along it.
     """
     present = [part for part in parts if part is not None]
     axes = _axes(present)
-    shapes = {column.name: _shape(column, axes) for part in present for column in part.variables}
-    check_size(len(parts) * sum(prod(shape) for shape in shapes.values()), limit)
+    columns = {column.name: column for part in present for column in part.variables}
+    shapes = {name: _shape(column.dimensions, axes) for name, column in columns.items()}
+    rows = [name for name in axes if name not in LABELS] if table else []
+    check_size(len(parts) * sum(prod(_shape({*column.dimensions, *rows}, axes)) for column in columns.values()), limit)
     coordinates = [Column(name, (name,), values, _attributes(present, name)) for name, values in axes.items()]
     variables = [_stacked(name, parts, axes, shape) for name, shape in shapes.items()]
     return Part((*own, *coordinates), tuple(variables))
@@ -47,8 +50,8 @@ def _attributes(parts: Sequence[Part], name: str) -> dict[str, str]:
     return next((dict(c.attributes) for part in parts for c in part.coordinates if c.name == name), {})
 
 
-def _shape(column: Column, axes: dict[str, NDArray[Any]]) -> tuple[int, ...]:
-    return tuple(len(axes[name]) for name in column.dimensions)
+def _shape(dimensions: Iterable[str], axes: dict[str, NDArray[Any]]) -> tuple[int, ...]:
+    return tuple(len(axes[name]) for name in dimensions)
 
 
 def _stacked(name: str, parts: Sequence[Part | None], axes: dict[str, NDArray[Any]], shape: tuple[int, ...]) -> Column:

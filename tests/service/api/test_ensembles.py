@@ -141,6 +141,9 @@ RANGE = {"low": 0, "high": 1}
     ({"parameters": {"loads.damping": [1] * 101, "t_end": [1] * 100}}, "/parameters", "at most 10,000 members"),
     ({"parameters": {"Tw": {"path": "loads.damping", "values": [1]}}}, "/parameters", "must not be named"),
     ({"parameters": {"a b": {"path": "loads.damping", "values": [1]}}}, "/parameters", "a letter first"),
+    ({"parameters": {"a\n": {"path": "loads.damping", "values": [1]}}}, "/parameters", "a letter first"),
+    ({"parameters": {"a": {"path": "t_end", "values": [1]}, "t_end": [2]}}, "/parameters", "once more: a is set"),
+    ({"parameters": {}, "members": [{"loads.damping": 1, "loads": {}}]}, "/members", "once more: loads.damping is"),
     ({"parameters": {"loads.dampin": [1]}}, "/parameters", "member 0 (loads.dampin = 1): /loads/dampin"),
     ({"parameters": {"loads.damping": [1, -1]}}, "/parameters", "member 1 (loads.damping = -1): /loads/"),
     ({"sample": {"method": "sobol", "size": 7}, "parameters": {"a": RANGE}}, "/sample/size", "power of two"),
@@ -225,6 +228,22 @@ def test_members_of_other_lengths_and_those_without_frames_are_filled_with_nan(c
     run_next(registry.database, settings)
     both = dataset(client.get(f"{address}/data?variables=Tw&format=netcdf").content)
     assert both.sizes["time"] == 6 and both.Tw.isnull().sum(dim="time").values.tolist() == [2, 0]
+
+
+def test_a_table_of_members_counts_what_it_repeats(client, done, monkeypatch):
+    monkeypatch.setitem(FORMATS, "csv", replace(FORMATS["csv"], limit=6 * 6 * 9 * 4 - 1))
+    address = f"{done}/data?variables=r,Tw"
+    assert problem(client.get(f"{address}&format=csv")) == (422, "subset_too_large")
+    table = client.get(f"{address}&format=csv&t_min=0.01").text.splitlines()
+    assert len(table) == 1 + 6 * 5 * 9 and table[0] == "member,damping,gravity,time,s,r_e1,r_e2,r_e3,Tw"
+
+
+def test_what_holds_another_value_may_be_set_before_it(client, case):
+    loads = [{"gravity": [0.0, 0.0, 0.0]}, {"damping": 0.5}]
+    body = {"case": case, "parameters": {"loads": loads, "loads.damping": [0.1, 0.2]}}
+    members = client.get(client.post("/v1/ensembles", json=body).headers["location"] + "/members").json()["members"]
+    cases = [client.get(f"/v1/jobs/{one['job']}/case").json() for one in members]
+    assert [one["loads"]["damping"] for one in cases] == [0.1, 0.2, 0.1, 0.2]
 
 
 def test_too_much_at_once_is_refused(client, done, monkeypatch):

@@ -2,7 +2,7 @@
 
 from service.results.bucket import StoreUnreachable
 from service.results.published import Datasets
-from service.results.query import Ranges, SubsetTooLarge, UnknownVariable, open_dataset, subset
+from service.results.query import NoFrames, Ranges, SubsetTooLarge, UnknownVariable, open_dataset, subset
 from service.results.schema import VARIABLES, Variable
 from service.results.writer import DatasetWriter, Published
 
@@ -10,6 +10,7 @@ __all__ = [
     "VARIABLES",
     "DatasetWriter",
     "Datasets",
+    "NoFrames",
     "Published",
     "Ranges",
     "StoreUnreachable",

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from service.results.query import Source, UnknownVariable
+from service.results.query import NoFrames, Source, UnknownVariable
 
 FACETS = 12
 MOST_RINGS, MOST_FRAMES = 300, 120
@@ -26,10 +26,12 @@ Array = NDArray[np.float64]
 
 def glb(source: Source, radius: Array) -> bytes:
     """The frames, thinned out to what can be drawn; `radius` (n,), m. Raises UnknownVariable where no shape was
-    stored."""
+    stored, NoFrames."""
     missing = [name for name in SHAPE if name not in source.variables]
     if missing:
         raise UnknownVariable(f"output.fields must have r and orientation for glTF, and has no {missing[0]}")
+    if not len(source.time):
+        raise NoFrames("the run failed before its first frame: there is no rod to show")
     nodes = np.linspace(0, len(source.s) - 1, min(len(source.s), MOST_RINGS)).round().astype(int)
     frames = slice(0, None, max(1, ceil(len(source.time) / MOST_FRAMES)))
     r, q = (source.read(source.variables[name], {"time": frames})[:, nodes] for name in SHAPE)

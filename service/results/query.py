@@ -24,6 +24,10 @@ class UnknownVariable(ValueError):
     """A variable that the dataset does not hold."""
 
 
+class NoFrames(ValueError):
+    """A run that failed before its first frame."""
+
+
 class SubsetTooLarge(ValueError):
     """A subset of more values than are given out at once."""
 

@@ -63,12 +63,28 @@ def test_netcdf_is_the_same_part_of_the_dataset(client, done, whole, tmp_path):
 @pytest.mark.parametrize(("accept", "format"), [
     ("text/csv", "csv"), ("application/x-netcdf", "netcdf"), ("application/netcdf", "netcdf"),
     ("text/html, application/vnd.apache.arrow.stream;q=0.9", "arrow"), ("*/*", "json"), ("image/png", "json"),
+    ("text/csv;q=0.1, application/json", "json"), ("application/json;q=0.2, application/x-netcdf", "netcdf"),
+    ("text/*", "csv"), ("text/csv;q=0", "json"), ("application/json;q=0, */*;q=0.1", "csv"), ("", "json"),
+    ("*/*, text/csv", "csv"), ("text/*;q=0.9, text/csv;q=0.1, application/json;q=0.5", "json"),
+    ("TEXT/CSV ; Q=1.", "csv"), ("text/csv;q=nan", "csv"),
+    ("text/csv;header=present;q=0.3, application/netcdf;q=0.31", "netcdf"),
 ])
 def test_the_accept_header_chooses_where_the_query_does_not(client, done, accept, format):
     address = f"/v1/jobs/{done}/data?variables=Tw"
     answer = client.get(address, headers={"Accept": accept})
     assert answer.headers["content-type"].partition(";")[0] == FORMATS[format].media_type
     assert client.get(address + "&format=json", headers={"Accept": accept}).json()["variables"]["Tw"]
+
+
+@pytest.mark.parametrize("query", [
+    "/v1/jobs/{done}/data?variables=Tw&variables=Wr", "/v1/jobs?status=failed&status=failed",
+    "/v1/scalars?jobs={done}&jobs=other&variables=Tw",
+])
+def test_a_parameter_that_is_repeated_is_refused_and_not_passed_over(client, done, query):
+    answer = client.get(query.format(done=done))
+    assert answer.status_code == 422, answer.text
+    [fault] = answer.json()["errors"]
+    assert fault["parameter"] in query and len(fault["value"]) == 2 and "must come once" in fault["rule"]
 
 
 def test_a_table_counts_what_it_repeats(client, done, monkeypatch):

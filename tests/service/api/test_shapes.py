@@ -14,6 +14,7 @@ import pytest
 from service.results import vtk
 from service.results.query import DatasetSource, opened
 from service.results.vtk import vtk_archive
+from solver import Outcome, RunFailed, simulate
 
 
 @pytest.fixture
@@ -123,6 +124,27 @@ def test_trimesh_reads_it(client, done):
     scene = trimesh.load(io.BytesIO(client.get(f"/v1/jobs/{done}/gltf").content), file_type="glb")
     [mesh] = scene.geometry.values()
     assert len(mesh.faces) == 2 * 12 * 8
+
+
+def test_a_run_that_failed_before_its_first_frame_has_none_to_show(client, registry, settings, case, monkeypatch):
+    from worker import attempt
+    from worker.run import run_next
+
+    def begin(scene):
+        real = simulate(scene)
+        real.advance = fail
+        return real
+
+    def fail():
+        raise RunFailed(Outcome.STEP_TOO_SMALL, 0.0, 0, "stuck")
+
+    monkeypatch.setattr(attempt, "simulate", begin)
+    address = client.post("/v1/jobs", json=case).headers["location"]
+    run_next(registry.database, settings)
+    assert client.get(address).json()["outcome"] == "step_too_small"
+    answer = client.get(f"{address}/gltf")
+    assert (answer.status_code, answer.json()["type"]) == (404, "urn:hockle:problem:no_frames")
+    assert archive(client, address.rpartition("/")[2]).namelist() == ["rod.pvd"]
 
 
 @pytest.mark.parametrize("what", ["vtk", "gltf"])

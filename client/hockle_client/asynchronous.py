@@ -9,7 +9,7 @@ import asyncio
 import os
 import time
 import uuid
-from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
+from collections.abc import AsyncIterator, Iterable, Mapping
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, BinaryIO
 from urllib.parse import quote
@@ -20,7 +20,7 @@ from typing_extensions import Self
 from hockle_client.async_ensembles import AsyncEnsemble
 from hockle_client.async_jobs import AsyncJob
 from hockle_client.case import CaseLike, request_of
-from hockle_client.design import Method, Parameters, sweep_request
+from hockle_client.design import Members, Method, Parameters, sweep_request
 from hockle_client.documents import Cost, EnsembleState, Event, JobState, Status, Verdict, Workforce
 from hockle_client.handle import safe
 from hockle_client.problems import HockleError, Unreachable, problem_of
@@ -115,7 +115,7 @@ class AsyncClient:
             page = (await self._ask("GET", page["next"])).json()
 
     async def sweep(self, case: CaseLike, parameters: Parameters | None = None, *,
-                    members: Sequence[Mapping[str, Any]] = (), sample: Method | None = None,
+                    members: Members = (), sample: Method | None = None,
                     size: int | None = None, seed: int = 0,
                     set: Mapping[Setting, Any] | Mapping[str, Any] = {}, title: str = "", label: str = "",
                     priority: int = 0, limits: Mapping[str, float] = {}, again: bool = False,

@@ -85,7 +85,11 @@ def _faults(value: Any, place: str) -> Iterator[ValueError]:
 
 
 def plain(value: Any) -> Any:
-    """Numbers and arrays of numpy as JSON can write them."""
+    """Numbers and arrays of numpy, and the like of pandas, polars and Python, as JSON can write them."""
     if hasattr(value, "tolist"):
         return value.tolist()
+    if hasattr(value, "to_list"):  # polars
+        return value.to_list()
+    if isinstance(value, range):
+        return list(value)
     raise TypeError(f"a case holds plain JSON data, got {value!r} of type {type(value).__name__}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -22,20 +22,30 @@ class Range:
 
 
 Parameters = Mapping[str, Any]
-"""By dotted key: values (also numpy's), a Range, or what the service takes for one. No narrower type: a dictionary of
-both kinds, kept in a variable, is one of objects to a type checker."""
+"""By dotted key: values (also of numpy, pandas, polars), a Range, or what the service takes for one. No narrower type:
+a dictionary of both kinds, kept in a variable, is one of objects to a type checker."""
+Members = Any
+"""Mappings with the values of each member, or a table of pandas or polars with a row for each."""
 
 
 def sweep_request(case: CaseLike, settings: Mapping[Any, Any], parameters: Parameters,
-                  members: Sequence[Mapping[str, Any]], *, sample: Method | None, size: int | None, seed: int,
+                  members: Members, *, sample: Method | None, size: int | None, seed: int,
                   **more: Any) -> bytes:
     """The body that asks for an ensemble. Raises ValueError for what is no finite JSON."""
     changed = case_with(case, settings)
     body: dict[str, Any] = {"case": changed.base, "set": dict(changed.settings), **more}
     body["parameters"] = {name: asdict(values) if isinstance(values, Range) else values
                           for name, values in parameters.items()}  # fmt: skip
-    if members:
-        body["members"] = [dict(member) for member in members]
+    if rows := _rows(members):
+        body["members"] = rows
     if sample is not None:
         body["sample"] = {"method": sample, "size": size, "seed": seed}
     return encoded(body)
+
+
+def _rows(members: Members) -> list[dict[str, Any]]:
+    if hasattr(members, "to_dicts"):  # polars
+        return list(members.to_dicts())
+    if hasattr(members, "to_dict"):  # pandas
+        return list(members.to_dict("records"))
+    return [dict(member) for member in members]

@@ -189,7 +189,7 @@ class Job(JobFacts):
 
     def link(self, seconds: float = 86400.0) -> Link:
         """An address by which anybody reads this dataset for so long, without a key. Raises Problem."""
-        body = b'{"seconds": %r}' % seconds
+        body = encoded({"seconds": seconds})
         created = (self._client._ask("POST", f"/v1/jobs/{self.id}/links", body=body)).json()
         return self._linked(created)
 

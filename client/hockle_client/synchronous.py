@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import time
 import uuid
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, BinaryIO
 from urllib.parse import quote
@@ -17,7 +17,7 @@ import httpx
 from typing_extensions import Self
 
 from hockle_client.case import CaseLike, request_of
-from hockle_client.design import Method, Parameters, sweep_request
+from hockle_client.design import Members, Method, Parameters, sweep_request
 from hockle_client.documents import Cost, EnsembleState, Event, JobState, Status, Verdict, Workforce
 from hockle_client.ensembles import Ensemble
 from hockle_client.handle import safe
@@ -114,7 +114,7 @@ class Client:
             page = (self._ask("GET", page["next"])).json()
 
     def sweep(self, case: CaseLike, parameters: Parameters | None = None, *,
-              members: Sequence[Mapping[str, Any]] = (), sample: Method | None = None,
+              members: Members = (), sample: Method | None = None,
               size: int | None = None, seed: int = 0,
               set: Mapping[Setting, Any] | Mapping[str, Any] = {}, title: str = "", label: str = "",
               priority: int = 0, limits: Mapping[str, float] = {}, again: bool = False,

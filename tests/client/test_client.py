@@ -185,7 +185,7 @@ def test_a_dataset_that_cannot_be_written_leaves_nothing(client, done, tmp_path)
 
 
 def test_a_link_is_read_by_xarray_where_it_is(client, done):
-    link = done.link(seconds=60)
+    link = done.link(seconds=np.float64(60.0))
     with xr.open_dataset(f"{link.url}#mode=bytes") as dataset, done.dataset() as whole:
         assert dataset.r.values.tolist() == whole.r.values.tolist()
     [listed] = done.links()

@@ -5,6 +5,8 @@ from __future__ import annotations
 import secrets
 
 import numpy as np
+import pandas as pd
+import polars as pl
 import pytest
 
 from hockle_client import Problem, Range
@@ -38,6 +40,22 @@ def test_a_grid_is_one_table_and_one_dataset(client, settings, capsys):
     assert np.array_equal(job.data("r", s_stride=4).r, whole.r.isel(member=4))
     assert client.ensemble(sweep.id).state == sweep.refresh().state
     assert sweep.id in [one.id for one in client.ensembles()]
+
+
+@pytest.mark.parametrize("table", [pd.DataFrame, pl.DataFrame])
+def test_the_rows_of_a_table_are_members(client, settings, table):
+    damping, intervals = [0.5, 0.25], [8, 10]
+    rows = table({"loads.damping": damping, "numerics.intervals": intervals})
+    sweep = client.sweep("cantilever-vibration", members=rows, set=settings)
+    assert [member.values for member in sweep.members()] == [
+        {"loads.damping": one, "numerics.intervals": many} for one, many in zip(damping, intervals, strict=True)]
+    assert client.sweep("cantilever-vibration", {"t_end": [0.02]}, members=table(), set=settings).state.members == 1
+
+
+@pytest.mark.parametrize("values", [range(8, 12, 2), pd.Series([8, 10]), pl.Series([8, 10]), np.array([8, 10])])
+def test_values_may_be_of_any_kind_of_list(client, settings, values):
+    sweep = client.sweep("cantilever-vibration", {"numerics.intervals": values}, set=settings)
+    assert [member.values["numerics.intervals"] for member in sweep.members()] == [8, 10]
 
 
 def test_events_tell_of_all_members_to_the_end(client, settings):

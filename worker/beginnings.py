@@ -29,6 +29,9 @@ from worker.checkpoints import Checkpoint, packed, unpacked
 
 PARTS = (0.25, 0.5, 0.75)
 """Of a run, at which its state is kept besides that before its end."""
+WORTH = 1.0
+"""Seconds of computing (CPU) from which on a state is kept though nobody waits for it: what took less is as soon
+computed again, and its states would take half as much room as its dataset."""
 OF_THE_FUTURE = re.compile(r"\._outputs\b|\._control\._events\b|\._switches\b|\._jolts\b|"
                            r"\.(start|end)\._components\b|\.applied\b|\.address$")
 """Where a run holds what comes: the only places where the runs of two cases with one beginning may differ."""
@@ -56,10 +59,12 @@ class Beginnings:
         self._directory, self._key = directory, key
         parts = {int(part * (frames - 1)) for part in PARTS} | {frames - 2} | set(followed)
         self._frames = {frame for frame in parts if 0 < frame < frames - 1}
+        self._followed = set(followed)
 
     def keep(self, frame: int, run: Run) -> None:
         """Keep the state at this frame, if it is one of those. A run goes on where that cannot be done."""
-        if frame not in self._frames:
+        wanted = frame in self._followed or run.statistics.cpu_time >= WORTH
+        if frame not in self._frames or not wanted:
             return
         try:
             self._directory.mkdir(mode=0o700, parents=True, exist_ok=True)

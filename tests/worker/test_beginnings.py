@@ -15,6 +15,7 @@ from service.cases.beginning import common_frame
 from service.jobs import Database, NewJob, Registry, Status
 from service.results.durable import discard
 from service.settings import Settings
+from worker import beginnings
 from worker.run import run_next
 
 SHORT = {"t_end": 1.0, "output.interval": 0.1, "numerics.intervals": 12, "numerics.method": "staggered"}
@@ -23,6 +24,12 @@ TABLE = {"t": [0.0, 0.45, 0.6], "value": [0.0, 1.0, 3.0], "interpolation": "line
 OTHER = {"t": [0.0, 0.45, 0.7], "value": [0.0, 1.0, -2.0], "interpolation": "linear"}
 LOAD = {"loads.point": [{"s": 0.5, "force": [TABLE, 0.0, 0.0]}]}
 END = {"preset": "free", "switches": [{"at": 0.55, "omega3": 1.0}]}
+
+
+@pytest.fixture(autouse=True)
+def all_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those of short runs too."""
+    monkeypatch.setattr(beginnings, "WORTH", 0.0)
 
 
 @pytest.fixture
@@ -134,6 +141,20 @@ def test_whatever_is_not_there_any_more_it_is_run_all_the_same(database, setting
     run_next(database, settings)
     ended = registry.get(follower.id)
     assert (ended.status, ended.begins_with) == (Status.SUCCESSFUL, None)
+
+
+def test_what_is_soon_computed_again_is_kept_for_those_who_wait_alone(database, settings, monkeypatch):
+    monkeypatch.setattr(beginnings, "WORTH", 1e9)
+    registry = Registry(database)
+    leader = registry.submit(NewJob(case()))
+    waiting = registry.submit(NewJob(case(t_end=1.3), begins_with=leader.id, begins_at=3, waits=True))
+    run_next(database, settings)
+    assert [path.name for path in (settings.data / "beginnings" / leader.id).iterdir()] == ["00000003"]
+    run_next(database, settings)
+    assert registry.get(waiting.id).begins_with == leader.id
+    late = registry.submit(NewJob(case(t_end=1.4), begins_with=leader.id, begins_at=2))
+    run_next(database, settings)
+    assert (registry.get(late.id).status, registry.get(late.id).begins_with) == (Status.SUCCESSFUL, None)
 
 
 @pytest.mark.parametrize("end", ["run", "cancel"])

@@ -197,8 +197,6 @@ class CaseSpec(Spec):
 
     @model_validator(mode="after")
     def _check_statics(self) -> Self:
-        if self.analysis == "static" and self.contact is not None:
-            raise refusal("contact", None, "must not be given with analysis static")
         if self.analysis == "static" and self.numerics.tolerance is not None:
             rule = "must not be given with analysis static: give intervals"
             raise refusal("numerics/tolerance", self.numerics.tolerance, rule)

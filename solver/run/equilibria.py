@@ -17,6 +17,8 @@ from solver.methods.space.segments.fields import bending_at_nodes, orientations_
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import LARGEST_STRAIN, axial_stiffness
 from solver.run.run import Run
+from solver.run.watch import Watch
+from solver.scene.contact import Contact
 from solver.scene.ends import End
 from solver.scene.initial import Initial
 from solver.scene.numerics import Numerics
@@ -41,6 +43,7 @@ class Equilibria(Run):
         self._path = Path(self._equations)
         self.remarks.axial_stiffness = axial_stiffness(scene)
         self._Lk = self._turns_at_start()
+        self._watch = Watch(self.remarks, scene.contact is not None)
 
     @property
     def s(self) -> Array:
@@ -99,14 +102,19 @@ class Equilibria(Run):
         energy = energy._replace(kinetic=0.0, added_mass=0.0)
         frame = Frame(
             t=t, **vars(fields),
-            **{f"energy_{name}": value for name, value in energy._asdict().items()}, energy_contact=0.0,
+            **{f"energy_{name}": value for name, value in energy._asdict().items()},
+            energy_contact=equations.contact.energy,
             work_ends=nan, work_loads=nan, dissipation=nan, energy_balance=nan,
             Tw=self._twist(point), Wr=self._writhe(fields), Lk=self._linking_number(equations.time(point.q)),
-            min_gap=nan, contacts=0,
+            min_gap=equations.contact.smallest_gap(equations.bending(), equations.nodes()),
+            contacts=equations.contact.pressing,
             dt=path.last_dq * self._scene.t_end, newton_iterations=path.last_iterations,
             parameter=equations.time(point.q), negative_modes=path.modes,
             neutral_modes=neutral_modes(equations, path.modes),
         )  # fmt: skip
+        crossed = self._watch.see(frame)
+        if crossed:
+            raise RunFailed(Outcome.ROD_CROSSED_ITSELF, equations.time(point.q), self.statistics.steps, crossed)
         return complete(frame, self.s, self._scene)
 
     def _twist(self, point: Point) -> float:
@@ -129,10 +137,9 @@ class Equilibria(Run):
         orientations_at_nodes(point.quaternion, orientation)
         kappa, q = stages.bend[0].copy(), stages.moment[0].copy()
         bending_at_nodes(equations.chain, kappa, q, stages.left[0], stages.right[0])
-        tips = stages.r[0] + 0.5 * equations.chain.h * stages.R[0, 1:-1, :, 2]
         return Fields(
             v=rest, omega=rest, f=rotate_back(orientation, point.F),
-            kappa=kappa - equations.offset, q=q, r=np.vstack([point.base, tips]), orientation=orientation,
+            kappa=kappa - equations.offset, q=q, r=equations.nodes(), orientation=orientation,
         )  # fmt: skip
 
 
@@ -140,7 +147,8 @@ def exercise() -> None:
     """Call every kernel of a static analysis, for a tiny scene."""
     rod, numerics = Rod.circular(1.0, 0.01, 1e7, 5e6, 1500.0), Numerics(intervals=4)
     scene = Scene(rod=rod, initial=Initial.straight(), start=End.clamp(), end=End.free(), t_end=1.0,
-                  output_interval=1.0, numerics=numerics, analysis="static")  # fmt: skip
+                  output_interval=1.0, numerics=numerics, contact=Contact(), analysis="static")  # fmt: skip
     analysis = Equilibria(scene)
     analysis.warm()
+    analysis._equations.contact.compile()
     analysis._frame(0.0)

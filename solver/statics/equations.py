@@ -14,6 +14,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgbtrf, dgbtrs
+from scipy.sparse import bsr_array, csc_array, csr_array, diags_array
+from scipy.sparse.linalg import SuperLU, splu
 
 from solver.arrays import Array
 from solver.kernels.copying import copy
@@ -22,11 +24,12 @@ from solver.kernels.rotation import matrix_of, relative_rotation, turn
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, segment_tangents
 from solver.methods.space.segments.chain import Chain, Residuals, Stages
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
-from solver.methods.space.segments.joints import bend_joints
+from solver.methods.space.segments.joints import bend_joints, total_bending
 from solver.methods.space.segments.motion import follow_segments
 from solver.physics.axial import axial_compliance
 from solver.physics.elasticity import mean_bending
 from solver.scene.scene import Scene
+from solver.statics.contact import StaticContact
 from solver.statics.ends import StaticEnd
 
 BLOCK, BAND = 9, 17
@@ -87,6 +90,8 @@ class Equations:
         R = self.stages.R[0]
         self.ends = (StaticEnd(scene.start, R[0]), StaticEnd(scene.end, R[-1]))
         self._compliance = 0.5 * axial_compliance(scene)
+        self.contact = StaticContact(scene, self.s, self.nodes())
+        self.contact.prepare(self.bending(), self.nodes(), np.zeros((N + 1, 3)))
         self._home = (state.quaternion[[0, -1]].copy(), np.stack([self.start.base, self.tip()]))
         self.stiffness = mean_bending(self.chain.elastic)
         moment, force = self.stiffness / length, self.stiffness / length**2
@@ -109,11 +114,43 @@ class Equations:
         """Where the end of the rod is (3,), of the point evaluated last."""
         return np.asarray(self.stages.r[0, -1] + 0.5 * self.chain.h * self.stages.R[0, -2, :, 2])
 
+    def nodes(self) -> Array:
+        """Where the nodes are (N + 1, 3), of the point evaluated last."""
+        tips = self.stages.r[0] + 0.5 * self.chain.h * self.stages.R[0, 1:-1, :, 2]
+        return np.vstack([self.stages.base[0, 0], tips])
+
+    def bending(self) -> float:
+        """The rod's total bending (rad), of the point evaluated last."""
+        return float(total_bending(self.stages.bend[0]))
+
+    def look_ahead(self, point: Point, guess: Point) -> None:
+        """Before a step from a point to a guess: see who may come into contact."""
+        if self.contact.present:
+            _lay_down(self.chain, guess.quaternion, guess.base, self.stages)
+            there = self.nodes()
+            _lay_down(self.chain, point.quaternion, point.base, self.stages)
+            self.contact.prepare(self.bending(), self.nodes(), there - self.nodes())
+
+    def keeps_apart(self, z: Array) -> bool:
+        """Whether a displacement of the point evaluated last leaves strands that press on each other apart."""
+        return not self.contact.pressing or self.contact.allowed(self.moved_nodes(z)) >= 1.0
+
+    def keep(self) -> None:
+        """Enter that a step was taken to the point evaluated last."""
+        if self.contact.present:
+            self.contact.keep(self.nodes())
+
+    def refusal(self) -> str:
+        """Why contact does not let the point evaluated last be trusted, after a step, or nothing."""
+        return self.contact.refusal(self.bending(), self.nodes()) if self.contact.present else ""
+
     def residual(self, point: Point) -> Array:
         """What is left of the equations at a point (N + 2, 9), dimensionless."""
         t, stages, driven = self.time(point.q), self.stages, self._driven
         _lay_down(self.chain, point.quaternion, point.base, stages)
         stages.F[0] = point.F
+        if self.contact.present:
+            driven.push[0] = self.contact.push(self.nodes())
         self.applied.set_time(t)
         balance_segments(self.chain, self.loads, driven, stages, self._residuals, 0)
         self.applied.check()
@@ -195,10 +232,40 @@ class Equations:
         segment_tangents(self.chain, self.loads, self._driven, self.stages, 0, self.tangents)
         return left
 
-    def linearise(self, point: Point) -> tuple[Array, Solver]:
+    def linearise(self, point: Point) -> tuple[Array, Solver | CoupledSolver]:
         """The residual (N + 2, 9) and the factored tangent at a point."""
         left = self.look_at(point)
+        if self.contact.pressing:
+            return left, CoupledSolver(self.blocks(), self._contact_tangent(), self.units)
         return left, Solver(*self.blocks(), _places(len(self.start.quaternion)), self.units)
+
+    def moved_nodes(self, z: Array) -> Array:
+        """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point evaluated last."""
+        return np.asarray((self._moves() @ z.ravel()).reshape(-1, 3))
+
+    def _moves(self) -> csr_array:
+        """What takes a displacement to that of the nodes (3 (N + 1), 9 (N + 2)): that of either segment beside them,
+        as they bear the forces there."""
+        lever, N = levers(self.stages.R[0], self.chain.h), len(self.s) - 1
+        moves = np.zeros((2, N, 3, BLOCK))  # of the nodes before and behind each segment
+        for side, sign in ((0, 1.0), (1, -1.0)):
+            moves[side, :, :, X] = np.eye(3)
+            moves[side, :, :, PSI] = sign * lever[1:-1].transpose(0, 2, 1)
+        moves[:, 1:], moves[1, 0] = 0.5 * moves[:, 1:], 0.5 * moves[1, 0]
+        moves[1, -1] *= 2.0
+        segments = np.arange(N)
+        data = np.stack([moves[0], moves[1]], axis=1).reshape(-1, 3, BLOCK)
+        rows = np.stack([segments, segments + 1], axis=1).ravel()
+        columns = np.repeat(segments + 1, 2)
+        order = np.argsort(rows, kind="stable")
+        starts = np.searchsorted(rows[order], np.arange(N + 2))
+        return csr_array(bsr_array((data[order], columns[order], starts), shape=(3 * (N + 1), BLOCK * (N + 2))))
+
+    def _contact_tangent(self) -> csr_array:
+        """What contact adds to the tangent (9 (N + 2), 9 (N + 2)), dimensionless."""
+        moves, n = self._moves(), len(self.start.quaternion)
+        rows, columns = diags_array(np.tile(self._rows, n)), diags_array(np.tile(self.units, n))
+        return csr_array(rows @ moves.T @ self.contact.stiffness() @ moves @ columns)
 
     def blocks(self, softest: float = SOFTEST) -> tuple[Array, Array, Array]:
         """Diagonal (N + 2, 9, 9) of the tangent, and the blocks before and behind it, dimensionless."""
@@ -275,3 +342,25 @@ class Solver:
         """The displacement (N + 2, 9) that the tangent takes to `right` (N + 2, 9)."""
         x, _ = dgbtrs(self._factors, BAND, BAND, right.ravel(), self._pivots)
         return np.asarray(x.reshape(self._shape) * self._units)
+
+
+class CoupledSolver:
+    """The same where strands press on each other, whose nodes may be far apart along s."""
+
+    def __init__(self, blocks: tuple[Array, Array, Array], contact: csr_array, units: Array) -> None:
+        D, lower, upper = blocks
+        n = len(D)
+        self._units, self._shape = units, (n, BLOCK)
+        data = np.stack([lower, D, upper], axis=1).reshape(-1, BLOCK, BLOCK)[1:-1]
+        columns = (np.arange(n)[:, None] + np.arange(-1, 2)).ravel()[1:-1]
+        starts = np.clip(3 * np.arange(n + 1) - 1, 0, 3 * n - 2)
+        chain = bsr_array((data, columns, starts), shape=(BLOCK * n, BLOCK * n))
+        self.singular = False
+        try:
+            self._factors: SuperLU = splu(csc_array(chain) + csc_array(contact))
+        except RuntimeError:  # as it says that a pivot vanished
+            self.singular = True
+
+    def solve(self, right: Array) -> Array:
+        """The displacement (N + 2, 9) that the tangent takes to `right` (N + 2, 9)."""
+        return np.asarray(self._factors.solve(right.ravel()).reshape(self._shape) * self._units)

@@ -25,6 +25,8 @@ SHARPEST = 0.9
 EASY_ITERATIONS, MOST_ITERATIONS = 5, 10
 TOLERANCE = 1e-10
 """Remaining correction, rotation (rad) and force relative to EJ/L^2 and to its largest, at an equilibrium."""
+ROUNDING = 1e-7
+"""A correction below which no smaller one need follow: rounding moves a buckle so that may lie anywhere, nearly."""
 LARGEST_CORRECTION = 1.0
 MOST_STEPS = 5000
 """Steps from one frame to the next after which a branch is given up."""
@@ -97,13 +99,15 @@ class Path:
         forward = 1.0 if dq > 0.0 else -1.0
         to_corner = min((forward * (c - point.q) for c in self._corners if forward * (c - point.q) > REACHED),
                         default=np.inf)  # fmt: skip
-        room, length = min(remaining, to_corner), self._length
-        while length > SHORTEST:
-            length = min(length, room / max(abs(dq), REACHED))
+        room, wanted = min(remaining, to_corner), self._length
+        limit = room / max(abs(dq), REACHED)
+        while min(wanted, limit) > SHORTEST:
+            length = min(wanted, limit)
             lands = abs(dq) > STEEP and length * abs(dq) > room * (1.0 - 1e-9)
             guess = point.moved(length * self.direction.z, forward * room if lands else length * dq)
+            self._equations.look_ahead(point, guess)
             end = self._correct(guess, None if lands else self.direction)
-            if end is not None:
+            if end is not None and not self._equations.refusal():
                 cornered = lands and room == to_corner
                 direction = self._direction(end, forward if cornered else 0.0)
                 modes = negative_modes(self._equations)
@@ -111,23 +115,26 @@ class Path:
                 if smooth and (modes == self.modes or direction.dq * dq < 0.0 or length < CROSSING):
                     swept, part = (room, 1.0) if lands else _sweep(end.q - point.q, dq, direction.dq, length, room)
                     if part > 0.99:
-                        self._accept(end, direction, modes, swept, length)
+                        self._accept(end, direction, modes, swept)
+                        # a step that a stop cut short says nothing of how long the next may be
+                        grown = 2.0 * wanted if self._easy and length == wanted else wanted
+                        self._length = min(LONGEST, grown)
                         return
-                    length *= part
+                    limit = length * part
                     continue
             self.failed += 1
-            length *= 0.5
+            wanted = 0.5 * length
         _, solver = self._equations.linearise(point)
         if solver.singular:
             raise self._failure(Outcome.SINGULAR_SYSTEM, "a pivot vanished")
         raise self._failure(Outcome.EQUILIBRIUM_LOST, "no step was short enough")
 
-    def _accept(self, end: Point, direction: Direction, modes: int, swept: float, length: float) -> None:
+    def _accept(self, end: Point, direction: Direction, modes: int, swept: float) -> None:
         self.last_dq = end.q - self.point.q
         self.point, self.direction, self.modes = end, direction, modes
         self.travelled += swept
         self.steps += 1
-        self._length = min(LONGEST, 2.0 * length if self._easy else length, 4.0 * self._length)
+        self._equations.keep()
 
     def _correct(self, guess: Point, across: Direction | None) -> Point | None:
         """The equilibrium across a direction from a guess, or at the guess's own q; None if there is none near."""
@@ -143,11 +150,13 @@ class Path:
                 dq = -across.dot(z, 0.0) / across.dot(w, 1.0)
                 z += dq * w
             size = self._size(z, guess)
-            if not size < min(LARGEST_CORRECTION, 2.0 * before):
+            at_rest = ROUNDING > size > 0.3 * before
+            if not (at_rest or size < min(LARGEST_CORRECTION, 2.0 * before)) or not self._equations.keeps_apart(z):
                 return None
             guess = guess.moved(z, dq)
             # Newton converges quadratically: what remains is some size^2, measured by the correction before
-            if size < TOLERANCE or (iteration > 1 and size < 0.1 * before and size * size / before < TOLERANCE):
+            quadratic = iteration > 1 and size < 0.1 * before and size * size / before < TOLERANCE
+            if size < TOLERANCE or quadratic or at_rest:
                 self._easy, self.last_iterations = iteration <= EASY_ITERATIONS, iteration
                 return guess
             before = size

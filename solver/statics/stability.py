@@ -9,7 +9,7 @@ pivots of its factorisation, and those of W - G H^-1 G^t; each condition account
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import eigvalsh
+from scipy.linalg import eigvalsh, ldl
 from scipy.linalg.lapack import dgbsv
 
 from solver.arrays import Array
@@ -40,17 +40,15 @@ def _least(equations: Equations) -> float:
 
 def _count(equations: Equations, softest: float) -> int:
     """Directions of falling energy where every rotation has as much stiffness more."""
-    if equations.tangents.K.any():
+    pressing = equations.contact.pressing > 0
+    if equations.tangents.K.any() and not pressing:
         return _with_place(equations, softest)
-    chain, n, length = equations.chain, len(equations.start.quaternion), float(equations.s[-1])
-    T, R = equations.tangents, equations.stages.R[0]
+    length = float(equations.s[-1])
+    T = equations.tangents
     bands = _second_variation(T.stiff, T.behind, equations, softest) * (length / equations.stiffness)
-    held = [end.axes[:, end.held[:3]] for end in equations.ends]
-    G, W = np.zeros((3 * n, 3 + held[0].shape[1] + held[1].shape[1])), np.zeros((0, 0))
-    G[:, 3 + held[0].shape[1] :] = (-2.0 / length * levers(R, chain.h) @ held[1]).reshape(3 * n, -1)
-    ties = np.hstack(held)
-    W = np.zeros((G.shape[1], G.shape[1]))
-    W[:3, 3:], W[3:, :3] = ties, ties.T
+    G, W, ties = _conditions(equations)
+    if pressing:
+        return _all_together(equations, bands, G, W) - ties
     full = np.zeros((3 * BAND + 1, bands.shape[1]))
     full[2 * BAND :] = bands
     for k in range(1, BAND + 1):
@@ -58,7 +56,58 @@ def _count(equations: Equations, softest: float) -> int:
     _, _, solved, _ = dgbsv(BAND, BAND, full, G)
     S = W - G.T @ solved
     falling = int(np.sum(eigvalsh(S) < 0.0))
-    return int(_negative_pivots(bands.copy())) + falling - int(ties.shape[1])
+    return int(_negative_pivots(bands.copy())) + falling - ties
+
+
+def _conditions(equations: Equations) -> tuple[Array, Array, int]:
+    """G (3 n, m), W (m, m) of the start's place and the conditions on places, and how many of these there are."""
+    R, length = equations.stages.R[0], float(equations.s[-1])
+    held = [end.axes[:, end.held[:3]] for end in equations.ends]
+    ties = np.hstack(held)
+    many = 3 + ties.shape[1]
+    G, W = np.zeros((3 * len(R), many)), np.zeros((many, many))
+    G[:, 3 + held[0].shape[1] :] = (-2.0 / length * levers(R, equations.chain.h) @ held[1]).reshape(3 * len(R), -1)
+    W[:3, 3:], W[3:, :3] = ties, ties.T
+    return G, W, int(ties.shape[1])
+
+
+def _all_together(equations: Equations, bands: Array, G: Array, W: Array) -> int:
+    """Negative eigenvalues of [H G^t; G W] where strands press on each other, which couples rotations far apart; loads
+    may depend on the place, too."""
+    length = float(equations.s[-1])
+    S, steps = _by_place(equations), -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
+    n, unit = len(S), length / equations.stiffness
+    # the place of the start moves all nodes, a rotation those behind its segment
+    together = S[::-1, :, ::-1].cumsum(axis=0).cumsum(axis=2)[::-1, :, ::-1]
+    H, turned = _from_bands(bands), slice(3, 3 * n)
+    H[turned, turned] += unit * np.einsum("iap,ipkq,kbq->iakb", steps, together[1:, :, 1:], steps,
+                                          optimize=True).reshape(3 * n - 3, -1)  # fmt: skip
+    G[turned, :3] += unit * length * np.einsum("iap,ipq->iaq", steps, together[1:, :, 0]).reshape(-1, 3)
+    W[:3, :3] += unit * length**2 * together[0, :, 0]
+    variation = np.block([[H, G], [G.T, W]])
+    _, D, _ = ldl(0.5 * (variation + variation.T), overwrite_a=True, check_finite=False)
+    pairs = np.flatnonzero(np.diag(D, 1))  # blocks of two, each of which has one of either sign
+    alone = np.delete(np.diag(D), np.concatenate([pairs, pairs + 1]))
+    return int(np.sum(alone < 0.0)) + len(pairs)
+
+
+def _by_place(equations: Equations) -> Array:
+    """The stiffness of contact and loads by the places of the nodes (N + 1, 3, N + 1, 3)."""
+    n = len(equations.s)
+    S = equations.contact.stiffness().toarray().reshape(n, 3, n, 3)
+    segments = np.arange(n - 1)
+    for one in (0, 1):  # a segment's centre lies between its nodes
+        for other in (0, 1):
+            S[segments + one, :, segments + other] += 0.25 * equations.tangents.K
+    return np.asarray(S)
+
+
+def _from_bands(bands: Array) -> Array:
+    """The symmetric matrix with these lower bands."""
+    lower = np.zeros((bands.shape[1], bands.shape[1]))
+    for k, band in enumerate(bands):
+        np.fill_diagonal(lower[k:], band[: len(band) - k])
+    return lower + np.tril(lower, -1).T
 
 
 def _with_place(equations: Equations, softest: float) -> int:

@@ -253,10 +253,10 @@ def test_the_schema_tells_every_field_of_a_case():
 @pytest.mark.parametrize(
     ("settings", "pointer", "rule"),
     [
-        ({"contact": load_case("short-loop")["contact"]}, "/contact", "analysis static"),
         ({"ends.end": {"preset": "clamp", "switches": [{"at": 1.0, "f3": 0.0}]}}, "/ends/end", "switches"),
         ({"initial.velocity": [1.0, 0.0, 0.0]}, "", "velocity"),
         ({"numerics.tolerance": 1e-3}, "/numerics/tolerance", "analysis static: give intervals"),
+        ({"numerics.intervals": 1001, "contact": {}}, "", "intervals must be <= 1000 in a static analysis"),
     ],
 )
 def test_what_a_static_analysis_cannot_do_is_refused(settings: dict[str, Any], pointer: str, rule: str):

@@ -75,8 +75,8 @@ class SelfContact:
         """Number of pairs that press on each other."""
         return int(self.touch.pressing.many[-1]) if self.touching else 0
 
-    def prepare(self, bending: float, r: Array, velocity: Array, dt: float) -> None:
-        """Before a step of dt (s) from a state: make the list of pairs good for it."""
+    def prepare(self, bending: float, r: Array, velocity: Array, dt: float, anew: bool = False) -> None:
+        """Before a step of dt (s) from a state: make the list of pairs good for it; `anew`: also if it is yet."""
         if bending < self._not_to_be_searched:
             if self._looked:
                 self.touch.pairs.counts[:] = 0
@@ -84,7 +84,7 @@ class SelfContact:
             return
         points = self.touch.points
         place_points(points, r, velocity)
-        if not self._looked or largest_displacement(points, points.checked) > 0.25 * self._slack:
+        if anew or not self._looked or largest_displacement(points, points.checked) > 0.25 * self._slack:
             self._search(dt)
         points.start[:] = points.p
 

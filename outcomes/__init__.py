@@ -71,10 +71,11 @@ class Outcome(StrEnum):
     )
     ROD_STRETCHED = (
         "rod_stretched",
-        "the rod was no longer as long as it is by more than 10 %: its ends pull it so far, or the box method did not "
-        "keep the length of an interval",
-        "keep the ends nearer to each other than 1.1 times the rod's length; by the box method, use more intervals, a "
-        "smaller dt_max or increment_tolerance, or the method staggered or a tolerance",
+        "the rod was no longer as long as it is by more than 10 %: its ends pull or press it so far, or the box method "
+        "did not keep the length of an interval",
+        "keep the ends nearer to each other than 1.1 times the rod's length; to a straight rod that is to buckle, give "
+        "a small load across it, which says to which side; by the box method, use more intervals, a smaller dt_max or "
+        "increment_tolerance, or the method staggered or a tolerance",
         "solver",
     )
     ENERGY_MADE = (

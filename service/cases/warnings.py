@@ -15,6 +15,11 @@ from service.cases.initial import Straight
 from service.cases.quantities import ScheduleTable
 from service.cases.size import tables_in
 from solver import End, Scene
+from solver.kernels.rotation import matrix_of
+from solver.physics.axial import axial_compliance
+from solver.physics.ends import travel
+from solver.scene.layout import nodes_at_rest
+from solver.scene.view import View
 
 WIDEST, THICKEST = 3.0, 0.2
 """Diameter in m, as of the largest pipes, and in rod lengths, beyond which the theory of thin rods says little."""
@@ -22,13 +27,16 @@ MATERIALS = {"density": (10.0, 25e3), "youngs_modulus": (1e3, 2e12), "shear_modu
 """kg/m³ and Pa: from foam and soft gels to osmium and diamond; DNA (1,700 kg/m³, 0.3 GPa) is well within."""
 GRAVITY = (1.0, 30.0)
 """m/s²: less than on the moon, more than on Jupiter."""
+SHORTENED = 1e-4
+"""Part of its length by which a straight rod may be pressed shorter."""
 GREENHILL = 8.987
 """A straight rod with clamped ends buckles at the twist moment GREENHILL EJ/L (Greenhill 1883)."""
 
 
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
-    return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene), *_frames(spec)]
+    return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
+            *_column(spec, scene), *_frames(spec)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -61,7 +69,7 @@ def _gravity(spec: CaseSpec) -> Iterator[FieldError]:
 
 def _contact(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     """A rod that is twisted past buckling, and can give way, sooner or later touches itself."""
-    if spec.contact is not None or spec.analysis == "static" or not _gives_way(spec, scene):
+    if spec.contact is not None or not _gives_way(spec, scene):
         return
     s = np.linspace(0.0, spec.rod.length, 11)
     bending, torsion = (float(np.mean(scene.rod.stiffness[i](s))) for i in (0, 2))
@@ -70,6 +78,29 @@ def _contact(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
         rule = (f"is not given, but the ends twist the rod by {turned / (2 * pi):.3g} turns, and it buckles at "
                 f"{bearable / (2 * pi):.3g}: it would pass through itself")
         yield FieldError("/contact", None, rule)
+
+
+def _column(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """A straight rod whose ends press it, and that nothing pushes aside, stays straight for ever."""
+    if not isinstance(spec.initial, Straight) or axial_compliance(scene) == 0.0:
+        return
+    s, R = np.linspace(0.0, spec.rod.length, 11), np.zeros((3, 3))
+    _, quaternion, kappa = nodes_at_rest(scene.initial, s)
+    matrix_of(quaternion[0], R)
+    if not scene.keeps(View(2, s, quaternion, kappa, R)):
+        return
+    shortest = min(_travel(scene.end, R, t) - _travel(scene.start, R, t) for t in _times(scene)[::20])
+    if shortest < -SHORTENED * spec.rod.length:
+        rule = (f"has nothing across the rod, which is straight and whose ends come {-shortest:.3g} m nearer to each "
+                "other: it would be pressed shorter instead of buckling; a small load says to which side it is to bend")
+        yield FieldError("/loads", None, rule)
+
+
+def _travel(end: End, R: Any, t: float) -> float:
+    """How far an end has gone along a rod that stays straight, where it is held all the time."""
+    along = R[:, 2] if end.frame == "lab" else np.array([0.0, 0.0, 1.0])
+    return float(sum(x * travel(component[0], t) for x, component in zip(along, end.translation, strict=True)
+                     if component[0].kind != "load"))  # fmt: skip
 
 
 def _gives_way(spec: CaseSpec, scene: Scene) -> bool:

@@ -59,3 +59,36 @@ def test_a_rod_that_buckles_by_twist_needs_contact(turns: float, end: str, warne
     twist = {"t": [0.0, 1.0], "value": [0.0, turns * 6.2832], "interpolation": "linear"}
     found = told({"ends.start": {"preset": "clamp", "theta3": twist}, "ends.end": end, "t_end": 2.0})
     assert [warning.pointer for warning in found] == ["/contact"] * warned
+
+
+
+
+def _moved(x3: float) -> dict[str, Any]:
+    """A clamp, and one that moves by so much along the rod."""
+    schedule = {"t": [0.0, 1.0], "value": [0.0, x3], "interpolation": "smoothstep"}
+    return {"start": "clamp", "end": {"preset": "clamp", "frame": "lab", "x3": schedule}}
+
+
+PRESSED = {"schema_version": 1, "t_end": 1.0, "output": {"interval": 0.1}, "initial": {"shape": "straight"},
+           "rod": {"length": 1.0, "diameter": 0.01, "youngs_modulus": 1e9, "shear_modulus": 4e8, "density": 1500},
+           "ends": _moved(-0.1)}  # fmt: skip
+
+
+def _warned(case: dict[str, Any]) -> list[FieldError]:
+    spec = parse_case(case)
+    return warnings_of(spec, build_scene(spec))
+
+
+def test_a_straight_rod_that_is_pressed_and_that_nothing_bends_is_pointed_out():
+    [warning] = _warned(PRESSED)
+    assert warning.pointer == "/loads" and "0.1 m nearer" in warning.rule
+
+
+@pytest.mark.parametrize("change", [
+    {"loads": {"gravity": [-9.81, 0.0, 0.0]}},
+    {"loads": {"point": [{"s": 0.5, "force": [1e-6, 0.0, 0.0]}]}},
+    {"ends": {"start": "clamp", "end": "slider"}},
+    {"ends": _moved(0.01)},
+])  # fmt: skip
+def test_one_that_something_bends_or_that_is_pulled_is_left_alone(change: dict[str, Any]):
+    assert _warned(PRESSED | change) == []

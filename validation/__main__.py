@@ -11,8 +11,8 @@ from validation.kept import keep
 from validation.provenance import provenance
 from validation.row import Row
 
-SCENES = ("greenhill", "elastica", "statics", "post_buckling", "euler", "ring", "cantilever", "convergence",
-          "error_bars", "energy", "free_flight", "writhe", "linear_solve", "goyal", "staggered",
+SCENES = ("greenhill", "elastica", "statics", "post_buckling", "plectoneme", "euler", "ring", "cantilever",
+          "convergence", "error_bars", "energy", "free_flight", "writhe", "linear_solve", "goyal", "staggered",
           "thick_cable")  # fmt: skip
 RESULTS = Path(__file__).parent / "results"
 HEADER = f"{'':4}  {'what':<78}{'measured':>16}{'reference':>16}{'error':>11}{'aim':>10}"

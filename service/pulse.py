@@ -17,8 +17,9 @@ STILL = 20.0
 """Seconds without a beat after which a process stands still."""
 STARTING = 120.0
 """Seconds that a process may take to its first beat."""
-LOOK = 2.0
-"""The most that counts of the time between two looks: who looks may have been stopped himself."""
+LOOK = 5.0
+"""The most that counts of the time between two looks: who looks may have been stopped himself. More than lies between
+two looks on a busy machine, else silence would be counted too slowly there."""
 
 
 class Pulse:

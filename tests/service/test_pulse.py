@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from service.pulse import LOOK, STARTING, STILL, Listener, Pulse, last_beat
+from service.pulse import STARTING, STILL, Listener, Pulse, last_beat
 
 
 class Clock:
@@ -22,10 +22,10 @@ def clock() -> Clock:
 
 
 def looked(listener: Listener, clock: Clock, beat: object, seconds: float) -> bool:
-    """Look at the same beat every LOOK seconds for so long; whether it stands still then."""
+    """Look at the same beat every second for so long; whether it stands still then."""
     still = False
-    for _ in range(int(seconds / LOOK)):
-        clock.now += LOOK
+    for _ in range(int(seconds)):
+        clock.now += 1.0
         still = listener.stands_still(beat)
     return still
 

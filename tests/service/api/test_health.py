@@ -8,7 +8,7 @@ import pytest
 from sqlalchemy import update
 
 from service.jobs.leader import Leader
-from service.jobs.processes import FORGOTTEN, Presence, Roll, forget_lost
+from service.jobs.processes import EVERY, FORGOTTEN, SILENT, Presence, Roll, forget_lost
 from service.jobs.tables import processes
 from service.pulse import LOOK, Listener
 
@@ -143,6 +143,18 @@ def test_silence_is_heard_by_a_clock_that_nobody_sets(registry):
     presence.leave()
     roll.call(registry.database)
     assert [name for name in roll.silent if "worker" in name] == []
+
+
+def test_silence_is_heard_in_time_where_looks_are_slow(registry):
+    """As on a busy machine: each look at the processes takes as long as the pause before it."""
+    now = 0.0
+    roll = Roll(lambda: Listener(lambda: now))
+    Presence(registry.database, "worker").beat()
+    roll.call(registry.database)
+    while now <= SILENT:
+        now += 2 * EVERY
+        roll.call(registry.database)
+    assert [name for name in roll.silent if "worker" in name]
 
 
 @pytest.fixture

@@ -102,6 +102,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "distributed load": _part("DistributedSpec"),
     "point load": _part("PointSpec"),
     "floor": _part("FloorSpec"),
+    "obstacle": _part("ObstacleSpec"),
     "contact": _part("ContactSpec"),
     "numerics": _part("NumericsSpec"),
     "output": _part("OutputSpec"),

@@ -222,6 +222,11 @@ class LoadsSpec(TypedDict):
     floor: NotRequired[Union[FloorSpec, None]]
     """an elastic floor"""
 
+    obstacles: NotRequired[Sequence[ObstacleSpec]]
+    """bars and balls in the way: a list of objects with `start`, `end`, `radius`, `stiffness`, `friction`;
+    default []
+    """
+
     damping: NotRequired[float]
     """c: force −c ρ_c A v and moment −c I ω per length; in 1/s; default 0.0"""
 
@@ -270,6 +275,30 @@ class NumericsSpec(TypedDict):
     """also runs with intervals and steps half as long: stores the extrapolated solution, and the estimated
     error of each variable. A tolerance does so by itself; default false
     """
+
+
+class ObstacleSpec(TypedDict):
+    """An elastic obstacle with friction: all that is nearer than `radius` to the segment from `start` to
+    `end`.
+    """
+
+    start: Sequence[float]
+    """point, lab; in m"""
+
+    end: NotRequired[Union[Sequence[float], None]]
+    """point, lab; without it the obstacle is a ball about `start`; in m"""
+
+    radius: float
+    """distance at which the rod's centreline feels it; in m"""
+
+    stiffness: float
+    """k: force per length k d at the depth d of the centreline; in N/m²"""
+
+    friction: NotRequired[float]
+    """µ: friction µ k d against the motion along the surface; a plain number; default 0.0"""
+
+    slip: NotRequired[float]
+    """speed below which friction fades smoothly; in m/s; default 0.001"""
 
 
 class OutputSpec(TypedDict):
@@ -709,6 +738,7 @@ Setting = Literal[
     "loads.floor.slip",
     "loads.floor.stiffness",
     "loads.gravity",
+    "loads.obstacles",
     "loads.point",
     "name",
     "numerics",

@@ -23,9 +23,10 @@ from service.cases.quantities import (
 )
 from service.meaning import means
 from solver import Contact, DistributedLoad, Fluid, PointLoad
-from solver.physics.loads import floor
+from solver.physics.loads import floor, obstacles
 
 MOST_LOADS = 100
+MOST_OBSTACLES = 20
 NOTHING: Triple = (0.0, 0.0, 0.0)
 NEEDED = ("k1", "k2", "aperture_deg", "cutoff")
 """Constants of eq. (6) that are given all, or none."""
@@ -82,6 +83,24 @@ class FloorSpec(Spec):
         return floor.Given(self.stiffness, self.height, self.normal, self.friction, self.slip)
 
 
+class ObstacleSpec(Spec):
+    """An elastic obstacle with friction: all that is nearer than `radius` to the segment from `start` to `end`."""
+
+    start: Annotated[Triple, means("point, lab", "m")]
+    end: Annotated[
+        Triple | None, means("point, lab; without it the obstacle is a ball about `start`", "m")
+    ] = None
+    radius: Annotated[Positive, means("distance at which the rod's centreline feels it", "m")]
+    stiffness: Annotated[Positive, means("k: force per length k d at the depth d of the centreline", "N/m²")]
+    friction: Annotated[NotNegative, means("µ: friction µ k d against the motion along the surface", "1")] = 0.0
+    slip: Annotated[Positive, means("speed below which friction fades smoothly", "m/s")] = 1e-3
+
+    def build(self) -> obstacles.Given:
+        """The solver's load."""
+        return obstacles.Given(self.start, self.end or self.start, self.radius, self.stiffness, self.friction,
+                               self.slip)  # fmt: skip
+
+
 class LoadsSpec(Spec):
     """Weight, distributed and point loads, viscous damping."""
 
@@ -97,12 +116,18 @@ class LoadsSpec(Spec):
         means("loads at one place: a list of objects with `s`, `force`, `moment`, `frame`"),
     ] = ()
     floor: Annotated[FloorSpec | None, means("an elastic floor")] = None
+    obstacles: Annotated[
+        tuple[ObstacleSpec, ...],
+        Field(max_length=MOST_OBSTACLES),
+        means("bars and balls in the way: a list of objects with `start`, `end`, `radius`, `stiffness`, `friction`"),
+    ] = ()
     damping: Annotated[NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length", "1/s")] = 0.0
 
 
     def others(self) -> tuple[object, ...]:
         """The solver's loads of all other kinds."""
-        return () if self.floor is None else (self.floor.build(),)
+        solid = () if self.floor is None else (self.floor,)
+        return tuple(spec.build() for spec in (*solid, *self.obstacles))
 
 
 class FluidSpec(Spec):

@@ -50,7 +50,7 @@ class Pair:
 
 PAIRS = (
     Pair(Scene, (CaseSpec, LoadsSpec, OutputSpec, EndsSpec), {"output_interval": ("interval",), "points": ("point",),
-                                                                "loads": ("loads", "floor")},
+                                                                "loads": ("loads", "floor", "obstacles")},
          ("schema_version", "name", "title", "description", "ends", "output", "fields")),
     Pair(Rod, (RodSpec,),
          {"stiffness": ("bending_stiffness", "torsional_stiffness", "youngs_modulus", "shear_modulus"),

@@ -1,0 +1,135 @@
+"""Bars and balls with friction: what rests on them, what slides on them, and their tangents."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from service.cases import CaseError, apply_settings, build_scene, load_case, parse_case
+from solver import End, Frame, Initial, Numerics, Scene, simulate
+from solver.arrays import Array
+from solver.kernels.kernel import kernel
+from solver.physics.loads import obstacles
+from solver.physics.loads.load import Point, conservative, energy, force, tangents
+from tests.solver.methods.problem import problem
+from tests.solver.methods.test_box_tangents import LARGEST_ERROR, error
+from tests.solver.scenes import ROD
+
+METHODS = ["box", "staggered"]
+G, MU, STIFFNESS = 9.81, 0.3, 2000.0
+MASS = float(ROD.mass(np.zeros(1))[0])
+BAR = obstacles.Given((-0.1, 0.0, 0.0), (0.3, 0.1, 0.0), 0.2, STIFFNESS, MU, slip=0.2)
+BALL = obstacles.Given((0.1, 0.05, 0.3), (0.1, 0.05, 0.3), 0.25, 0.4 * STIFFNESS, 0.5 * MU, slip=0.3)
+
+
+def record(*given: obstacles.Given) -> obstacles.Record:
+    scene = Scene(ROD, Initial.straight(), End.clamp(), End.free(), 1.0, 1.0, loads=given)
+    return obstacles.of(scene, None).record  # type: ignore[arg-type, no-any-return]
+
+
+@kernel
+def act(load: obstacles.Record, at: Point):  # type: ignore[no-untyped-def]
+    return force(load, 0, 0, at)[0], tangents(load, 0, 0, at), energy(load, 0, 0, at), conservative(load, 0, 0, at)
+
+
+def at(r: Array, V: Array) -> Point:
+    zero, R = (0.0, 0.0, 0.0), ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    return Point(tuple(map(float, r)), tuple(map(float, V)), zero, (0.0, 0.0, 1.0), R, zero)
+
+
+PLACES = {"beside the bar": (0.12, 0.0, -0.1), "beyond its end": (-0.17, 0.03, -0.06),
+          "in bar and ball": (0.1, 0.0, 0.15), "outside": (0.0, 1.0, 0.0)}  # fmt: skip
+
+
+@pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
+def test_their_tangents_are_their_derivatives(place: tuple[float, float, float]) -> None:
+    load, r, V = record(BAR, BALL), np.array(place), np.array([0.3, -0.5, 0.4])
+    _, by, _, pushed = act(load, at(r, V))
+    for k, e in enumerate(1e-6 * np.eye(3)):
+        K = np.subtract(act(load, at(r + e, V))[0], act(load, at(r - e, V))[0]) / 2e-6
+        C = np.subtract(act(load, at(r, V + e))[0], act(load, at(r, V - e))[0]) / 2e-6
+        assert_allclose(np.array(by.K)[:, k], K, atol=1e-5)
+        assert_allclose(np.array(by.C)[:, k], C, atol=1e-5)
+        fall = (act(load, at(r - e, V))[2] - act(load, at(r + e, V))[2]) / 2e-6
+        assert pushed[k] == pytest.approx(fall, abs=1e-5)
+
+
+def test_a_bar_pushes_away_from_its_axis_and_a_ball_from_its_middle() -> None:
+    pushed = act(record(BAR), at(np.array([0.1, 0.05, 0.15]), np.zeros(3)))[0]
+    assert_allclose(pushed, [0.0, 0.0, STIFFNESS * 0.05], atol=1e-9)
+    pushed = act(record(BALL), at(np.array([0.1, 0.05, 0.1]), np.zeros(3)))[0]
+    assert_allclose(pushed, [0.0, 0.0, -0.4 * STIFFNESS * 0.05], atol=1e-9)
+    assert_allclose(act(record(BALL), at(np.array(BALL.start), np.zeros(3)))[0], 0.0)  # no side is the nearest there
+
+
+def test_the_box_method_has_their_tangents() -> None:
+    given = (obstacles.Given((0.0, 0.0, -0.1), (0.0, 0.0, 1.1), 0.3, 40.0, friction=0.4, slip=0.5),
+             obstacles.Given((0.1, 0.0, 0.5), (0.1, 0.0, 0.5), 0.4, 30.0))  # fmt: skip
+    assert error(problem(12, others=given)) <= LARGEST_ERROR  # type: ignore[arg-type]
+
+
+def lying(height: float, **motion: tuple[float, float, float]) -> Initial:
+    return Initial.straight((0.0, 0.0, height), (1.0, 0.0, 0.0), a1=(0.0, 1.0, 0.0), **motion)
+
+
+def frames(method: str, initial: Initial, given: obstacles.Given, t_end: float, dt: float,
+           damping: float = 0.0) -> list[Frame]:  # fmt: skip
+    numerics = Numerics(method=method, intervals=10, dt_max=dt, rho_inf=0.9)  # type: ignore[arg-type]
+    return list(simulate(Scene(ROD, initial, End.free(), End.free(), t_end, t_end / 10, gravity=(0.0, 0.0, -G),
+                               loads=(given,), numerics=numerics, damping=damping)))  # fmt: skip
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_rod_comes_to_rest_on_a_bar_that_bears_its_weight(method: str) -> None:
+    along = obstacles.Given((-1.0, 0.0, -0.5), (2.0, 0.0, -0.5), 0.5, STIFFNESS)
+    last = frames(method, lying(0.0), along, 2.0, 0.02, damping=8.0)[-1]
+    assert_allclose(last.r[:, 2], -MASS * G / STIFFNESS, rtol=1e-3)
+    assert_allclose(last.r[:, 1], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_rod_that_slides_along_a_bar_is_stopped_by_friction_which_takes_its_energy(method: str) -> None:
+    sunk, speed, slip = -MASS * G / STIFFNESS, 0.5, 1e-3
+    along = obstacles.Given((-1.0, 0.0, -5.0), (3.0, 0.0, -5.0), 5.0, STIFFNESS, MU, slip)
+    early, *_, last = frames(method, lying(sunk, velocity=(speed, 0.0, 0.0)), along, 0.4, 0.002)
+    assert early.energy_kinetic == pytest.approx(0.5 * MASS * speed**2, rel=1e-3)
+    assert np.abs(last.v).max() < 2.0 * slip
+    # it slides v^2 / (2 mu g), but for the slip at its end
+    assert last.r[0, 0] == pytest.approx(speed**2 / (2.0 * MU * G), rel=0.02)
+    assert last.dissipation == pytest.approx(early.energy_kinetic, rel=5e-3)
+    assert abs(last.energy_balance) < 5e-3 * early.energy_kinetic
+
+
+def test_both_methods_lay_a_rod_over_a_bar_across_it() -> None:
+    across = obstacles.Given((0.5, -1.0, -0.1), (0.5, 1.0, -0.1), 0.1, 20 * STIFFNESS, MU)
+    ends = []
+    for method in METHODS:
+        numerics = Numerics(method=method, intervals=80, dt_max=0.005)  # type: ignore[arg-type]
+        scene = Scene(ROD, lying(0.0), End.free(), End.free(), 4.0, 4.0, gravity=(0.0, 0.0, -G), loads=(across,),
+                      numerics=numerics, damping=10.0)  # fmt: skip
+        last = list(simulate(scene))[-1]
+        assert last.r[40, 2] == pytest.approx(0.0, abs=2e-3)  # it lies on the bar
+        assert_allclose(last.r[0] * [-1.0, 1.0, 1.0] + [1.0, 0.0, 0.0], last.r[-1], atol=1e-6)  # as in a mirror
+        ends.append(last.r[-1, 2])
+    assert ends[0] < -0.4
+    assert ends[0] == pytest.approx(ends[1], rel=2e-4)
+
+
+def test_a_case_has_obstacles() -> None:
+    bar = {"start": [0, 0, -1], "end": [1, 0, -1], "radius": 0.1, "stiffness": 50.0, "friction": 0.1}
+    ball = {"start": [0, 0, -1], "radius": 0.1, "stiffness": 50.0}
+    floor = {"stiffness": 10.0}
+    raw = apply_settings(load_case("free-flight"), {"loads.obstacles": [bar, ball], "loads.floor": floor})
+    _, *loads = build_scene(parse_case(raw)).loads
+    assert loads == [obstacles.Given((0.0, 0.0, -1.0), (1.0, 0.0, -1.0), 0.1, 50.0, 0.1),
+                     obstacles.Given((0.0, 0.0, -1.0), (0.0, 0.0, -1.0), 0.1, 50.0)]  # fmt: skip
+
+
+def test_an_obstacle_without_a_size_is_refused() -> None:
+    flat = {"start": [0, 0, 0], "radius": 0, "stiffness": 1}
+    raw = apply_settings(load_case("free-flight"), {"loads.obstacles": [flat]})
+    with pytest.raises(CaseError, match="/loads/obstacles/0/radius"):
+        parse_case(raw)
+    with pytest.raises(ValueError, match="obstacle radius must be > 0, got 0"):
+        obstacles.Given((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 1.0)

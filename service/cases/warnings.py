@@ -36,7 +36,7 @@ GREENHILL = 8.987
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
-            *_column(spec, scene), *_frames(spec)]  # fmt: skip
+            *_column(spec, scene), *_obstacles(spec), *_frames(spec)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -94,6 +94,20 @@ def _column(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
         rule = (f"has nothing across the rod, which is straight and whose ends come {-shortest:.3g} m nearer to each "
                 "other: it would be pressed shorter instead of buckling; a small load says to which side it is to bend")
         yield FieldError("/loads", None, rule)
+
+
+def _obstacles(spec: CaseSpec) -> Iterator[FieldError]:
+    """An obstacle that nodes may pass on both sides of."""
+    intervals = spec.numerics.intervals
+    if intervals is None or not spec.loads.obstacles:
+        return
+    interval = spec.rod.length / intervals
+    smallest = min(range(len(spec.loads.obstacles)), key=lambda i: spec.loads.obstacles[i].radius)
+    radius = spec.loads.obstacles[smallest].radius
+    if interval > radius:
+        rule = (f"leave {interval:.3g} m from node to node, more than the radius of {radius:.3g} m of "
+                f"/loads/obstacles/{smallest}, which could pass between them")
+        yield FieldError("/numerics/intervals", intervals, rule)
 
 
 def _travel(end: End, R: Any, t: float) -> float:

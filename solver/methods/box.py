@@ -156,8 +156,8 @@ class BoxMethod:
         return self.contact.refusal(self._measured.bending, lambda: (trial.r, trial.Y))
 
     def step_limit(self) -> float:
-        """The longest next step (s) that contact allows."""
-        return self.contact.step_limit
+        """The longest next step (s) that contact and loads allow."""
+        return min(self.contact.step_limit, self.applied.longest_step(self.state.r, self.state.Y[:, V : V + 3]))
 
     def fields(self) -> Fields:
         """The state along the rod."""

@@ -102,8 +102,8 @@ class StaggeredMethod(RadauMethod):
         return self.contact.refusal(total_bending(self.stages.bend[2]), self._trial_nodes)
 
     def step_limit(self) -> float:
-        """The longest next step (s) that contact allows."""
-        return self.contact.step_limit
+        """The longest next step (s) that contact and loads allow."""
+        return min(self.contact.step_limit, self.applied.longest_step(self._nodes[0], self._nodes[1]))
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""

@@ -1,4 +1,4 @@
-"""The mesh that a run to a tolerance begins with: fine enough for how the rod is bent and twisted."""
+"""The mesh that a run to a tolerance begins with: fine enough for its shape, its twist and its loads."""
 
 from __future__ import annotations
 
@@ -25,7 +25,13 @@ def first_mesh(scene: Scene, pressed: bool) -> int:
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
     _, _, kappa = nodes_at_rest(scene.initial, s)
     bent = float(np.sum(np.linalg.norm(kappa, axis=1)[1:] * np.diff(s)))
-    return max(ceil(log2(max(bent, twisted(scene)) / (largest * FIRST_INTERVALS) + 1e-9)), 0)
+    intervals = max(bent, twisted(scene)) / largest, *(float(scene.rod.length) / scale for scale in _scales(scene))
+    return max(ceil(log2(max(intervals) / FIRST_INTERVALS + 1e-9)), 0)
+
+
+def _scales(scene: Scene) -> list[float]:
+    """Lengths (m) of an interval that would be too long for some load."""
+    return [load.scale for load in scene.loads if hasattr(load, "scale")]
 
 
 def twisted(scene: Scene) -> float:

@@ -86,6 +86,7 @@ def test_a_smaller_tolerance_costs_more_up_to_what_is_spent_on_one():
     ({}, outlook.FOLLOWED), ({"loads__gravity": [9.81, 0, 0]}, outlook.LET_GO), ({"ends__end": "clamp"}, outlook.HELD),
     ({"loads__gravity": [9.81, 0, 0], "loads__damping": 1e3}, outlook.FOLLOWED),
     ({"loads__gravity": [9.81, 9.81, 0]}, outlook.IN_SPACE), ({"loads__floor": {"stiffness": 1.0}}, outlook.ON_FLOOR),
+    ({"loads__obstacles": [{"start": [0, 0, -9], "radius": 1.0, "stiffness": 1.0}]}, outlook.ON_FLOOR),
     ({"ends__end": {"preset": "clamp", "theta3": {"t": [0, 1], "value": [0, 20],
                                                           "interpolation": "linear"}}}, outlook.WOUND),
 ])  # fmt: skip

@@ -92,3 +92,11 @@ def test_a_straight_rod_that_is_pressed_and_that_nothing_bends_is_pointed_out():
 ])  # fmt: skip
 def test_one_that_something_bends_or_that_is_pulled_is_left_alone(change: dict[str, Any]):
     assert _warned(PRESSED | change) == []
+
+
+@pytest.mark.parametrize(("intervals", "warned"), [(10, True), (100, False)])
+def test_an_obstacle_that_fits_between_nodes_is_named(intervals: int, warned: bool):
+    balls = [{"start": [0, 0, -1], "radius": radius, "stiffness": 50.0} for radius in (0.5, 0.02)]
+    warnings = told({"loads.obstacles": balls, "numerics.intervals": intervals})
+    assert [warning.pointer for warning in warnings] == ["/numerics/intervals"] * warned
+    assert all("radius of 0.02 m of /loads/obstacles/1" in warning.rule for warning in warnings)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -33,6 +34,7 @@ class AppliedLoads:
             self.records = records_about(axis, self._sources)
         self._at_ends = tuple(load for load in scene.points if load.s in (0.0, scene.rod.length))
         self._moving = tuple(source for source in self._sources if not source.steady)
+        self._barring = tuple(source for source in self._sources if source.bars)
         self.entrained = np.zeros(len(s)) + entrained_mass(self._sources)
         """Mass per length (n,) that the rod takes along across its tangent, kg/m."""
 
@@ -69,6 +71,10 @@ class AppliedLoads:
         if self._axis is not None and self._moving:
             for mine, new in zip(self.records, records_about(self._axis, self._sources), strict=True):
                 _write(mine, new)
+
+    def longest_step(self, r: Array, V: Array) -> float:
+        """The longest step (s) from places r (n, 3) with velocities V (n, 3), lab, that passes over no load."""
+        return min((source.longest_step(r, V) for source in self._barring), default=inf)
 
     def check(self) -> None:
         """Raise what a load could not say to the kernel that asked it."""

@@ -2,7 +2,8 @@
 
 A load is a module of this folder, entered in `registry.LOADS`, with
 
-    Given       what a scene's `loads` hold, if it is no other part of a scene that gives the load;
+    Given       what a scene's `loads` hold, if it is no other part of a scene that gives the load; its `scale`, if it
+                has one, is the length (m) of a rod's interval that may be too long to feel it;
     Record      a NamedTuple of `present` and arrays, a line for each point: what its kernels read;
     of          makes the `Source` of a scene: its record, and how that changes with time;
     force       kernel: force (lab) and moment (material) per length at point j at the i-th time within a step;
@@ -18,6 +19,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from math import inf
 from typing import Any, NamedTuple
 
 from numba import types
@@ -77,6 +79,8 @@ class Source:
 
     steady = True
     """Whether the record is the same at all times."""
+    bars = False
+    """Whether a step that is too long may pass over where the load acts: then `longest_step` says so."""
     corners: tuple[float, ...] = ()
     """Times to which steps must be aligned."""
 
@@ -85,6 +89,10 @@ class Source:
 
     def set_time(self, t: float, i: int) -> None:
         """Write what acts at time t, the i-th time of a step, into the record."""
+
+    def longest_step(self, r: Array, V: Array) -> float:
+        """The longest step (s) from places r (n, 3) with velocities V (n, 3), lab."""
+        return inf
 
     def check(self) -> None:
         """Raise what the load could not say to the kernel that asked it."""

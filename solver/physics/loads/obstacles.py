@@ -21,11 +21,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, scale, times, transform, vector
 from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
 from solver.scene.checks import require_finite
 from solver.scene.scene import Scene
+
+LEAP = 0.5
+"""Part of the way to an obstacle, or of its radius, that a node may come nearer in a step."""
+SMALLEST = 1e-300
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,11 @@ class Given:
     stiffness: float
     friction: float = 0.0
     slip: float = 1e-3
+
+    @property
+    def scale(self) -> float:
+        """Nodes farther apart than this may lie on both sides of it."""
+        return self.radius
 
     def __post_init__(self) -> None:
         for name in ("start", "end"):
@@ -60,6 +70,25 @@ class Record(NamedTuple):
     constants: Any
 
 
+class Obstacles(Source):
+    """Those of a scene: a step may not leap over one."""
+
+    def __init__(self, record: Record) -> None:
+        super().__init__(record)
+        self.bars = record.present
+
+    def longest_step(self, r: Array, V: Array) -> float:
+        """In which no node comes nearer by more than LEAP of its gap, or of the radius where that is more."""
+        start, axis, (radius, *_) = self.record.start, self.record.axis, self.record.constants.T
+        away = r[:, None] - start
+        part = np.clip((away * axis).sum(axis=2) / np.maximum((axis * axis).sum(axis=1), SMALLEST), 0.0, 1.0)
+        way = away - part[:, :, None] * axis
+        distance = np.linalg.norm(way, axis=2)
+        closing = -(way * V[:, None]).sum(axis=2) / np.maximum(distance, SMALLEST)
+        allowed = LEAP * np.maximum(distance - radius, radius)
+        return float(1.0 / max(np.max(closing / allowed), SMALLEST))
+
+
 class Near(NamedTuple):
     """A place beside an obstacle: the normal n, its derivative by the place, and the depth d, 0 outside."""
 
@@ -74,7 +103,7 @@ def of(scene: Scene, samples: Samples) -> Source:
     start, end = (np.array([getattr(o, name) for o in obstacles], dtype=float).reshape(-1, 3)
                   for name in ("start", "end"))  # fmt: skip
     constants = np.array([[o.radius, o.stiffness, o.friction, o.slip] for o in obstacles]).reshape(-1, 4)
-    return Source(Record(bool(obstacles), start, end - start, constants))
+    return Obstacles(Record(bool(obstacles), start, end - start, constants))
 
 
 @inner

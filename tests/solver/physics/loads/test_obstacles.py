@@ -12,6 +12,8 @@ from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.physics.loads import obstacles
 from solver.physics.loads.load import Point, conservative, energy, force, tangents
+from solver.run.first_mesh import first_mesh
+from solver.run.plan import intervals_of
 from tests.solver.methods.problem import problem
 from tests.solver.methods.test_box_tangents import LARGEST_ERROR, error
 from tests.solver.scenes import ROD
@@ -116,6 +118,17 @@ def test_both_methods_lay_a_rod_over_a_bar_across_it() -> None:
     assert ends[0] == pytest.approx(ends[1], rel=2e-4)
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_a_rod_thrown_at_a_bar_comes_back_however_long_the_steps(method: str) -> None:
+    """A step may be twenty times as long as it takes to fly through the bar."""
+    speed, radius = 20.0, 0.05
+    bar = obstacles.Given((-1.0, 0.0, -0.52), (2.0, 0.0, -0.52), radius, 4.0 * MASS * (speed / radius) ** 2)
+    numerics = Numerics(method=method, intervals=10, dt_max=0.1)  # type: ignore[arg-type]
+    thrown = lying(0.0, velocity=(0.0, 0.0, -speed))
+    *_, last = simulate(Scene(ROD, thrown, End.free(), End.free(), 0.2, 0.2, loads=(bar,), numerics=numerics))
+    assert last.r[:, 2].min() > 0.0
+
+
 def test_a_case_has_obstacles() -> None:
     bar = {"start": [0, 0, -1], "end": [1, 0, -1], "radius": 0.1, "stiffness": 50.0, "friction": 0.1}
     ball = {"start": [0, 0, -1], "radius": 0.1, "stiffness": 50.0}
@@ -133,3 +146,9 @@ def test_an_obstacle_without_a_size_is_refused() -> None:
         parse_case(raw)
     with pytest.raises(ValueError, match="obstacle radius must be > 0, got 0"):
         obstacles.Given((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 1.0)
+
+
+def test_to_a_tolerance_the_first_mesh_is_no_coarser_than_an_obstacle() -> None:
+    ball = obstacles.Given((0.5, 0.0, -0.5), (0.5, 0.0, -0.5), 0.012, STIFFNESS)
+    scene = Scene(ROD, lying(0.0), End.free(), End.free(), 1.0, 1.0, gravity=(0.0, 0.0, -G), loads=(ball,))
+    assert intervals_of(first_mesh(scene, pressed=False)) == 128

@@ -20,8 +20,7 @@ from solver.kernels.rotation import rotate
 from solver.methods.space.one_axis.axis import axis_of
 from solver.physics.axial import axial_compliance
 from solver.physics.elasticity import elasticity_of, moments, principal
-from solver.physics.loads.floor import Given as Floor
-from solver.physics.loads.obstacles import Given as Obstacle
+from solver.physics.loads import solids
 from solver.physics.section import sample
 from solver.run.first_mesh import twisted
 from solver.scene.ends import End
@@ -48,7 +47,7 @@ def likely_seconds(scene: Scene) -> float:
         return WOUND
     if axial_compliance(scene) > 0.0:
         return HELD
-    if any(isinstance(load, Floor | Obstacle) for load in scene.loads):
+    if any(isinstance(load, solids.Given) for load in scene.loads):
         return ON_FLOOR
     if overdamped:
         return FOLLOWED

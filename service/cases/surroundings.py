@@ -23,7 +23,7 @@ from service.cases.quantities import (
 )
 from service.meaning import means
 from solver import Contact, DistributedLoad, Fluid, PointLoad
-from solver.physics.loads import floor, obstacles
+from solver.physics.loads.solids import Floor, Obstacle
 
 MOST_LOADS = 100
 MOST_OBSTACLES = 20
@@ -78,9 +78,9 @@ class FloorSpec(Spec):
             raise refusal("normal", self.normal, "must not be zero")
         return self
 
-    def build(self) -> floor.Given:
+    def build(self) -> Floor:
         """The solver's load."""
-        return floor.Given(self.stiffness, self.height, self.normal, self.friction, self.slip)
+        return Floor(self.stiffness, self.height, self.normal, self.friction, self.slip)
 
 
 class ObstacleSpec(Spec):
@@ -95,10 +95,10 @@ class ObstacleSpec(Spec):
     friction: Annotated[NotNegative, means("µ: friction µ k d against the motion along the surface", "1")] = 0.0
     slip: Annotated[Positive, means("speed below which friction fades smoothly", "m/s")] = 1e-3
 
-    def build(self) -> obstacles.Given:
+    def build(self) -> Obstacle:
         """The solver's load."""
-        return obstacles.Given(self.start, self.end or self.start, self.radius, self.stiffness, self.friction,
-                               self.slip)  # fmt: skip
+        end = self.start if self.end is None else self.end
+        return Obstacle(self.start, end, self.radius, self.stiffness, self.friction, self.slip)
 
 
 class LoadsSpec(Spec):

@@ -24,7 +24,7 @@ from solver import (
     simulate,
 )
 from solver.arrays import Array
-from solver.physics.loads.floor import Given as Floor
+from solver.physics.loads.solids import Floor
 from solver.scene.ends import FIXED
 from solver.scene.layout import nodes_at_rest
 from solver.statics.contact import StaticContact

@@ -1,4 +1,4 @@
-"""Bars and balls with friction: what rests on them, what slides on them, and their tangents."""
+"""Floors, bars and balls with friction: what rests on them, what slides on them, and their tangents."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from service.cases import CaseError, apply_settings, build_scene, load_case, par
 from solver import End, Frame, Initial, Numerics, Scene, simulate
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
-from solver.physics.loads import obstacles
+from solver.physics.loads import solids
 from solver.physics.loads.load import Point, conservative, energy, force, tangents
+from solver.physics.loads.solids import Floor, Obstacle
 from solver.run.first_mesh import first_mesh
 from solver.run.plan import intervals_of
 from tests.solver.methods.problem import problem
@@ -21,17 +22,18 @@ from tests.solver.scenes import ROD
 METHODS = ["box", "staggered"]
 G, MU, STIFFNESS = 9.81, 0.3, 2000.0
 MASS = float(ROD.mass(np.zeros(1))[0])
-BAR = obstacles.Given((-0.1, 0.0, 0.0), (0.3, 0.1, 0.0), 0.2, STIFFNESS, MU, slip=0.2)
-BALL = obstacles.Given((0.1, 0.05, 0.3), (0.1, 0.05, 0.3), 0.25, 0.4 * STIFFNESS, 0.5 * MU, slip=0.3)
+BAR = Obstacle((-0.1, 0.0, 0.0), (0.3, 0.1, 0.0), 0.2, STIFFNESS, MU, slip=0.2)
+FLOOR = Floor(STIFFNESS, 0.1, (0.6, 0.0, 0.8), MU, slip=0.2)
+BALL = Obstacle((0.1, 0.05, 0.3), (0.1, 0.05, 0.3), 0.25, 0.4 * STIFFNESS, 0.5 * MU, slip=0.3)
 
 
-def record(*given: obstacles.Given) -> obstacles.Record:
+def record(*given: solids.Given) -> solids.Record:
     scene = Scene(ROD, Initial.straight(), End.clamp(), End.free(), 1.0, 1.0, loads=given)
-    return obstacles.of(scene, None).record  # type: ignore[arg-type, no-any-return]
+    return solids.of(scene, None).record  # type: ignore[arg-type, no-any-return]
 
 
 @kernel
-def act(load: obstacles.Record, at: Point):  # type: ignore[no-untyped-def]
+def act(load: solids.Record, at: Point):  # type: ignore[no-untyped-def]
     return force(load, 0, 0, at)[0], tangents(load, 0, 0, at), energy(load, 0, 0, at), conservative(load, 0, 0, at)
 
 
@@ -41,12 +43,13 @@ def at(r: Array, V: Array) -> Point:
 
 
 PLACES = {"beside the bar": (0.12, 0.0, -0.1), "beyond its end": (-0.17, 0.03, -0.06),
-          "in bar and ball": (0.1, 0.0, 0.15), "outside": (0.0, 1.0, 0.0)}  # fmt: skip
+          "in bar and ball": (0.1, 0.0, 0.15), "below the floor": (-0.4, 0.1, -0.3),
+          "outside": (0.3, 1.0, 0.0)}  # fmt: skip
 
 
 @pytest.mark.parametrize("place", PLACES.values(), ids=PLACES)
 def test_their_tangents_are_their_derivatives(place: tuple[float, float, float]) -> None:
-    load, r, V = record(BAR, BALL), np.array(place), np.array([0.3, -0.5, 0.4])
+    load, r, V = record(BAR, BALL, FLOOR), np.array(place), np.array([0.3, -0.5, 0.4])
     _, by, _, pushed = act(load, at(r, V))
     for k, e in enumerate(1e-6 * np.eye(3)):
         K = np.subtract(act(load, at(r + e, V))[0], act(load, at(r - e, V))[0]) / 2e-6
@@ -66,8 +69,9 @@ def test_a_bar_pushes_away_from_its_axis_and_a_ball_from_its_middle() -> None:
 
 
 def test_the_box_method_has_their_tangents() -> None:
-    given = (obstacles.Given((0.0, 0.0, -0.1), (0.0, 0.0, 1.1), 0.3, 40.0, friction=0.4, slip=0.5),
-             obstacles.Given((0.1, 0.0, 0.5), (0.1, 0.0, 0.5), 0.4, 30.0))  # fmt: skip
+    given = (Floor(40.0, 0.01, (0.1, 0.2, 1.0), friction=0.4, slip=0.5),
+             Obstacle((0.0, 0.0, -0.1), (0.0, 0.0, 1.1), 0.3, 40.0, friction=0.4, slip=0.5),
+             Obstacle((0.1, 0.0, 0.5), (0.1, 0.0, 0.5), 0.4, 30.0))  # fmt: skip
     assert error(problem(12, others=given)) <= LARGEST_ERROR  # type: ignore[arg-type]
 
 
@@ -75,36 +79,56 @@ def lying(height: float, **motion: tuple[float, float, float]) -> Initial:
     return Initial.straight((0.0, 0.0, height), (1.0, 0.0, 0.0), a1=(0.0, 1.0, 0.0), **motion)
 
 
-def frames(method: str, initial: Initial, given: obstacles.Given, t_end: float, dt: float,
+def frames(method: str, initial: Initial, given: solids.Given, t_end: float, dt: float,
            damping: float = 0.0) -> list[Frame]:  # fmt: skip
     numerics = Numerics(method=method, intervals=10, dt_max=dt, rho_inf=0.9)  # type: ignore[arg-type]
     return list(simulate(Scene(ROD, initial, End.free(), End.free(), t_end, t_end / 10, gravity=(0.0, 0.0, -G),
                                loads=(given,), numerics=numerics, damping=damping)))  # fmt: skip
 
 
+ON = {"floor": Floor(STIFFNESS), "bar": Obstacle((-1.0, 0.0, -0.5), (2.0, 0.0, -0.5), 0.5, STIFFNESS)}
+
+
 @pytest.mark.parametrize("method", METHODS)
-def test_a_rod_comes_to_rest_on_a_bar_that_bears_its_weight(method: str) -> None:
-    along = obstacles.Given((-1.0, 0.0, -0.5), (2.0, 0.0, -0.5), 0.5, STIFFNESS)
-    last = frames(method, lying(0.0), along, 2.0, 0.02, damping=8.0)[-1]
+@pytest.mark.parametrize("solid", ON.values(), ids=ON)
+def test_a_rod_comes_to_rest_where_a_solid_bears_its_weight(solid: solids.Given, method: str) -> None:
+    last = frames(method, lying(0.0), solid, 2.0, 0.02, damping=8.0)[-1]
     assert_allclose(last.r[:, 2], -MASS * G / STIFFNESS, rtol=1e-3)
     assert_allclose(last.r[:, 1], 0.0, atol=1e-9)
 
 
+def test_a_rod_lies_in_the_valley_between_two_floors() -> None:
+    slopes = tuple(Floor(STIFFNESS, normal=(0.0, side, 1.0)) for side in (-1.0, 1.0))
+    numerics = Numerics(method="staggered", intervals=10, dt_max=0.02)
+    *_, last = simulate(Scene(ROD, lying(0.0), End.free(), End.free(), 2.0, 2.0, gravity=(0.0, 0.0, -G), loads=slopes,
+                              damping=8.0, numerics=numerics))  # fmt: skip
+    # each bears k d with d = depth / sqrt 2, of which 1 / sqrt 2 is upwards
+    assert_allclose(last.r[:, 2], -MASS * G / STIFFNESS, rtol=1e-3)
+    assert_allclose(last.r[:, 1], 0.0, atol=1e-9)
+
+
+SLOW = 1e-3
+UNDER = {"floor": Floor(STIFFNESS, friction=MU, slip=SLOW),
+         "bar": Obstacle((-1.0, 0.0, -5.0), (3.0, 0.0, -5.0), 5.0, STIFFNESS, MU, SLOW)}  # fmt: skip
+
+
 @pytest.mark.parametrize("method", METHODS)
-def test_a_rod_that_slides_along_a_bar_is_stopped_by_friction_which_takes_its_energy(method: str) -> None:
-    sunk, speed, slip = -MASS * G / STIFFNESS, 0.5, 1e-3
-    along = obstacles.Given((-1.0, 0.0, -5.0), (3.0, 0.0, -5.0), 5.0, STIFFNESS, MU, slip)
-    early, *_, last = frames(method, lying(sunk, velocity=(speed, 0.0, 0.0)), along, 0.4, 0.002)
+@pytest.mark.parametrize(("solid", "way"), [("floor", 1), ("bar", 0)])
+def test_a_rod_that_slides_is_stopped_by_friction_which_takes_its_energy(solid: str, way: int, method: str) -> None:
+    """Across itself on a floor, along itself on a bar."""
+    sunk, speed = -MASS * G / STIFFNESS, 0.5
+    thrown = lying(sunk, velocity=(0.0, speed, 0.0) if way else (speed, 0.0, 0.0))
+    early, *_, last = frames(method, thrown, UNDER[solid], 0.4, 0.002)
     assert early.energy_kinetic == pytest.approx(0.5 * MASS * speed**2, rel=1e-3)
-    assert np.abs(last.v).max() < 2.0 * slip
+    assert np.abs(last.v).max() < 2.0 * SLOW
     # it slides v^2 / (2 mu g), but for the slip at its end
-    assert last.r[0, 0] == pytest.approx(speed**2 / (2.0 * MU * G), rel=0.02)
+    assert (last.r[:, way].mean() if way else last.r[0, 0]) == pytest.approx(speed**2 / (2.0 * MU * G), rel=0.02)
     assert last.dissipation == pytest.approx(early.energy_kinetic, rel=5e-3)
     assert abs(last.energy_balance) < 5e-3 * early.energy_kinetic
 
 
 def test_both_methods_lay_a_rod_over_a_bar_across_it() -> None:
-    across = obstacles.Given((0.5, -1.0, -0.1), (0.5, 1.0, -0.1), 0.1, 20 * STIFFNESS, MU)
+    across = Obstacle((0.5, -1.0, -0.1), (0.5, 1.0, -0.1), 0.1, 20 * STIFFNESS, MU)
     ends = []
     for method in METHODS:
         numerics = Numerics(method=method, intervals=80, dt_max=0.005)  # type: ignore[arg-type]
@@ -122,21 +146,21 @@ def test_both_methods_lay_a_rod_over_a_bar_across_it() -> None:
 def test_a_rod_thrown_at_a_bar_comes_back_however_long_the_steps(method: str) -> None:
     """A step may be twenty times as long as it takes to fly through the bar."""
     speed, radius = 20.0, 0.05
-    bar = obstacles.Given((-1.0, 0.0, -0.52), (2.0, 0.0, -0.52), radius, 4.0 * MASS * (speed / radius) ** 2)
+    bar = Obstacle((-1.0, 0.0, -0.52), (2.0, 0.0, -0.52), radius, 4.0 * MASS * (speed / radius) ** 2)
     numerics = Numerics(method=method, intervals=10, dt_max=0.1)  # type: ignore[arg-type]
     thrown = lying(0.0, velocity=(0.0, 0.0, -speed))
     *_, last = simulate(Scene(ROD, thrown, End.free(), End.free(), 0.2, 0.2, loads=(bar,), numerics=numerics))
     assert last.r[:, 2].min() > 0.0
 
 
-def test_a_case_has_obstacles() -> None:
+def test_a_case_has_a_floor_and_obstacles() -> None:
     bar = {"start": [0, 0, -1], "end": [1, 0, -1], "radius": 0.1, "stiffness": 50.0, "friction": 0.1}
     ball = {"start": [0, 0, -1], "radius": 0.1, "stiffness": 50.0}
-    floor = {"stiffness": 10.0}
+    floor = {"stiffness": 10.0, "height": -0.2, "friction": 0.1}
     raw = apply_settings(load_case("free-flight"), {"loads.obstacles": [bar, ball], "loads.floor": floor})
-    _, *loads = build_scene(parse_case(raw)).loads
-    assert loads == [obstacles.Given((0.0, 0.0, -1.0), (1.0, 0.0, -1.0), 0.1, 50.0, 0.1),
-                     obstacles.Given((0.0, 0.0, -1.0), (0.0, 0.0, -1.0), 0.1, 50.0)]  # fmt: skip
+    assert build_scene(parse_case(raw)).loads == (
+        Floor(10.0, -0.2, (0.0, 0.0, 1.0), 0.1, 1e-3), Obstacle((0.0, 0.0, -1.0), (1.0, 0.0, -1.0), 0.1, 50.0, 0.1),
+        Obstacle((0.0, 0.0, -1.0), (0.0, 0.0, -1.0), 0.1, 50.0))  # fmt: skip
 
 
 def test_an_obstacle_without_a_size_is_refused() -> None:
@@ -145,10 +169,10 @@ def test_an_obstacle_without_a_size_is_refused() -> None:
     with pytest.raises(CaseError, match="/loads/obstacles/0/radius"):
         parse_case(raw)
     with pytest.raises(ValueError, match="obstacle radius must be > 0, got 0"):
-        obstacles.Given((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 1.0)
+        Obstacle((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 0.0, 1.0)
 
 
 def test_to_a_tolerance_the_first_mesh_is_no_coarser_than_an_obstacle() -> None:
-    ball = obstacles.Given((0.5, 0.0, -0.5), (0.5, 0.0, -0.5), 0.012, STIFFNESS)
+    ball = Obstacle((0.5, 0.0, -0.5), (0.5, 0.0, -0.5), 0.012, STIFFNESS)
     scene = Scene(ROD, lying(0.0), End.free(), End.free(), 1.0, 1.0, gravity=(0.0, 0.0, -G), loads=(ball,))
     assert intervals_of(first_mesh(scene, pressed=False)) == 128

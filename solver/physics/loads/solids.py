@@ -1,0 +1,244 @@
+"""Elastic solids with friction: a floor, and rounded bars and balls, which push the rod out, and rub where it slides.
+
+With the depth d of the centreline below a solid's surface, its unit normal n outwards there, and the velocity V_t along
+the surface,
+
+    B = k d n - mu k d V_t / sqrt(|V_t|^2 + v0^2),
+
+Coulomb's friction, smooth below the slip speed v0. A floor is all below a plane. An obstacle is all that is nearer than
+its radius to a segment: a bar with round ends, or a ball where both ends are one point. With c the segment's point
+nearest to the place r, n = (r - c) / |r - c|, d = radius - |r - c|, and
+
+    dn/dr = (I - n n^t - a a^t) / |r - c|,
+
+a the direction of the segment where c lies within it, and nothing beyond its ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.kernel import inner
+from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, times, vector
+from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
+from solver.scene.checks import require_finite
+from solver.scene.scene import Scene
+
+LEAP = 0.5
+"""Part of the way to an obstacle, or of its radius, that a node may come nearer in a step."""
+SMALLEST = 1e-300
+
+
+@dataclass(frozen=True)
+class Floor:
+    """A floor through the lab point `height` normal (m), of stiffness k (N/m^2), friction mu and slip speed v0 (m/s).
+
+    `normal` (lab, of any length > 0) points out of it.
+    """
+
+    stiffness: float
+    height: float = 0.0
+    normal: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    friction: float = 0.0
+    slip: float = 1e-3
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.normal).all() and any(self.normal)):
+            raise ValueError(f"floor normal must be finite and not zero, got {self.normal}")
+        _check("floor", self, "stiffness", "slip")
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """An obstacle about the segment from `start` to `end` (lab, m), of stiffness k (N/m^2), friction mu and slip speed
+    v0 (m/s). `radius` (m): that at which the centreline of the rod feels it.
+    """
+
+    start: tuple[float, float, float]
+    end: tuple[float, float, float]
+    radius: float
+    stiffness: float
+    friction: float = 0.0
+    slip: float = 1e-3
+
+    @property
+    def scale(self) -> float:
+        """Nodes farther apart than this may lie on both sides of it."""
+        return self.radius
+
+    def __post_init__(self) -> None:
+        require_finite("obstacle start", self.start)
+        require_finite("obstacle end", self.end)
+        _check("obstacle", self, "radius", "stiffness", "slip")
+
+
+Given = Floor | Obstacle
+
+
+def _check(name: str, solid: Given, *positive: str) -> None:
+    for field in positive:
+        if not (np.isfinite(getattr(solid, field)) and getattr(solid, field) > 0.0):
+            raise ValueError(f"{name} {field} must be > 0, got {getattr(solid, field)}")
+    if not (np.isfinite(solid.friction) and solid.friction >= 0.0):
+        raise ValueError(f"{name} friction must be >= 0, got {solid.friction}")
+
+
+class Record(NamedTuple):
+    """A line for each solid: `flat`, whether it is a floor; `start`, and `axis` to its other end (m, 3), of a floor 0
+    and its unit normal; `radius`, of a floor its height, `stiffness`, `friction`, `slip` (m,)."""
+
+    present: bool
+    flat: Any
+    start: Any
+    axis: Any
+    radius: Any
+    stiffness: Any
+    friction: Any
+    slip: Any
+
+
+class Solids(Source):
+    """Those of a scene: a step may leap over no obstacle."""
+
+    def __init__(self, record: Record) -> None:
+        super().__init__(record)
+        self.bars = not record.flat.all()
+
+    def longest_step(self, r: Array, V: Array) -> float:
+        """In which no node comes nearer by more than LEAP of its gap, or of the radius where that is more."""
+        curved = ~self.record.flat
+        start, axis, radius = (array[curved] for array in (self.record.start, self.record.axis, self.record.radius))
+        away = r[:, None] - start
+        part = np.clip((away * axis).sum(axis=2) / np.maximum((axis * axis).sum(axis=1), SMALLEST), 0.0, 1.0)
+        way = away - part[:, :, None] * axis
+        distance = np.linalg.norm(way, axis=2)
+        closing = -(way * V[:, None]).sum(axis=2) / np.maximum(distance, SMALLEST)
+        allowed = LEAP * np.maximum(distance - radius, radius)
+        return float(1.0 / max(np.max(closing / allowed), SMALLEST))
+
+
+class Near(NamedTuple):
+    """A place beside a solid: the depth d, 0 outside, the normal n, and what n turns by as the place moves: a, 0 where
+    it turns in all directions, and the `curvature` 1 / |r - c|."""
+
+    d: float
+    n: Any
+    a: Any
+    curvature: float
+
+
+def of(scene: Scene, samples: Samples) -> Source:
+    """The solids of a scene."""
+    solids = [load for load in scene.loads if isinstance(load, Given)]
+    lines = [_flat(solid) if isinstance(solid, Floor) else _round(solid) for solid in solids]
+    start, axis = (np.array([line[i] for line in lines], dtype=float).reshape(-1, 3) for i in range(2))
+    radius = np.array([line[2] for line in lines], dtype=float)
+    stiffness, friction, slip = (np.array([getattr(solid, name) for solid in solids], dtype=float)
+                                 for name in ("stiffness", "friction", "slip"))  # fmt: skip
+    flat = np.array([isinstance(solid, Floor) for solid in solids], dtype=bool)
+    return Solids(Record(bool(solids), flat, start, axis, radius, stiffness, friction, slip))
+
+
+def _flat(floor: Floor) -> tuple[Array, Array, float]:
+    normal = np.array(floor.normal, dtype=float)
+    return np.zeros(3), normal / np.linalg.norm(normal), floor.height
+
+
+def _round(obstacle: Obstacle) -> tuple[Array, Array, float]:
+    start = np.array(obstacle.start, dtype=float)
+    return start, np.array(obstacle.end, dtype=float) - start, obstacle.radius
+
+
+@inner
+def near(load: Record, k: int, at: Point) -> Near:
+    """How a place lies to solid k. On an obstacle's axis, where no side is the nearest, nothing pushes."""
+    axis, away = vector(load.axis, k), minus(at.r, vector(load.start, k))
+    if load.flat[k]:
+        return Near(max(load.radius[k] - dot(axis, away), 0.0), axis, times(0.0, axis), 0.0)
+    square, along = dot(axis, axis), dot(away, axis)
+    within = 0.0 < along < square
+    part = along / square if within else (1.0 if along > 0.0 else 0.0)
+    way = minus(away, times(part, axis))
+    distance = norm(way)
+    curvature = 1.0 / distance if distance > 0.0 else 0.0
+    d = max(load.radius[k] - distance, 0.0) if distance > 0.0 else 0.0
+    return Near(d, times(curvature, way), times(1.0 / sqrt(square) if within else 0.0, axis), curvature)
+
+
+@inner
+def turning(near: Near, x: Any) -> Any:
+    """dn/dr x."""
+    across = plus(x, times(-dot(near.n, x), near.n))
+    return times(near.curvature, plus(across, times(-dot(near.a, x), near.a)))
+
+
+@inner
+def sliding(v0: float, n: Any, at: Point) -> Any:
+    """V_t / sqrt(|V_t|^2 + v0^2), and the square root."""
+    V_t = plus(at.V, times(-dot(n, at.V), n))
+    speed = sqrt(dot(V_t, V_t) + v0 * v0)
+    return times(1.0 / speed, V_t), speed
+
+
+@inner
+def conservative(load: Record, i: int, j: int, at: Point) -> Any:
+    """The sum of k d n."""
+    total = times(0.0, at.r)
+    for m in range(len(load.radius)):
+        by = near(load, m, at)
+        total = plus(total, times(load.stiffness[m] * by.d, by.n))
+    return total
+
+
+@inner
+def force(load: Record, i: int, j: int, at: Point) -> Any:
+    """The sum of B."""
+    total = conservative(load, i, j, at)
+    for m in range(len(load.radius)):
+        by = near(load, m, at)
+        w, _ = sliding(load.slip[m], by.n, at)
+        total = plus(total, times(-load.friction[m] * load.stiffness[m] * by.d, w))
+    return total, None
+
+
+@inner
+def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
+    """By place and by velocity.
+
+    With w = V_t / sqrt(...): dd = -n . dr, dw = (I - w w^t) dV_t / sqrt(...), and
+    dV_t = (I - n n^t) dV - (n V^t + (n . V) I) dn.
+    """
+    K, C = identity(0.0, at.r), identity(0.0, at.r)
+    for m in range(len(load.radius)):
+        by = near(load, m, at)
+        if by.d > 0.0:
+            k, n, (w, speed) = load.stiffness[m], by.n, sliding(load.slip[m], by.n, at)
+            pressed, rubbed, leaving = k * by.d, load.friction[m] * k * by.d / speed, dot(by.n, at.V)
+            turned = by.curvature * (pressed + rubbed * leaving)
+            K = add(K, identity(turned, n))
+            K = add(K, outer(plus(times(-k - turned, n), times(load.friction[m] * k, w)), n))
+            K = add(K, outer(times(-turned, by.a), by.a))
+            K = add(K, outer(times(rubbed, n), turning(by, at.V)))
+            K = add(K, outer(times(-rubbed * leaving, w), turning(by, w)))
+            C = add(C, add(identity(-rubbed, n), add(outer(times(rubbed, n), n), outer(times(rubbed, w), w))))
+    return Tangents(K, C, None, None, None, None, None)
+
+
+@inner
+def energy(load: Record, i: int, j: int, at: Point) -> float:
+    """The sum of 1/2 k d^2."""
+    total = 0.0
+    for m in range(len(load.radius)):
+        total += 0.5 * load.stiffness[m] * near(load, m, at).d ** 2
+    return total
+
+
+@inner
+def account(load: Record) -> int:
+    """Friction is lost."""
+    return LOST

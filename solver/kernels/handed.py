@@ -128,7 +128,7 @@ def _format(kind: Any) -> str:
 def _parts(value: Any) -> list[Any]:
     """What `struct` writes of records; of an array an address that nobody owns."""
     if isinstance(value, tuple):
-        return [part for one in value for part in _parts(one)]
+        return [part for record in value for part in _parts(record)]
     if isinstance(value, np.ndarray):
         return [0, 0, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides]
     return [] if value is None else [np.asarray(value).tobytes()]

@@ -150,14 +150,14 @@ class _Loop:
     def _give(self, value: Any) -> None:
         """Write the results into their rows."""
         values = value.elts if isinstance(value, ast.Tuple) and len(self.outputs) > 1 else [value]
-        for (name, shape), one in zip(self.outputs.items(), values, strict=True):
+        for (name, shape), result in zip(self.outputs.items(), values, strict=True):
             to = [f"_{name}[{k}, __m]" for k in range(_width(shape))]
-            self.phases[-1].append(f"{', '.join(to)} = {', '.join(self._numbers(one))}")
+            self.phases[-1].append(f"{', '.join(to)} = {', '.join(self._numbers(result))}")
 
     def _targets(self, target: ast.expr, width: int) -> list[str]:
         """The names of the numbers that are assigned."""
         if isinstance(target, ast.Tuple):
-            return [name for one in target.elts for name in self._targets(one, 1)]
+            return [name for part in target.elts for name in self._targets(part, 1)]
         if not isinstance(target, ast.Name) or target.id in self.inputs:
             raise SyntaxError(f"{self.function.__qualname__} eight abreast: {ast.unparse(target)} cannot be assigned")
         self.widths[target.id] = width
@@ -177,12 +177,12 @@ class _Loop:
         return 1
 
     def _numbers(self, value: ast.expr) -> list[str]:
-        """The numbers that a value is, as they are computed; one text of several for a call."""
+        """The numbers that a value is, as they are computed; a single text for a call."""
         if isinstance(value, ast.Call):
             arguments = [text for argument in value.args for text in self._handed(argument)]
             return [f"{value.func.id}({', '.join(arguments)})"]  # type: ignore[attr-defined]
         if isinstance(value, ast.Tuple):
-            return [self._number(one, 0) for one in value.elts]
+            return [self._number(part, 0) for part in value.elts]
         return [self._number(value, k) for k in range(self._length(value))]
 
     def _handed(self, argument: ast.expr) -> list[str]:

@@ -22,6 +22,9 @@ LONGEST, FIRST, SHORTEST = 0.5, 0.05, 1e-8
 """Lengths of a step: rms rotation (rad) of the sections and part of t_end."""
 SHARPEST = 0.9
 """Least cosine of the angle by which a branch may turn in a step."""
+KINK = 1e-4
+"""Longest step in which it may turn as sharply as it likes, as where the rod comes to lie on a solid: back across the
+direction that it had, even, so that only a step to a given q finds it; q goes on."""
 EASY_ITERATIONS, MOST_ITERATIONS = 5, 10
 TOLERANCE = 1e-10
 """Remaining correction, rotation (rad) and force relative to EJ/L^2 and to its largest, at an equilibrium."""
@@ -106,12 +109,15 @@ class Path:
             lands = abs(dq) > STEEP and length * abs(dq) > room * (1.0 - 1e-9)
             guess = point.moved(length * self.direction.z, forward * room if lands else length * dq)
             self._equations.look_ahead(point, guess)
-            end = self._correct(guess, None if lands else self.direction)
+            end, kinked = self._correct(guess, None if lands else self.direction), False
+            if end is None and length < KINK:
+                end, kinked = self._correct(guess, None), True
             if end is not None and not self._equations.refusal():
                 cornered = lands and room == to_corner
-                direction = self._direction(end, forward if cornered else 0.0)
+                direction = self._direction(end, forward if cornered or kinked else 0.0)
                 modes = negative_modes(self._equations)
-                smooth = cornered or direction.dot(self.direction.z, dq) > SHARPEST
+                kinked = kinked or (length < KINK and direction.dq * dq > 0.0)
+                smooth = cornered or kinked or direction.dot(self.direction.z, dq) > SHARPEST
                 if smooth and (modes == self.modes or direction.dq * dq < 0.0 or length < CROSSING):
                     swept, part = (room, 1.0) if lands else _sweep(end.q - point.q, dq, direction.dq, length, room)
                     if part > 0.99:

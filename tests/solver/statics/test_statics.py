@@ -8,6 +8,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 
 from solver import (
     FIXED,
@@ -22,6 +23,7 @@ from solver import (
     Numerics,
     Outcome,
     PointLoad,
+    Rod,
     RunFailed,
     Scene,
     constant_vector,
@@ -29,6 +31,7 @@ from solver import (
 )
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
+from solver.physics.loads.solids import Floor, Obstacle
 from solver.statics.equations import FORCE, PSI, Equations, X, levers
 from tests.solver.scenes import ARC, ARC_ROD, DENSITY, DIAMETER, EJ, GJ, LENGTH, ROD, arc, last, turned_clamp
 
@@ -293,3 +296,16 @@ def test_at_a_clamp_the_moment_is_the_one_that_acts_there_and_curvature_goes_wit
     acting = sign * (torque + np.cross(frame.r[there] - frame.r[here], force))
     assert rotate(frame.orientation[[here]], frame.q[[here]])[0] == pytest.approx(acting, abs=1e-9 * EJ)
     assert frame.kappa[here] == pytest.approx(frame.q[here] / [EJ, EJ, GJ], abs=1e-9)
+
+
+@pytest.mark.parametrize("solid", [Floor(2000.0, -0.05), Obstacle((0.5, -1.0, -0.1), (0.5, 1.0, -0.1), 0.05, 2000.0)])
+def test_a_cantilever_comes_to_lie_on_a_solid_as_one_that_falls_there_does(solid: Floor | Obstacle) -> None:
+    """Where a node touches, the branch turns sharply: back across the direction that it had, on the floor."""
+    rod, initial = Rod.circular(1.0, 0.01, 1e7, 4e6, 1500.0), Initial.straight((0, 0, 0), (1, 0, 0), a1=(0, 1, 0))
+    scene = Scene(rod, initial, End.clamp(), End.free(), 20.0, 20.0, gravity=(0.0, 0.0, -9.81), damping=10.0,
+                  loads=(solid,), numerics=Numerics(method="staggered", intervals=40, dt_max=0.05))  # fmt: skip
+    *_, fallen = simulate(scene)
+    *_, lying = simulate(replace(scene, analysis="static", t_end=1.0, output_interval=1.0))
+    assert np.abs(fallen.v).max() < 1e-6
+    assert_allclose(lying.r, fallen.r, atol=1e-5)
+    assert lying.negative_modes == 0

@@ -113,9 +113,9 @@ def _steps_taken(database: Database) -> int:
         return int(connection.scalar(select(func.sum(jobs.c.steps + jobs.c.steps_redone))) or 0)
 
 
-def keep_open(target: Target, most: int, stopped: threading.Event) -> None:
-    """Keep some jobs open."""
-    while not stopped.wait(0.05):
+def keep_open(target: Target, most: int, stopped: threading.Event, pace: float = 0.05) -> None:
+    """Keep some jobs open, handing in one every `pace` seconds at the most."""
+    while not stopped.wait(pace):
         with suppress(Exception):  # the database may be away
             if _open_jobs(target.database) < most:
                 target.submit()

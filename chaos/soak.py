@@ -51,8 +51,9 @@ FAULTS: tuple[Fault, ...] = (
 )  # fmt: skip
 BETWEEN = 8.0
 """Seconds between two faults, on average."""
-OPEN = 3
-"""So many jobs are kept open."""
+OPEN, PACE = 3, 8.0
+"""So many jobs are open at the most, and so many seconds lie between two that are handed in: all of the last ten minutes
+are kept, so that a machine that has less else to do for a while would keep more on its disk."""
 LISTEN = 5.0
 """Seconds for which the events of a job are followed."""
 KEEP, LOG = 50_000_000, 1_000_000
@@ -122,7 +123,7 @@ def _summary(record: Record, verdict: Verdict, growth: Growth, left: list[str]) 
 def _soak(target: Target, record: Record, seconds: float) -> Growth:
     """Load and faults for so long, with a sample a minute."""
     growth, stopped = Growth(target.served), threading.Event()
-    threads = [threading.Thread(target=keep_open, args=(target, OPEN, stopped)),
+    threads = [threading.Thread(target=keep_open, args=(target, OPEN, stopped, PACE)),
                threading.Thread(target=_look, args=(target, record, growth, stopped)),
                threading.Thread(target=_listen, args=(target, stopped))]  # fmt: skip
     for thread in threads:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from hockle.figures import LEAST_TURNS, NOISE, STYLE, prefixed
 from hockle.stage import Stage
-from hockle.tube import Tube, radius
+from hockle.tube import Tube
 from hockle.view import View
 
 MOST = 6
@@ -53,9 +53,8 @@ def shapes(datasets: Mapping[str, xr.Dataset]) -> Figure:
     tubes = {label: Tube.of(dataset.r.values[-1], dataset.orientation.values[-1]).turned(views[label].axes)
              for label, dataset in datasets.items()}  # fmt: skip
     with mpl.rc_context(STYLE):
-        directions = next(iter(views.values())).directions
         points = np.vstack([tube.r for tube in tubes.values()])
-        stage = Stage([radius(case) for case in cases.values()], points, directions)
+        stage = Stage(list(cases.values()), list(views.values()), points)
         for i, (label, tube) in enumerate(tubes.items()):
             stage.draw(i, tube, f"{label}, t = {float(datasets[label].time[-1]):g} s")
     return stage.figure

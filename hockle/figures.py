@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hockle.stage import Stage
-from hockle.tube import Tube, radius
+from hockle.tube import Tube
 from hockle.view import View
 
 PAPERS_TIMES = (20.0, 25.0, 29.0, 32.0)
@@ -68,7 +68,7 @@ def snapshots(dataset: xr.Dataset) -> Figure:
     start = dataset.r.values[0] @ view.axes.T
     with mpl.rc_context(STYLE):
         points = np.vstack([*(tube.r for tube in tubes), start])
-        stage = Stage([radius(case)] * len(tubes), points, view.directions + ", dashed: at first")
+        stage = Stage([case] * len(tubes), [view] * len(tubes), points, ", dashed: at first")
         for i, (tube, frame) in enumerate(zip(tubes, frames, strict=True)):
             stage.draw(i, tube, f"t = {float(frame.time):g} s", start)
         stage.title(dataset.attrs["title"])

@@ -57,7 +57,7 @@ def make(datasets: Mapping[str, xr.Dataset], path: Path, seconds: float) -> int:
     import numpy as np
 
     from hockle.stage import Stage
-    from hockle.tube import Tube, radius
+    from hockle.tube import Tube
     from hockle.view import View
 
     kind = path.suffix.lower()
@@ -65,7 +65,7 @@ def make(datasets: Mapping[str, xr.Dataset], path: Path, seconds: float) -> int:
     views = [View.of(case, dataset.r.values) for case, dataset in zip(cases, datasets.values(), strict=True)]
     points = [dataset.r.values.reshape(-1, 3) @ view.axes.T
               for dataset, view in zip(datasets.values(), views, strict=True)]  # fmt: skip
-    stage = Stage([radius(case) for case in cases], np.vstack(points), views[0].directions)
+    stage = Stage(cases, views, np.vstack(points))
     if len(datasets) == 1:
         stage.title(next(iter(datasets.values())).attrs["title"])
     end = max(float(dataset.time[-1]) for dataset in datasets.values())

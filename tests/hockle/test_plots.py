@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from hockle import figures
 from hockle.cli import main
@@ -81,10 +83,41 @@ def test_a_rod_is_drawn_no_thinner_than_it_is(radius: float, drawn: float, told:
     facets = Tube.facets
     monkeypatch.setattr(Tube, "facets", lambda tube, thick: asked.append(thick) or facets(tube, thick))
     upright = np.array([[0.0, 0, 0], [0, 0, 1]])
-    stage = Stage([radius], upright, "")
+    stage = Stage([{"rod": {"diameter": 2 * radius}}], [View(np.eye(3), "")], upright)
     stage.draw(0, Tube.of(upright, np.tile([1.0, 0.0, 0.0, 0.0], (2, 1))), "")
     assert asked == [pytest.approx(drawn)]
     assert any("thicker than the rod" in text.get_text() for text in stage.figure.texts) == told
+
+
+BAR = {"start": [-0.05, -1.0, 0.6], "end": [-0.05, 1.0, 0.6], "radius": 0.03, "stiffness": 1e3}
+FLOOR = {"stiffness": 1e3, "normal": [1.0, 0.0, 0.0], "height": -0.3}
+
+
+def test_obstacles_and_a_floor_are_drawn_where_they_lie_on_each_panel(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    path = tmp_path / "out.nc"
+    more = {"t_end": 1.0, "numerics.intervals": 20, "loads.gravity": "[-9.81, 0, 0]", "loads.point": "[]",
+            "loads.obstacles": json.dumps([BAR]), "loads.floor": json.dumps(FLOOR)}  # fmt: skip
+    assert main(["run", "elastica", "-o", str(path), *(f"--set={key}={value}" for key, value in more.items())]) == 0
+    faces = []
+
+    def collection(quads, **more):
+        faces.append(np.array(quads))
+        return Poly3DCollection(quads, **more)
+
+    monkeypatch.setattr("hockle.stage.Poly3DCollection", collection)
+    with open_dataset(path) as dataset:
+        figure = figures.snapshots(dataset)
+        axes = View.of(json.loads(dataset.attrs["case"]), dataset.r.values).axes
+    assert len(faces) == len(figure.axes) >= 2
+    for quads, panel in zip(faces, figure.axes, strict=True):
+        places = quads @ axes  # in the lab
+        across = np.hypot(places[..., 0] + 0.05, places[..., 2] - 0.6)
+        bar = (np.abs(across - 0.03) < 1e-9).all(axis=1)
+        assert bar.sum() > 300 and np.abs(places[bar][..., 1]).max() < 1.0  # it is 2 m long
+        heights = [np.array(line.get_data_3d())[2] for line in panel.lines]
+        assert sum(bool(np.allclose(height, -0.3)) for height in heights) > 10  # the grid; and the shadow
+    caption = " ".join(text.get_text().replace("\n", " ") for text in figure.texts)
+    assert "floor brown, obstacles grey" in caption
 
 
 def test_several_datasets_are_drawn_beside_each_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

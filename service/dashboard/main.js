@@ -52,6 +52,7 @@ const look = () => guarded(async () => view?.refresh());
 async function guarded(work, after = look) {
   clearTimeout(timer);
   const shown = view;
+  /** @type {() => void} */
   let next = look;
   try {
     await work();

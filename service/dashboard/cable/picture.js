@@ -1,6 +1,7 @@
 // @ts-check
-/** A picture by WebGL: rods as shaded tubes with a stripe along a1, lines, and points. */
+/** A picture by WebGL: rods as shaded tubes with a stripe along a1, obstacles, lines, and points. */
 import { NODE } from "./film.js";
+import { CORNER } from "./obstacles.js";
 
 /** @typedef {import("./camera.js").Camera} Camera */
 /** Positions (3) and colours (4) of the ends of lines, or of points. @typedef {number[]} Strokes */
@@ -8,6 +9,7 @@ import { NODE } from "./film.js";
  * range: the values of the first and the last colour of the scale; null: the rod has the colour `body` */
 
 const FACETS = 12, WIDE = 1024;
+const OBSTACLE = [0.44, 0.5, 0.57, 0.75]; // what is behind one is seen through it
 /** The colours of a scale from the least value to the largest; each differs from its neighbours in lightness too. */
 export const SCALE = [[0.27, 0.0, 0.33], [0.23, 0.32, 0.55], [0.13, 0.57, 0.55], [0.37, 0.79, 0.38], [0.99, 0.91, 0.14]];
 
@@ -50,6 +52,24 @@ void main() {
   float lit = max(dot(normalize(normal), light), 0.0);
   colour = vec4(paint * (0.45 + 0.6 * lit) + 0.12 * pow(lit, 30.0), 1.0);
 }`;
+const SOLID = `#version 300 es
+in vec3 position, outward;
+in float shown;
+uniform mat4 camera;
+out vec3 normal;
+out float opaque;
+void main() { normal = outward; opaque = shown; gl_Position = camera * vec4(position, 1.0); }`;
+const SOLID_COLOUR = `#version 300 es
+precision highp float;
+uniform vec3 light;
+uniform vec4 body;
+in vec3 normal;
+in float opaque;
+out vec4 colour;
+void main() {
+  if (opaque <= 0.0) discard;
+  colour = vec4(body.rgb * (0.55 + 0.6 * max(dot(normalize(normal), light), 0.0)), body.a * opaque);
+}`;
 const STROKE = `#version 300 es
 in vec3 position;
 in vec4 paint;
@@ -75,15 +95,13 @@ export class Picture {
     this.stroke = program(gl, STROKE, STROKE_COLOUR);
     this.texture = gl.createTexture();
     this.buffer = gl.createBuffer();
-    this.strokes = gl.createVertexArray();
-    gl.bindVertexArray(this.strokes);
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
-    for (const [name, many, from] of /** @type {[string, number, number][]} */ ([["position", 3, 0], ["paint", 4, 12]])) {
-      const place = gl.getAttribLocation(this.stroke, name);
-      gl.enableVertexAttribArray(place);
-      gl.vertexAttribPointer(place, many, gl.FLOAT, false, 28, from);
-    }
+    this.strokes = layout(gl, this.stroke, this.buffer, [["position", 3], ["paint", 4]]);
     this.tubes = gl.createVertexArray();
+    this.solid = program(gl, SOLID, SOLID_COLOUR);
+    this.corners = gl.createBuffer();
+    this.solids = layout(gl, this.solid, this.corners, [["position", 3], ["outward", 3], ["shown", 1]]);
+    /** The triangles that the graphics card has. @type {Float32Array} */
+    this.held = new Float32Array(0);
   }
 
   /** As many pixels as the canvas shows. */
@@ -98,9 +116,9 @@ export class Picture {
     return this.canvas.width / this.canvas.height;
   }
 
-  /** Draw it all. @param {Camera} camera @param {Rod[]} rods @param {Strokes} lines @param {Strokes} points
-   * @param {number[]} ground colour behind all */
-  draw(camera, rods, lines, points, ground) {
+  /** Draw it all. @param {Camera} camera @param {Rod[]} rods @param {Float32Array} triangles of obstacles
+   * @param {Strokes} lines @param {Strokes} points @param {number[]} ground colour behind all */
+  draw(camera, rods, triangles, lines, points, ground) {
     const { gl } = this;
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(ground[0], ground[1], ground[2], 1);
@@ -117,6 +135,7 @@ export class Picture {
     gl.uniform3fv(this.at(this.tube, "light"), light);
     gl.uniform3fv(this.at(this.tube, "scale"), SCALE.flat());
     for (const rod of rods) this.drawRod(rod);
+    this.drawSolids(matrix, light, triangles);
     gl.disable(gl.DEPTH_TEST); // contacts are seen through the tubes
     this.drawStrokes(matrix, points, gl.POINTS);
   }
@@ -137,6 +156,25 @@ export class Picture {
     if (range) gl.uniform2fv(this.at(this.tube, "range"), range);
     gl.bindVertexArray(this.tubes);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 2 * (FACETS + 1), many + 1);
+  }
+
+  /** @param {Float32Array} matrix @param {number[]} light @param {Float32Array} triangles */
+  drawSolids(matrix, light, triangles) {
+    const { gl } = this;
+    if (!triangles.length) return;
+    gl.useProgram(this.solid);
+    gl.uniformMatrix4fv(this.at(this.solid, "camera"), false, matrix);
+    gl.uniform3fv(this.at(this.solid, "light"), light);
+    gl.uniform4fv(this.at(this.solid, "body"), OBSTACLE);
+    gl.bindVertexArray(this.solids);
+    if (this.held !== triangles) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);
+      gl.bufferData(gl.ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
+      this.held = triangles;
+    }
+    gl.enable(gl.CULL_FACE); // only what faces the eye, so that each obstacle is one layer
+    gl.drawArrays(gl.TRIANGLES, 0, triangles.length / CORNER);
+    gl.disable(gl.CULL_FACE);
   }
 
   /** @param {Float32Array} matrix @param {Strokes} strokes @param {number} kind */
@@ -162,6 +200,22 @@ export class Picture {
   close() {
     this.gl.getExtension("WEBGL_lose_context")?.loseContext();
   }
+}
+
+/** How a program's inputs, each of so many floats, lie one after the other in a buffer.
+ * @param {WebGL2RenderingContext} gl @param {WebGLProgram} one @param {WebGLBuffer | null} buffer @param {[string, number][]} inputs */
+function layout(gl, one, buffer, inputs) {
+  const made = gl.createVertexArray(), whole = inputs.reduce((sum, [, many]) => sum + many, 0);
+  gl.bindVertexArray(made);
+  gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+  let from = 0;
+  for (const [name, many] of inputs) {
+    const place = gl.getAttribLocation(one, name);
+    gl.enableVertexAttribArray(place);
+    gl.vertexAttribPointer(place, many, gl.FLOAT, false, 4 * whole, 4 * from);
+    from += many;
+  }
+  return made;
 }
 
 /** @param {WebGL2RenderingContext} gl @param {string} vertices @param {string} fragments */

@@ -7,7 +7,7 @@ import { Film, NODE } from "./film.js";
 import { SCALE } from "./picture.js";
 import { picture, video } from "./record.js";
 import { Stage, VIEWS } from "./stage.js";
-import { diameter, touching } from "./surroundings.js";
+import { diameter, pressed, touching } from "./surroundings.js";
 
 /** A run: the address of its job, and its case. @typedef {{job: string, shape: any}} Run */
 const BODY = [0.93, 0.62, 0.2], SEEN = 0.005;
@@ -70,6 +70,7 @@ export class Player {
     if (news.some(Boolean)) {
       for (const run of shown) run.nodes = new Float32Array(NODE * run.film.nodes);
       if (first) this.open(shown);
+      else this.stage.follow(this.shape, ...this.around(shown));
       const longest = shown.reduce((best, run) => end(run) > end(best) ? run : best);
       this.clock.set(longest.film.time);
       this.paint();
@@ -82,10 +83,17 @@ export class Player {
     this.place.hidden = false;
     const names = [...(this.colour?.options ?? [])].map((one) => one.value);
     this.colour?.append(...this.film.colours.filter((name) => !names.includes(name)).map((name) => new Option(name)));
+    const { film } = shown[0], r = film.values("r"), last = 3 * (film.nodes - 1), [box, obstacles] = this.around(shown);
+    this.stage.set(this.shape, box, [0, 1, 2].map((i) => r[last + i] - r[i]), obstacles);
+  }
+
+  /** The box of all frames of some runs, and the obstacles of all. @param {{film: Film}[]} shown
+   * @returns {[import("./obstacles.js").Box, import("./obstacles.js").Obstacle[]]} */
+  around(shown) {
     /** @param {number} side @param {(...values: number[]) => number} most */
     const corner = (side, most) => [0, 1, 2].map((i) => most(...shown.map((run) => run.film.box[side][i])));
-    const { film } = shown[0], r = film.values("r"), last = 3 * (film.nodes - 1);
-    this.stage.set(this.shape, [corner(0, Math.min), corner(1, Math.max)], [0, 1, 2].map((i) => r[last + i] - r[i]));
+    const places = this.runs.flatMap(({ shape }) => shape.loads?.obstacles ?? []).map(({ start, end, radius }) => JSON.stringify({ start, end, radius }));
+    return [[corner(0, Math.min), corner(1, Math.max)], [...new Set(places)].map((place) => JSON.parse(place))];
   }
 
   /** Show the chosen colour and its scale. */
@@ -107,6 +115,7 @@ export class Player {
       film.at(t, colour, nodes);
       this.stage.surroundings?.shadow(nodes, seen.lines);
       if (film.contacts[film.frame(t)] > 0) seen.points.push(...touching(nodes, film.s, shape));
+      seen.points.push(...pressed(nodes, film.s, shape));
       seen.rods.push({ nodes, radius: this.radius(shape), body: this.body(place), range: this.range ?? null });
     });
     this.place.dataset.contacts = String(seen.points.length / 7);

@@ -6,7 +6,8 @@ import { Picture } from "./picture.js";
 import { Surroundings, upright } from "./surroundings.js";
 
 /** @typedef {import("./picture.js").Rod} Rod */
-/** @typedef {import("./surroundings.js").Box} Box */
+/** @typedef {import("./obstacles.js").Box} Box */
+/** @typedef {import("./obstacles.js").Obstacle} Obstacle */
 /** @typedef {import("./vectors.js").Vector} Vector */
 export const VIEWS = /** @type {Record<string, Vector | null>} */ ({
   free: null, "along e1": [1, 0, 0], "along e2": [0, 1, 0], "along e3": [0, 0, 1] });
@@ -27,6 +28,8 @@ export class Stage {
     this.content = () => ({ rods: [], lines: [], points: [] });
     /** @type {Box} */
     this.box = [[0, 0, 0], [1, 1, 1]];
+    /** Whether somebody chose what part is seen. */
+    this.moved = false;
     this.waiting = 0;
     this.sizes = new ResizeObserver(() => this.fit());
     this.sizes.observe(this.canvas);
@@ -34,14 +37,27 @@ export class Stage {
   }
 
   /** Set the vertical, the ground and what is seen, for a case and the box of its rod.
-   * @param {any} shape @param {Box} box @param {Vector} along the rod at first */
-  set(shape, box, along) {
+   * @param {any} shape @param {Box} box @param {Vector} along the rod at first @param {Obstacle[]} [obstacles] those of the case, if not others */
+  set(shape, box, along, obstacles) {
     const [up, right] = upright(shape, box, along);
     this.camera = new Camera(up, right);
-    this.surroundings = new Surroundings(shape, box, up);
-    this.box = box;
-    this.legend.replaceChildren(...this.surroundings.told.map(([text, colour]) => element("span", colour && `key-${colour}`, text)));
+    this.surround(shape, box, obstacles);
     this.fit();
+  }
+
+  /** The same for a rod that has gone on: the whole stays in the picture unless somebody has moved it.
+   * @param {any} shape @param {Box} box @param {Obstacle[]} [obstacles] */
+  follow(shape, box, obstacles) {
+    this.surround(shape, box, obstacles);
+    if (this.moved) this.redraw();
+    else this.fit();
+  }
+
+  /** Set the ground and the obstacles for a box of the rod. @param {any} shape @param {Box} box @param {Obstacle[]} [obstacles] */
+  surround(shape, box, obstacles) {
+    this.surroundings = new Surroundings(shape, box, this.camera.basis[2], obstacles);
+    this.box = this.surroundings.obstacles.box;
+    this.legend.replaceChildren(...this.surroundings.told.map(([text, colour]) => element("span", colour && `key-${colour}`, text)));
   }
 
   /** Look from where `view` says. @param {string} view one of VIEWS */
@@ -52,6 +68,7 @@ export class Stage {
 
   /** Show the whole. */
   fit() {
+    this.moved = false;
     this.picture.resize();
     const low = this.box[0].slice(), high = this.box[1].slice(), ground = this.surroundings;
     if (ground) {
@@ -77,8 +94,8 @@ export class Stage {
     this.picture.resize();
     const { rods, lines, points } = this.content();
     const ground = getComputedStyle(this.canvas).backgroundColor.match(/[\d.]+/g) ?? [255, 255, 255];
-    const around = this.surroundings?.lines ?? [];
-    this.picture.draw(this.camera, rods, [...around, ...lines], points, ground.map((one) => Number(one) / 255));
+    const around = this.surroundings?.lines ?? [], triangles = this.surroundings?.obstacles.triangles ?? new Float32Array(0);
+    this.picture.draw(this.camera, rods, triangles, [...around, ...lines], points, ground.map((one) => Number(one) / 255));
   }
 
   listen() {
@@ -87,6 +104,7 @@ export class Stage {
       if (!event.buttons) return;
       canvas.setPointerCapture(event.pointerId);
       if (event.shiftKey || event.buttons === 2) {
+        this.moved = true;
         this.camera.pan(event.movementX / canvas.clientHeight, -event.movementY / canvas.clientHeight);
       } else this.turn(-event.movementX * TURN, event.movementY * TURN);
       this.redraw();
@@ -94,7 +112,7 @@ export class Stage {
     canvas.oncontextmenu = (event) => event.preventDefault();
     canvas.onwheel = (event) => {
       event.preventDefault();
-      this.camera.distance *= Math.exp(event.deltaY * 0.0012);
+      this.zoom(Math.exp(event.deltaY * 0.0012));
       this.redraw();
     };
     canvas.ondblclick = () => this.fit();
@@ -106,7 +124,7 @@ export class Stage {
     const turn = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
     const zoom = { "+": 0.9, "-": 1 / 0.9 }[event.key];
     if (turn) this.turn(turn[0] * KEY_TURN, turn[1] * KEY_TURN);
-    else if (zoom) this.camera.distance *= zoom;
+    else if (zoom) this.zoom(zoom);
     else return;
     event.preventDefault();
     this.redraw();
@@ -116,6 +134,12 @@ export class Stage {
   turn(yaw, pitch) {
     this.camera.yaw += yaw;
     this.camera.pitch = Math.min(Math.max(this.camera.pitch + pitch, -Math.PI / 2), Math.PI / 2);
+  }
+
+  /** @param {number} by */
+  zoom(by) {
+    this.moved = true;
+    this.camera.distance *= by;
   }
 
   close() {

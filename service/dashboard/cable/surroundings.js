@@ -1,15 +1,18 @@
 // @ts-check
-/** What is around a rod in its picture: the ground with its shadow, a floor, weight, current, the lab axes, contacts. */
+/** What is around a rod in its picture: the ground with its shadow, a floor, obstacles, weight, current, the lab axes, contacts. */
 import { NODE } from "./film.js";
+import { depth, Obstacles } from "./obstacles.js";
 import { ticks, told } from "../scale.js";
 import { across, add, dot, size, times, unit } from "./vectors.js";
 
 /** @typedef {import("./vectors.js").Vector} Vector */
 /** @typedef {import("./picture.js").Strokes} Strokes */
-/** @typedef {[Vector, Vector]} Box lowest and highest corner */
+/** @typedef {import("./obstacles.js").Box} Box */
+/** @typedef {import("./obstacles.js").Obstacle} Obstacle */
 
 const GRID = [0.5, 0.55, 0.62, 0.35], SHADOW = [0.35, 0.4, 0.48, 0.6], FLOOR = [0.55, 0.42, 0.3, 0.8];
 const WEIGHT = [0.68, 0.14, 0.11, 1], CURRENT = [0.04, 0.45, 0.7, 1], CONTACT = [0.9, 0.1, 0.15, 1];
+const MARKS = 60, ROUNDING = 2 ** -22; // of places that are 4-byte floats
 const AXES = [[0.8, 0.15, 0.15, 1], [0.1, 0.55, 0.2, 1], [0.15, 0.35, 0.9, 1]];
 
 /** Up, against gravity; without gravity e3, or -e1 where the rod lies along e3, as in the paper's figures.
@@ -45,10 +48,13 @@ export function arrow(into, from, along, colour) {
 }
 
 export class Surroundings {
-  /** @param {any} shape the case @param {Box} box of all frames @param {Vector} up */
-  constructor(shape, [low, high], up) {
+  /** @param {any} shape the case @param {Box} rod the box of all frames @param {Vector} up
+   * @param {Obstacle[]} obstacles those of the case, or of several */
+  constructor(shape, rod, up, obstacles = shape.loads?.obstacles ?? []) {
     this.shape = shape;
     this.up = up;
+    this.obstacles = new Obstacles(obstacles, rod);
+    const [low, high] = this.obstacles.box;
     const extent = Math.max(...add(high, low, -1));
     this.centre = times(add(low, high), 0.5);
     this.extent = extent;
@@ -66,12 +72,14 @@ export class Surroundings {
     this.arrows(low);
   }
 
-  /** What is drawn around the rod, in words, each with the class of its colour. @returns {[string, string][]} */
+  /** What is drawn around the rod, in words, each with the class of its colour. */
   get told() {
-    const { loads, fluid } = this.shape;
-    return [[`squares of ${told(this.step)} m`, ""], ["e1", "e1"], ["e2", "e2"], ["e3", "e3"],
-      ...(loads?.floor ? [["floor", "floor"]] : []), ...(size(loads?.gravity ?? [0, 0, 0]) > 0 ? [["weight", "weight"]] : []),
-      ...(size(fluid?.current ?? [0, 0, 0]) > 0 ? [["current", "current"]] : [])];
+    const { loads, fluid } = this.shape, { triangles, far } = this.obstacles, none = [0, 0, 0];
+    const all = /** @type {[string, string, boolean][]} */ ([[`squares of ${told(this.step)} m`, "", true],
+      ["e1", "e1", true], ["e2", "e2", true], ["e3", "e3", true], ["floor", "floor", Boolean(loads?.floor)],
+      ["obstacle", "obstacle", triangles.length > 0], [`obstacles too far away to be drawn: ${far}`, "", far > 0],
+      ["weight", "weight", size(loads?.gravity ?? none) > 0], ["current", "current", size(fluid?.current ?? none) > 0]]);
+    return all.filter(([, , drawn]) => drawn);
   }
 
   /** @param {Vector} at */
@@ -132,6 +140,23 @@ export function touching(nodes, s, shape) {
     if (with_ < 0) continue;
     const j = NODE * with_;
     points.push((x + nodes[j]) / 2, (y + nodes[j + 1]) / 2, (z + nodes[j + 2]) / 2, ...CONTACT);
+  }
+  return points;
+}
+
+/** Where a rod is pressed into a floor or an obstacle, at most MARKS places along it. @param {Float32Array} nodes
+ * @param {number[]} s @param {any} shape the case @returns {Strokes} */
+export function pressed(nodes, s, { loads }) {
+  const { floor, obstacles = [] } = loads ?? {}, apart = s[s.length - 1] / MARKS, points = [];
+  const normal = unit(floor?.normal ?? [0, 0, 1]);
+  let last = -Infinity;
+  for (let k = 0; k < s.length; k += 1) {
+    if (s[k] - last < apart) continue;
+    const at = [nodes[NODE * k], nodes[NODE * k + 1], nodes[NODE * k + 2]], rounding = ROUNDING * size(at);
+    const inFloor = floor && (floor.height ?? 0) - dot(at, normal) > rounding;
+    if (!inFloor && !obstacles.some((/** @type {Obstacle} */ one) => depth(one, at) > rounding)) continue;
+    points.push(...at, ...CONTACT);
+    last = s[k];
   }
   return points;
 }

@@ -8,6 +8,7 @@ import pytest
 from benchmarks.dashboard.accessibility import axe
 
 QUICK = {"t_end": 1.0, "output__interval": 0.25, "numerics__intervals": 20}
+BALL = {"start": [0.0, 0.0, 0.5], "radius": 0.1, "stiffness": 1e3}
 PAGES = {"jobs": "#jobs tbody tr", "job": "#page .chart", "compare": "#page .chart",
          "new": ".verdict .cost", "ensembles": "#page tbody tr", "ensemble": "#page circle"}
 
@@ -19,7 +20,8 @@ NAMED = """() => [...document.querySelectorAll("#page td")].map(cell => getCompu
 @pytest.fixture
 def addresses(server, run) -> dict[str, str]:
     """The address of each page, with something on it."""
-    ids = [run("cantilever-vibration", **QUICK), run("cantilever-vibration", **QUICK | {"t_end": 0.5})]
+    more = ({"loads__obstacles": [BALL]}, {"t_end": 0.5})
+    ids = [run("cantilever-vibration", **QUICK | one) for one in more]
     body = {"case": "cantilever-vibration", "parameters": {"loads.damping": [0.5, 1.0]}}
     ensemble = httpx.post(f"{server.address}/v1/ensembles", json=body).json()["id"]
     paths = {"jobs": "", "job": f"jobs/{ids[0]}", "compare": f"compare?jobs={','.join(ids)}",

@@ -92,6 +92,111 @@ def test_a_floor_is_drawn_where_it_lies(server, run, page):
     assert len(heights) > 20 and set(heights) == {0.5}
 
 
+BAR = {"start": [0.15, -50.0, 0.8], "end": [0.15, 50.0, 0.8], "radius": 0.06, "stiffness": 1e3}
+BALL = {"start": [0.3, 0.0, 0.6], "radius": 0.15, "stiffness": 1e3}
+HILL = {"start": [-50.1, 0.0, 0.3], "radius": 50.0, "stiffness": 1e3}
+ROD = [[0, 0, 0], [0.5, 0, 1]]
+SURFACE = """async ([obstacles, rod]) => {
+  const { Obstacles, CORNER } = await import("/dashboard/cable/obstacles.js");
+  const { triangles, box, far } = new Obstacles(obstacles, rod);
+  return { corners: [...triangles], floats: CORNER, box, far };
+}"""
+
+
+def surface(page, *obstacles):
+    """Triangles (m, 3, 3) of what is drawn, their normals, and how far they are faded in (m, 3); and the box of all."""
+    got = page.evaluate(SURFACE, [obstacles, ROD])
+    corners = np.array(got["corners"]).reshape(-1, 3, got["floats"])
+    return corners[..., :3], corners[..., 3:6], corners[..., 6], np.array(got["box"])
+
+
+@pytest.mark.parametrize("obstacle", [BAR, BALL, HILL])
+def test_the_surface_of_an_obstacle_lies_where_it_does(server, page, obstacle):
+    page.goto(server.address)
+    places, normals, shown, box = surface(page, obstacle)
+    start = np.array(obstacle["start"])
+    way = np.array(obstacle.get("end", obstacle["start"])) - start
+    part = np.clip((places - start) @ way / max(way @ way, 1e-300), 0.0, 1.0)
+    away = places - start - part[..., None] * way
+    assert len(places) > 500
+    assert np.linalg.norm(away, axis=-1) == pytest.approx(obstacle["radius"], abs=5e-6)  # 4-byte floats
+    assert np.abs(away / obstacle["radius"] - normals).max() < 1e-4
+    sides = places[:, 1:] - places[:, :1]
+    turned = (np.cross(sides[:, 0], sides[:, 1]) * normals.mean(axis=1)).sum(axis=1)
+    assert (turned > -1e-9).all() and (turned > 0).mean() > 0.9  # seen from outside they go round to the left
+    assert (places[shown > 0] >= box[0] - 1e-6).all() and (places[shown > 0] <= box[1] + 1e-6).all()
+    assert (box[0] > -0.52).all() and (box[1] < 1.52).all()  # not more than half a rod around the rod
+    assert ((shown == 1).all()) == (obstacle is BALL)  # what goes on is faded out
+
+
+def test_an_obstacle_that_is_far_from_the_rod_is_told_and_not_drawn(server, page):
+    page.goto(server.address)
+    got = page.evaluate(SURFACE, [[{**BALL, "start": [5.0, 0.0, 0.0]}, BALL], ROD])
+    assert got["far"] == 1 and got["box"][1][0] == pytest.approx(0.5, abs=1e-6)
+
+
+def grey(pixels: np.ndarray) -> np.ndarray:
+    """The surface of an obstacle; the ground's lines are lighter, and its shadow is thin."""
+    return (pixels.max(axis=-1) < 0.74) & (pixels[..., 2] > pixels[..., 0] + 0.04) & (pixels[..., 0] > 0.3)
+
+
+def test_obstacles_are_seen_and_said_and_do_not_shrink_the_cable(server, run, page):
+    wide, dark = [], []
+    for more in ({}, {"loads__obstacles": [BAR, BALL]}):
+        page.goto(f"{server.address}/#/jobs/{run('elastica', **BENT, **more)}")
+        page.wait_for_selector(".player:not([hidden])")
+        pixels = seen(page)
+        wide.append(np.ptp(np.nonzero(orange(pixels))[1]))
+        dark.append(grey(pixels).sum())
+        assert page.locator(".key-obstacle").count() == len(more)
+    assert dark[1] > dark[0] + 5000
+    assert wide[1] > 0.4 * wide[0]
+
+
+def test_where_the_cable_is_pressed_on_an_obstacle_or_a_floor_is_marked(server, run, page):
+    for more in ({"loads__obstacles": [BAR]}, {"loads__floor": {**FLOOR, "height": -0.3}}):
+        page.goto(f"{server.address}/#/jobs/{run('elastica', **BENT, **more)}")
+        page.wait_for_selector(".player:not([hidden])")
+        page.wait_for_function("() => Number(document.querySelector('.player').dataset.contacts) > 0")
+        scrub(page, 0.0)
+        page.wait_for_function("() => document.querySelector('.player').dataset.contacts === '0'")
+
+
+def test_runs_beside_each_other_are_drawn_with_the_obstacles_of_all(server, run, page):
+    ids = [run("elastica", **BENT), run("elastica", **BENT, loads__obstacles=[BALL])]
+    page.goto(f"{server.address}/#/compare?jobs={','.join(ids)}")
+    page.wait_for_selector(".player:not([hidden]) .key-obstacle")
+    assert grey(seen(page)).sum() > 3000
+
+
+FOLLOWED = """async (ball) => {
+  const { Stage } = await import("/dashboard/cable/stage.js");
+  const stage = new Stage(""), shape = { loads: { obstacles: [ball] } }, seen = [];
+  document.body.append(stage.canvas);
+  const look = () => seen.push([stage.camera.distance, stage.surroundings.obstacles.triangles.length > 0]);
+  stage.set(shape, [[0, 0, 0], [0.1, 0, 0]], [1, 0, 0]);
+  look();
+  stage.follow(shape, [[0, 0, -0.3], [0.1, 0, 0]]);
+  look();
+  stage.zoom(0.5);
+  stage.follow(shape, [[0, 0, -0.9], [0.1, 0, 0]]);
+  look();
+  stage.fit();
+  look();
+  stage.close();
+  return seen;
+}"""
+
+
+def test_a_run_that_goes_on_stays_in_the_picture_unless_it_was_moved(server, page):
+    page.goto(server.address)
+    first, widened, moved, whole = page.evaluate(FOLLOWED, {**BALL, "start": [0.0, 0.0, -1.0], "radius": 0.1})
+    assert [drawn for _, drawn in (first, widened, moved)] == [False, False, True]
+    assert widened[0] > 2 * first[0]
+    assert moved[0] == pytest.approx(widened[0] / 2)
+    assert whole[0] > widened[0]
+
+
 def test_views_differ_and_the_pointer_turns_the_cable(film):
     pictures, stripe = [seen(film)], []
     for view in ("along e1", "along e2", "along e3", "free"):

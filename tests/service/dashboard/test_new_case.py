@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from service.cases import load_case, parse_case, shipped_cases
@@ -75,6 +77,17 @@ def test_parts_that_a_case_may_lack_are_added_and_left_out(form, page):
     page.fill("#case-fluid-density", "1000")
     page.wait_for_selector(".verdict .cost")
     assert asked[-1]["fluid"] == {"density": 1000}
+
+
+def test_obstacles_are_given_as_a_list_and_seen_in_the_preview(form, page):
+    asked = form("case=elastica")
+    ball = {"start": [0.3, 0.0, 0.5], "radius": 0.1, "stiffness": 100.0}
+    page.fill("#case-loads-obstacles", json.dumps([{**ball, "radius": 0}]))
+    page.wait_for_selector("#case-loads-obstacles-told .fault")
+    assert page.locator(".verdict .fault").inner_text() == "loads.obstacles.0.radius must be > 0"
+    page.fill("#case-loads-obstacles", json.dumps([ball]))
+    page.wait_for_selector(".preview .key-obstacle")
+    assert asked[-1]["loads"]["obstacles"] == [ball]
 
 
 def test_a_case_is_submitted_and_its_job_opened(form, page, registry):

@@ -52,8 +52,8 @@ FAULTS: tuple[Fault, ...] = (
 BETWEEN = 8.0
 """Seconds between two faults, on average."""
 OPEN, PACE = 3, 8.0
-"""So many jobs are open at the most, and so many seconds lie between two that are handed in: all of the last ten minutes
-are kept, so that a machine that has less else to do for a while would keep more on its disk."""
+"""So many jobs are open at the most, and so many seconds lie between two that are handed in: all of the last ten
+minutes are kept, so that a machine that has less else to do for a while would keep more on its disk."""
 LISTEN = 5.0
 """Seconds for which the events of a job are followed."""
 KEEP, LOG = 50_000_000, 1_000_000

@@ -87,8 +87,6 @@ def hindrance(first: CaseSpec, then: CaseSpec) -> str:
         return "of a static analysis no states are kept"
     if then.numerics.tolerance is not None:
         return "with numerics.tolerance the meshes are chosen by whole runs; with intervals and dt_max it could go on"
-    if then.numerics.method == "box" and first.t_end != then.t_end:
-        return "all steps of the box method depend on t_end; those of numerics.method staggered do not"
     if then.contact is not None and then.contact.k1 is None and (first.ends, first.loads, first.t_end) != (
             then.ends, then.loads, then.t_end):  # fmt: skip
         return "the law of contact follows from all that the ends will do; with contact.k1 it does not"

@@ -6,7 +6,8 @@
   What is lost where an end jolts is not counted: an inextensible rod that is caught loses energy for real.
 - Length: the chord of an interval is its arc, but for its curvature: (kappa ds)^2 / 8 at most, and `STRETCH`.
 - Topology: Tw + Wr = Lk + constant between ends that do not swing, within `TURNS` and what the box method's mean
-  curvature may miss, (kappa ds)^2 / 8 of the turns. A pass-through changes it by 2. An end behind the start is let be.
+  curvature may miss, (kappa ds)^2 / 8 of the turns. A pass-through changes it by 2; so does a hop over an end, if the
+  run says that there was one. An end behind the start is let be.
 - Statics: forces and moments on the whole rod are in equilibrium, within `FORCE` of the largest, and (kappa ds)^2 at
   the ends, now or in the initial shape: segments that are laid along a curve are turned against its frames by as much.
 """
@@ -57,8 +58,8 @@ class Books:
         floor = NOISE / BALANCE * self._force * self._length
         return (self._made if self._made > -self._lost else self._lost) / (self._turnover + floor)
 
-    def enter(self, frame: Frame) -> None:
-        """Judge the next frame."""
+    def enter(self, frame: Frame, hops: int = 0) -> None:
+        """Judge the next frame; by then the run said that loops hopped over an end so many times."""
         wrong = self._not_finite(frame)
         if wrong:
             self._report(Ending.NOT_FINITE, f"{wrong} at t = {frame.t:g} s")
@@ -66,7 +67,7 @@ class Books:
         ds = self._length / (len(frame.r) - 1)
         bend: Array = ds * np.hypot(frame.kappa[:, 0], frame.kappa[:, 1])
         self._enter_length(frame, bend)
-        self._enter_turns(frame, bend)
+        self._enter_turns(frame, bend, hops)
         if self._scene.analysis == "static":
             self._enter_forces(frame, bend)
         else:
@@ -102,16 +103,16 @@ class Books:
         if self.stretch > STRETCH:
             self._report(Ending.STRETCHED, f"by {self.stretch:.2g} at t = {frame.t:g} s")
 
-    def _enter_turns(self, frame: Frame, bend: Array) -> None:
+    def _enter_turns(self, frame: Frame, bend: Array, hops: int) -> None:
         if not self._turning or isnan(frame.Lk) or _has_passed(frame):
             return
         defect = frame.Tw + frame.Wr - frame.Lk
         if self._before is None:
             self._defect = defect
-        jump = abs(defect - self._defect) > 1.0
-        if jump and self._scene.contact is None:  # then it may pass through itself: each time Wr jumps by 2
-            defect -= 2.0 * round((defect - self._defect) / 2.0)
-        elif jump:
+        jumps = round((defect - self._defect) / 2.0)
+        if self._scene.contact is None or abs(jumps) <= hops:  # without contact it may pass through itself
+            defect -= 2.0 * jumps
+        else:
             self._report(Ending.CROSSED, f"Tw + Wr - Lk jumped to {defect:.3g} by t = {frame.t:g} s")
         missed = abs(defect - self._defect)
         self.turns = max(self.turns, missed)

@@ -89,7 +89,7 @@ class Watch:
             self._look_for_crossings()
             if frame is not None:
                 self._last = frame
-                self.books.enter(frame)
+                self.books.enter(frame, self.simulation.remarks.end_hops)
             if self.books.fault is not None and self.books.fault[0] in SEVERE:
                 return True
         return True

@@ -19,7 +19,7 @@ from solver.methods.space.box.energies import energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, State, V
 from solver.methods.space.box.flows import Flows, enter_step
 from solver.methods.space.box.schemes import SpaceScheme
-from solver.methods.space.box.trial import Measured, measure_trial, total_bending
+from solver.methods.space.box.trial import Measured, mean_turning, measure_trial, total_bending
 from solver.methods.time.generalized_alpha.guess import force_rate, guess, stretch_feedback
 from solver.methods.time.generalized_alpha.history import rescale_aux
 from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work, step
@@ -36,9 +36,9 @@ from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 
 STRETCH_FEEDBACK = 5.0
-"""The rate at which the stretch is taken back, in that of waves as short as the rod has been bent. It must not depend
-on the step, or the order in dt is lost, nor rise and fall with the motion, or it turns the rod; without it
-|Tw + Wr - Lk| of the paper's scene is three times as large."""
+"""The rate at which the stretch is taken back, in that of waves as short as the rod is bent, beside the rate at which
+its tangents turn; the largest so far. It must not depend on the step, or the order in dt is lost, nor rise and fall
+with the motion, or it turns the rod; without it |Tw + Wr - Lk| of the paper's scene is three times as large."""
 LARGEST_FEEDBACK = 0.5
 """Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 
@@ -67,10 +67,11 @@ class BoxMethod:
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)
         self._scales = Scales(float(scene.rod.length), mean_bending(self.section.elastic))
-        self._measured = Measured(0.0, 0.0, 0.0, 0.0, 0.0)
-        self._bending = self._most_bending = total_bending(self.state.Y, self.h)
+        self._measured = Measured(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self._bending = total_bending(self.state.Y, self.h)
         stiffness, mass = mean_bending(self.section.elastic), float(self.section.mass.mean())
-        self._gain = STRETCH_FEEDBACK * float(np.sqrt(stiffness / mass)) / float(scene.rod.length) ** 2
+        self._natural_rate = float(np.sqrt(stiffness / mass)) / float(scene.rod.length) ** 2
+        self._gain = self._feedback_rate(mean_turning(self.state.Y))
         self._stretch, self._stretch_before, self._trial_stretch = np.zeros((3, numerics.intervals, 3))
         self.work = Work.empty(numerics.intervals, SpaceScheme.of(numerics.rho_inf_space), linear_solver_of(numerics),
                                scene.contact is not None)  # fmt: skip
@@ -98,7 +99,7 @@ class BoxMethod:
             rescale_aux(self.state, dt / self._last_dt)
         self._last_dt, self._consistent = dt, consistent
         ahead = dt / self._taken_dt if dt <= 2.0 * self._taken_dt else 0.0
-        gain = min(self._gain * self._most_bending**2, LARGEST_FEEDBACK / dt)
+        gain = min(self._gain, LARGEST_FEEDBACK / dt)
         self.applied.set_time(t + dt)
         stretch_feedback(self._stretch, self._stretch_before, ahead, gain, self.work.feedback)
         guess(self.state, self._F_rate, 0.0 if consistent else dt, self.trial.Y)
@@ -124,11 +125,14 @@ class BoxMethod:
             shift, turned = self._flows.moved[node, :3], self._flows.moved[node, 3:]
             end.follow(shift if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift[None])[0], turned)
         self.state, self.trial, self._taken_dt, self._bending = new, old, dt, self._measured.bending
-        self._most_bending = max(self._most_bending, self._bending)
+        self._gain = max(self._gain, self._feedback_rate(self._measured.turning))
         self._stretch_before, self._stretch, self._trial_stretch = (
             self._stretch, self._trial_stretch, self._stretch_before
         )  # fmt: skip
         return self._flows.energy
+
+    def _feedback_rate(self, turning: float) -> float:
+        return float(turning + STRETCH_FEEDBACK * self._natural_rate * self._bending**2)
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""

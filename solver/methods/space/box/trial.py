@@ -10,19 +10,20 @@ from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import tangent_of
 from solver.kernels.scratch import scratch
-from solver.methods.space.box.fields import KAPPA, State, V
+from solver.methods.space.box.fields import KAPPA, OMEGA, State, V
 
 
 class Measured(NamedTuple):
     """The largest strain of an interval, rotation (rad) within one, change of a component of dV/dt (m/s^2) and
-    displacement along an axis (m) in the step; and K = int |kappa_bending| ds (rad). A number that is not finite makes
-    them all NaN."""
+    displacement along an axis (m) in the step; K = int |kappa_bending| ds (rad); and the rate (rad/s) at which the
+    tangents turn. A number that is not finite makes them all NaN."""
 
     strain: float
     turn: float
     acceleration: float
     motion: float
     bending: float
+    turning: float
 
 
 @kernel
@@ -41,7 +42,7 @@ def measure_trial(old: State, new: State, h: float, stretch: Array) -> Measured:
         poison += 0.0 * square
     bending = total_bending(new.Y, h)
     return Measured(strain + poison, h * np.sqrt(turn) + poison, acceleration + poison, motion + poison,
-                    bending + poison)  # fmt: skip
+                    bending + poison, mean_turning(new.Y) + poison)  # fmt: skip
 
 
 @kernel
@@ -53,6 +54,16 @@ def total_bending(Y: Array, h: float) -> float:
         two = 0.5 * (Y[j, KAPPA + 1] + Y[j + 1, KAPPA + 1])
         total += np.sqrt(one * one + two * two)
     return h * total
+
+
+@kernel
+def mean_turning(Y: Array) -> float:
+    """The rate (rad/s) at which the tangents turn, |omega x a3|: its root mean square along the rod."""
+    total = 0.0
+    for j in range(len(Y) - 1):
+        for node in (j, j + 1):
+            total += 0.5 * (Y[node, OMEGA] ** 2 + Y[node, OMEGA + 1] ** 2)
+    return float(np.sqrt(total / (len(Y) - 1)))
 
 
 @inner

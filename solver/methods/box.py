@@ -35,10 +35,10 @@ from solver.scene.initial import Initial
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 
-STRETCH_FEEDBACK = 5.0
-"""The rate at which the stretch is taken back, in that of waves as short as the rod is bent, beside the rate at which
-its tangents turn; the largest so far. It must not depend on the step, or the order in dt is lost, nor rise and fall
-with the motion, or it turns the rod; without it |Tw + Wr - Lk| of the paper's scene is three times as large."""
+STRETCH_FEEDBACK, OF_WAVES = 1.0, 5.0
+"""The rate at which the stretch is taken back, in that at which the tangents turn, and how often that of waves as short
+as the rod is bent is added; the largest so far. It must not depend on the step, or the order in dt is lost, nor rise
+and fall with the motion, or it turns the rod; without it |Tw + Wr - Lk| of goyal-2003 is three times as large."""
 LARGEST_FEEDBACK = 0.5
 """Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 
@@ -132,7 +132,7 @@ class BoxMethod:
         return self._flows.energy
 
     def _feedback_rate(self, turning: float) -> float:
-        return float(turning + STRETCH_FEEDBACK * self._natural_rate * self._bending**2)
+        return float(STRETCH_FEEDBACK * (turning + OF_WAVES * self._natural_rate * self._bending**2))
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""

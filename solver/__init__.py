@@ -1,8 +1,8 @@
 """The rod solver: numbers only. `for frame in simulate(scene): ...`."""
 
-from solver.kernels.kernel import code_digest
 from solver.measures.frame import Frame, Statistics
 from solver.outcome import REMEDY, Outcome, RunFailed
+from solver.run.checkpoint import code_digest
 from solver.run.run import Run
 from solver.run.simulate import simulate
 from solver.run.simulation import Simulation

@@ -7,18 +7,31 @@ and number is found by walking through the attributes of the solver's own object
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import is_dataclass
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.kernel import code_digest as kernels_digest
 
 Saved = dict[str, Array | float | int | bool | None]
 """Values by the path of attributes that leads to them; `path[]` is the length of a list or tuple."""
 
 NUMBERS = (bool, int, float, np.number)
+
+
+@cache
+def code_digest() -> str:
+    """What tells this version of the solver from every other: a state is restored by the code that computed it."""
+    digest = hashlib.sha256(kernels_digest().encode())
+    for source in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(source.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def saved(root: object) -> Saved:

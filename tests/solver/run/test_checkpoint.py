@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable
 from dataclasses import fields, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from solver import Condition, Curve, DistributedLoad, End, Fluid, Frame, Numerics, Scene, VerifiedFrame, simulate
+from solver.kernels import kernel
+from solver.run import checkpoint as checkpoints
 from solver.scene.ends import FIXED
 from tests.solver.bent import bent_cantilever
 from tests.solver.physics.contact.test_self_contact import CONTACT, looped
@@ -164,3 +168,17 @@ def test_what_a_checkpoint_cannot_hold_is_refused_rather_than_forgotten() -> Non
     run._method.memory = {"of": 1.0}
     with pytest.raises(TypeError, match=r"\._method\.memory is a dict"):
         run.checkpoint()
+
+
+@pytest.mark.parametrize("change", ["run/step_control.py", "physics/section.py"])
+def test_a_state_is_of_all_of_the_code_that_computed_it(monkeypatch, tmp_path, change: str) -> None:
+    """It was of the kernels' alone: one with other steps went on from it, and was the run of no version."""
+    solver = Path(shutil.copytree(Path(kernel.__file__).parents[1], tmp_path / "solver"))
+    monkeypatch.setattr(kernel, "__file__", str(solver / "kernels" / "kernel.py"))
+    monkeypatch.setattr(checkpoints, "__file__", str(solver / "run" / "checkpoint.py"))
+    monkeypatch.setattr(checkpoints, "kernels_digest", kernel.code_digest.__wrapped__)
+    before = checkpoints.code_digest.__wrapped__()
+    assert checkpoints.code_digest.__wrapped__() == before
+    with (solver / change).open("a") as source:
+        source.write("# changed\n")
+    assert checkpoints.code_digest.__wrapped__() != before

@@ -3,9 +3,11 @@
 from solver.measures.frame import Frame, Statistics
 from solver.outcome import REMEDY, Outcome, RunFailed
 from solver.run.checkpoint import code_digest
+from solver.run.refined import Refined
 from solver.run.run import Run
 from solver.run.simulate import simulate
 from solver.run.simulation import Simulation
+from solver.run.under_way import UnderWay
 from solver.run.verify import Verified, VerifiedFrame
 from solver.run.warming import warm
 from solver.scene.contact import Contact
@@ -22,7 +24,7 @@ from solver.statics.ends import check_end
 
 __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
-    "Initial", "Numerics", "Outcome", "PointLoad", "Rod", "Run", "RunFailed", "Scene", "Simulation", "Statistics",
-    "UserLoad", "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest", "constant_vector", "simulate",
-    "warm",
+    "Initial", "Numerics", "Outcome", "PointLoad", "Refined", "Rod", "Run", "RunFailed", "Scene", "Simulation",
+    "Statistics", "UnderWay", "UserLoad", "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest",
+    "constant_vector", "simulate", "warm",
 ]

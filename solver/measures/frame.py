@@ -117,9 +117,14 @@ def complete(frame: Frame, s: Array, scene: Scene) -> Frame:
 
 @dataclass
 class Statistics:
-    """What a run has cost so far; it grows while the run's frames are taken."""
+    """What a run has cost so far; it grows while the run's frames are taken.
+
+    All of it counts as if it had been alone; `taken_over`: how many of its steps were taken by another run that began
+    alike.
+    """
 
     steps: int = 0
     newton_iterations: int = 0
     failed_steps: int = 0
     cpu_time: float = 0.0
+    taken_over: int = 0

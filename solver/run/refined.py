@@ -7,7 +7,7 @@ may be done, the frames come all the same, with their errors. See docs/decisions
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import astuple, replace
 from typing import Any
 
@@ -19,8 +19,6 @@ from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
 from solver.run.first_mesh import first_mesh
 from solver.run.plan import (
-    IN_CONTACT,
-    OVERHEAD,
     Excess,
     Trial,
     allowance,
@@ -34,12 +32,10 @@ from solver.run.recording import row_of
 from solver.run.remarks import Remarks
 from solver.run.run import Run
 from solver.run.series import Attempt, chosen
-from solver.run.simulation import Simulation
 from solver.run.together import Piece, Together
+from solver.run.under_way import UnderWay
 from solver.scene.scene import Scene
 
-SMALL_MOTION = 1e-3
-"""See `Numerics`: of the waves that a start excites those below it are not followed step by step."""
 OUTCOMES = tuple(Outcome)
 MOST_ROWS = 1_000_000
 """Nodes times frames that are kept of a run."""
@@ -56,35 +52,37 @@ class Refined(Run):
         self._noticed: list[tuple[float, ...]] = []
         """The remarks of each attempt."""
         self._rows: list[Array] = []
+        """Those of the attempt under way."""
         self._excesses: list[tuple[float, ...]] = [tuple(Excess())] * len(QUANTITIES)
         """Of each quantity what it is beyond the tolerance."""
-        self._mesh, self._steps = first_mesh(scene, pressed=False), 0
         self._first_if_pressed = first_mesh(scene, pressed=True)
-        self._work, self._progress, self._decided = 0.0, 0.0, False
+        self._progress, self._decided = 0.0, False
         self._detail = ""
         self._errors_of_frames = np.zeros((0, len(QUANTITIES)))
         self._piece = Piece()
-        self._run = self._begin()
+        self._before = replace(self.statistics)
+        """What the attempts before that under way have cost."""
+        self._under_way = UnderWay(scene, Trial(first_mesh(scene, pressed=False), 0))
 
     @property
     def s(self) -> Array:
         """Arclengths of the nodes (n,), m; before the first frame they may be those of a coarser mesh."""
-        return self._together.s if self._decided else self._run.s
+        return self._together.s if self._decided else self._under_way.run.s
 
     @property
     def phase(self) -> str:
         """Which mesh it is at."""
-        return f"run {len(self._history) + 1}: {intervals_of(self._mesh)} intervals"
+        return f"run {len(self._history) + 1}: {intervals_of(self._under_way.trial.mesh)} intervals"
 
     @property
     def progress(self) -> float:
         """The part of the work that is done, as far as it can be known; it never falls."""
         if self._decided:
             return 1.0
-        current, part = self._work, min(self._run.t / self._scene.t_end, 1.0)
+        current, part = self._under_way.work, min(self._under_way.run.t / self._scene.t_end, 1.0)
         attempts = self._attempts
         spent = sum(attempt.work for attempt in attempts)
-        rest = to_come(attempts, self._errors, Trial(self._mesh, self._steps))
+        rest = to_come(attempts, self._errors, self._under_way.trial)
         whole = spent + current / max(part, 0.01) + rest
         self._progress = max(self._progress, (spent + current) / max(whole, 1.0))
         return self._progress
@@ -110,21 +108,40 @@ class Refined(Run):
 
     def warm(self) -> None:
         """Have every kernel compiled."""
-        self._run.warm()
+        self._under_way.run.warm()
+
+    @property
+    def under_way(self) -> UnderWay | None:
+        """The attempt under way, another object for each; None once the last one has ended."""
+        return None if self._decided else self._under_way
+
+    @property
+    def rows(self) -> Sequence[Array]:
+        """Of the attempt under way the frames so far, see `recording`; another list for each."""
+        return self._rows
+
+    def begin_from(self, state: Mapping[str, Any], rows: Sequence[Array]) -> bool:
+        """Have the attempt under way, which has taken no step yet, go on where that of another run was.
+
+        `state`: what an `UnderWay` of this scene and trial would remember there; `rows`: of its frames until then. All
+        is decided as if the steps until then were taken now; False, and nothing is changed, where they would not be
+        taken, because this run gives the attempt up before. Raises ValueError where it is no such state.
+        """
+        begun = UnderWay(self._scene, self._under_way.trial)
+        begun.restore(state)
+        if self._reason_to_give_up(begun) is not None:
+            return False
+        self._under_way, self._rows = begun, list(rows)
+        self._count()
+        self.statistics.cpu_time += begun.statistics.cpu_time
+        self.statistics.taken_over += begun.statistics.steps
+        return True
 
     def restore(self, checkpoint: Mapping[str, Any]) -> None:
         """Go on where a run of the same scene was; see `Run.restore`."""
-        self._mesh, self._steps = checkpoint["._mesh"], checkpoint["._steps"]
-        self._run = self._begin()
+        mesh, steps = (checkpoint[f"._under_way.trial.{name}"] for name in Trial._fields)
+        self._under_way = UnderWay(self._scene, Trial(mesh, steps))
         super().restore(checkpoint)
-
-    def _begin(self) -> Simulation:
-        numerics = replace(
-            self._scene.numerics, tolerance=None, verify=False, intervals=intervals_of(self._mesh),
-            dt_max=longest_step(self._steps, self._scene.output_interval), small_motion=SMALL_MOTION,
-            increment_tolerance=step_tolerance(self._steps, self._scene.numerics.tolerance or 1.0),
-        )  # fmt: skip
-        return Simulation(replace(self._scene, numerics=numerics), self.statistics, goes_on=True)
 
     @property
     def _attempts(self) -> list[Attempt]:
@@ -159,30 +176,41 @@ class Refined(Run):
 
     def _go_on(self) -> None:
         """Take a step of the attempt under way; where it ends, decide what follows."""
-        before = self.statistics.newton_iterations
         try:
-            frame = self._run.advance()
+            frame = self._under_way.advance()
         except RunFailed as failure:
             self._detail = failure.detail
-            self._ended(failure.t, OUTCOMES.index(failure.outcome), slow=False)
+            self._ended(failure.t, failure.outcome)
             return
-        per_iteration = (intervals_of(self._mesh) + OVERHEAD) * (IN_CONTACT if self._run.presses else 1.0)
-        self._work += (self.statistics.newton_iterations - before) * per_iteration
+        self._count()
         if frame is not None:
             self._rows.append(row_of(frame))
-        if self._run.finished:
-            self._ended(self._run.t, OUTCOMES.index(Outcome.COMPLETED), slow=False)
-        elif not self._history and self._run.presses and self._first_if_pressed > self._mesh:
-            self._ended(self._run.t, OUTCOMES.index(Outcome.MESH_TOO_COARSE), slow=False)
-        elif self._work > allowance(self._attempts, Trial(self._mesh, self._steps)):
-            self._ended(self._run.t, OUTCOMES.index(Outcome.TOLERANCE_NOT_REACHED), slow=True)
+        if self._under_way.run.finished:
+            self._ended(self._under_way.run.t, Outcome.COMPLETED)
+        elif reason := self._reason_to_give_up(self._under_way):
+            self._ended(self._under_way.run.t, reason, slow=reason is Outcome.TOLERANCE_NOT_REACHED)
 
-    def _ended(self, t: float, outcome: int, slow: bool) -> None:
-        complete = OUTCOMES[outcome] is Outcome.COMPLETED
-        self._history.append(tuple(Attempt(self._mesh, self._steps, self._work, t, complete, slow, outcome)))
+    def _reason_to_give_up(self, attempt: UnderWay) -> Outcome | None:
+        """Why an attempt that has come so far does not go on. As it goes on what is no reason yet may become one, but
+        none is lost: what is none at a frame was none before."""
+        if not self._history and attempt.pressed and self._first_if_pressed > attempt.trial.mesh:
+            return Outcome.MESH_TOO_COARSE
+        if attempt.work > allowance(self._attempts, attempt.trial):
+            return Outcome.TOLERANCE_NOT_REACHED
+        return None
+
+    def _count(self) -> None:
+        """Enter what the attempts have cost so far."""
+        for name in ("steps", "newton_iterations", "failed_steps"):
+            setattr(self.statistics, name, getattr(self._before, name) + getattr(self._under_way.statistics, name))
+
+    def _ended(self, t: float, outcome: Outcome, slow: bool = False) -> None:
+        self._count()
+        attempt, complete = self._under_way, outcome is Outcome.COMPLETED
+        self._history.append(tuple(Attempt(*attempt.trial, attempt.work, t, complete, slow, OUTCOMES.index(outcome))))
         self._recorded.append(np.array(self._rows))
-        self._noticed.append(astuple(self._run.remarks))
-        self._rows, self._work = [], 0.0
+        self._noticed.append(astuple(attempt.run.remarks))
+        self._rows, self._before = [], replace(self.statistics)
         if complete:
             completed = [attempt.complete for attempt in self._attempts]
             self._recorded = [rows if kept else rows[:0] for rows, kept in zip(self._recorded, completed, strict=True)]
@@ -192,5 +220,4 @@ class Refined(Run):
             self._decided, self._errors_of_frames = True, self._together.errors()
             self.remarks = Remarks(*self._noticed[chosen(self._attempts).finest])  # type: ignore[arg-type]
         else:
-            self._mesh, self._steps = then
-            self._run = self._begin()
+            self._under_way = UnderWay(self._scene, then)

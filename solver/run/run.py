@@ -73,7 +73,8 @@ class Run(ABC):
 
     def attributes(self) -> dict[str, float | int | str]:
         """What a dataset of it says of it as a whole, by name."""
-        return {**(self.accuracy.attributes() if self.accuracy else {}), **self.remarks.attributes()}
+        taken_over = {"steps_taken_over": self.statistics.taken_over} if self.statistics.taken_over else {}
+        return {**(self.accuracy.attributes() if self.accuracy else {}), **self.remarks.attributes(), **taken_over}
 
     @property
     def finished(self) -> bool:

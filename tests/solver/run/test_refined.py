@@ -12,7 +12,7 @@ from solver import Condition, Curve, End, Initial, Numerics, Outcome, RunFailed,
 from solver.run import plan
 from solver.run.accuracy import QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN
-from solver.run.plan import FIRST_INTERVALS
+from solver.run.plan import FIRST_INTERVALS, Trial
 from solver.run.recording import Columns, columns_of, row_of
 from solver.run.refined import Refined
 from solver.scene.ends import FREE
@@ -131,3 +131,67 @@ def test_the_first_mesh_is_fine_enough_for_a_rod_of_many_turns() -> None:
     end = End((FREE, FREE, FREE), (FREE, FREE, (turn,)))
     run = Refined(replace(tolerated(1e-2), end=end, points=()))
     assert len(run.s) - 1 >= 20.0 * 2.0 * np.pi / LARGEST_TURN
+
+
+States = dict[Trial, tuple[dict[str, object], list[np.ndarray]]]
+
+
+def states_at(scene: Scene, frame: int) -> States:
+    """Of each attempt of a run the state at a frame, and the rows until then."""
+    run, states = Refined(scene), {}
+    while (attempt := run.under_way) is not None:
+        if len(run.rows) == frame + 1 and attempt.trial not in states:
+            states[attempt.trial] = attempt.checkpoint(), list(run.rows)
+        run.advance()
+    return states
+
+
+def begun_from(states: States, scene: Scene) -> tuple[Refined, list[bool]]:
+    """A run whose attempts begin from states as far as there are any, and whether each did."""
+    run, begun, seen = Refined(scene), [], None
+    while (attempt := run.under_way) is not None:
+        if attempt is not seen and not run.rows:
+            begun.append(attempt.trial in states and run.begin_from(*states[attempt.trial]))
+            seen = run.under_way
+        run.advance()
+    return run, begun
+
+
+@pytest.mark.parametrize("frame", [1, 8, 15])
+def test_attempts_that_begin_from_states_of_another_run_give_the_same_to_the_bit(frame: int) -> None:
+    alone, frames = done(1e-3)
+    run, begun = begun_from(states_at(tolerated(1e-3), frame), tolerated(1e-3))
+    assert all(begun)
+    assert len(begun) > 2
+    for one, other in zip([*run][-16:], frames[-16:], strict=True):
+        assert one.r.tobytes() == other.r.tobytes()
+        assert isinstance(one, VerifiedFrame)
+        assert one.error.kappa.tobytes() == other.error.kappa.tobytes()
+    ours, theirs = run.statistics, alone.statistics
+    assert (ours.steps, ours.newton_iterations, ours.failed_steps) == (
+        theirs.steps, theirs.newton_iterations, theirs.failed_steps)  # fmt: skip
+    assert theirs.taken_over == 0 < run.attributes()["steps_taken_over"] == ours.taken_over < ours.steps
+
+
+def test_an_attempt_that_is_given_up_before_a_state_does_not_begin_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    states = states_at(tolerated(1e-6, most_intervals=32), 15)
+    monkeypatch.setattr(plan, "MOST_WORK", 2e4)
+    alone, (run, begun) = Refined(tolerated(1e-6)), begun_from(states, tolerated(1e-6))
+    frames = list(alone)
+    assert begun[0] is False  # it takes more than a tenth of that work
+    assert [frame.f.tobytes() for frame in frames[1:]] == [frame.f.tobytes() for frame in run]
+    assert run.statistics.newton_iterations == alone.statistics.newton_iterations
+
+
+def test_where_strands_pressed_before_a_state_on_a_mesh_too_coarse_for_that_it_is_not_begun_from() -> None:
+    scene = tolerated(1e-2)
+    run = Refined(scene)
+    for _ in range(20):
+        run.advance()
+    state = run.under_way.checkpoint() if run.under_way else {}
+    assert not state[".pressed"]
+    for pressed, finer, begins in ((False, 1, True), (True, 0, True), (True, 1, False)):
+        other = Refined(scene)
+        other._first_if_pressed = run.under_way.trial.mesh + finer if run.under_way else 0
+        assert other.begin_from({**state, ".pressed": pressed}, run.rows) is begins
+        assert (other.statistics.steps > 0) is begins

@@ -1,0 +1,53 @@
+"""An attempt at a tolerance that is under way: a run of the scene at one of the resolutions that are tried."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from solver.measures.frame import Frame, Statistics
+from solver.run.checkpoint import Saved, restore, saved
+from solver.run.plan import IN_CONTACT, OVERHEAD, Trial, intervals_of, longest_step, step_tolerance
+from solver.run.simulation import Simulation
+from solver.scene.scene import Scene
+
+SMALL_MOTION = 1e-3
+"""See `Numerics`: of the waves that a start excites those below it are not followed step by step."""
+
+
+class UnderWay:
+    """The `run` of a trial, with what it has taken so far: its own `statistics`, and `work` as `plan` counts it.
+
+    `pressed`: whether strands have pressed on each other. It depends on nothing but the scene and the trial, so another
+    run whose scene begins alike passes through the same states; and it holds no frames.
+    """
+
+    def __init__(self, scene: Scene, trial: Trial) -> None:
+        self.trial = trial
+        self.statistics = Statistics()
+        self.work, self.pressed = 0.0, False
+        numerics = replace(
+            scene.numerics, tolerance=None, verify=False, intervals=intervals_of(trial.mesh),
+            dt_max=longest_step(trial.steps, scene.output_interval), small_motion=SMALL_MOTION,
+            increment_tolerance=step_tolerance(trial.steps, scene.numerics.tolerance or 1.0),
+        )  # fmt: skip
+        self.run = Simulation(replace(scene, numerics=numerics), self.statistics, goes_on=True)
+
+    def advance(self) -> Frame | None:
+        """Take a step; give the frame where it ends, if one is due there. Raises RunFailed."""
+        before = self.statistics.newton_iterations
+        frame = self.run.advance()
+        presses = self.run.presses
+        self.pressed = self.pressed or presses
+        per_iteration = (intervals_of(self.trial.mesh) + OVERHEAD) * (IN_CONTACT if presses else 1.0)
+        self.work += (self.statistics.newton_iterations - before) * per_iteration
+        return frame
+
+    def checkpoint(self) -> Saved:
+        """All that it remembers."""
+        return saved(self)
+
+    def restore(self, checkpoint: Mapping[str, Any]) -> None:
+        """Go on where another was, of the same scene and trial."""
+        restore(self, checkpoint)

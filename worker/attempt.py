@@ -21,8 +21,8 @@ from service.results.durable import size_of
 from service.results.scalars import Value, last_of, series_of
 from service.results.segments import Segment
 from service.settings import Settings
-from solver import Frame, Run, RunFailed, code_digest, simulate
-from worker import stopping
+from solver import Frame, Refined, Run, RunFailed, code_digest, simulate
+from worker import beginnings, stopping
 from worker.beginnings import Beginnings, begun_with
 from worker.checkpoints import Checkpoint, Checkpoints
 from worker.drift import drift_of
@@ -30,6 +30,7 @@ from worker.endings import LEAST_FREE, Ending, OutOfDisk, is_full
 from worker.lease import Lease
 from worker.lock import JobLock
 from worker.shown import Shown
+from worker.trials import Another, Steps, Trials
 
 log = logging.getLogger(__name__)
 Result = TypeVar("Result")
@@ -59,11 +60,6 @@ def _check_budget(run: Run, budget: float) -> None:
         raise RunFailed(Outcome.ESTIMATE_EXCEEDED, run.t, run.statistics.steps, detail)
 
 
-def _is_shared(spec: CaseSpec) -> bool:
-    """Whether another run may begin with one of this case."""
-    return spec.analysis == "dynamic" and spec.numerics.tolerance is None
-
-
 class Attempt:
     """Runs a held job. The lease is told of every step, the lock's next holder too, should this one die."""
 
@@ -79,16 +75,14 @@ class Attempt:
         self._due = 0.0
         self._shown = Shown(self._directory)
         self._beginnings: Beginnings | None = None
+        self._steps: Steps | None = None
 
     def run(self) -> Ending:
         """Compute the frames and put the dataset together. Raises whatever else ends a run."""
         self._with_room(lambda: self._directory.mkdir(mode=0o700, parents=True, exist_ok=True))
         spec = parse_case(self._held.case)
         simulation, segments = self._start(spec)
-        followed = self._held.followers()
-        if _is_shared(spec):
-            states = self._datasets.states(self._held.job.id)
-            self._beginnings = Beginnings(states, code_digest(), spec.frames, followed)
+        self._share(spec)
         self._with_room(lambda: self._shown.begin(segments, simulation))
         with DatasetWriter(self._path, spec, self._directory, segments) as writer:
             status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED, ""
@@ -103,11 +97,21 @@ class Attempt:
         drift, scalars = self._numbers(spec)
         return Ending(status, outcome, message, dataset, drift, simulation.attributes(), scalars)
 
+    def _share(self, spec: CaseSpec) -> None:
+        """Have the run keep states from which others may begin."""
+        states, followed = self._datasets.states(self._held.job.id), self._held.followers()
+        if spec.numerics.tolerance is not None:
+            another = Another.of(self._held, spec, self._datasets)
+            self._steps = Steps(self._held, Trials(states, spec.frames, followed), another)
+        elif spec.analysis == "dynamic":
+            self._beginnings = Beginnings(states, code_digest(), spec.frames, followed)
+
     def _start(self, spec: CaseSpec) -> tuple[Run, tuple[Segment, ...]]:
         """The run, where it goes on or begins, and its frames until then."""
-        checkpoint = self._checkpoints.newest()
-        begun = None if checkpoint else begun_with(self._held, spec, self._datasets, self._directory, self._path.stem)
-        self._tell_lost(checkpoint.steps if checkpoint else begun.steps if begun else 0)
+        checkpoint, begun = self._checkpoints.newest(), None
+        if checkpoint is None and spec.numerics.tolerance is None:
+            begun = begun_with(self._held, spec, self._datasets, self._directory, self._path.stem)
+        self._tell_lost(checkpoint.steps if checkpoint else begun.run.statistics.steps if begun else 0)
         if begun is not None:
             return begun.run, begun.segments
         simulation = simulate(build_scene(spec))
@@ -125,14 +129,14 @@ class Attempt:
         self._tell(simulation)
         under_way = False
         while not simulation.finished:
-            frame = simulation.advance()
+            frame = self._advance(simulation)
             if not under_way:
                 under_way = True
                 log.info("under way", extra={"t": simulation.t, "steps": simulation.statistics.steps})
             if frame is not None:
                 self._keep(simulation, writer, frame)
                 if self._beginnings is not None:
-                    self._beginnings.keep(writer.frames - 1, simulation)
+                    self._beginnings.keep(writer.frames - 1, simulation, beginnings.WORTH)
             steps = simulation.statistics.steps
             self._lock.mark(steps)
             self._tell(simulation)
@@ -145,6 +149,11 @@ class Attempt:
                 raise
             if time.monotonic() >= self._due:
                 self._save(simulation, writer)
+
+    def _advance(self, simulation: Run) -> Frame | None:
+        if self._steps is not None and isinstance(simulation, Refined):
+            return self._steps.advance(simulation)
+        return simulation.advance()
 
     def _check_stop(self, simulation: Run) -> None:
         """After a step, so that each attempt gets on. Raises Stopping."""

@@ -12,10 +12,10 @@ import pytest
 
 from service.cases import apply_settings, load_case, parse_case
 from service.cases.beginning import common_frame
-from service.jobs import Database, NewJob, Registry, Status
+from service.jobs import Database, Job, NewJob, Registry, Status
 from service.results.durable import discard
 from service.settings import Settings
-from worker import beginnings
+from worker import beginnings, trials
 from worker.run import run_next
 
 SHORT = {"t_end": 1.0, "output.interval": 0.1, "numerics.intervals": 12, "numerics.method": "staggered"}
@@ -30,6 +30,7 @@ END = {"preset": "free", "switches": [{"at": 0.55, "omega3": 1.0}]}
 def all_states(monkeypatch: pytest.MonkeyPatch) -> None:
     """Those of short runs too."""
     monkeypatch.setattr(beginnings, "WORTH", 0.0)
+    monkeypatch.setattr(trials, "WORTH", 0.0)
 
 
 @pytest.fixture
@@ -57,6 +58,16 @@ def variables(settings: Settings, job) -> dict[str, np.ndarray]:
         return {name: file[name][:] for name in file.variables} | attributes
 
 
+def assert_same(settings: Settings, follower: Job, alone: Job) -> None:
+    """All that they gave, to the bit; and the numbers of steps."""
+    shared, own = variables(settings, follower), variables(settings, alone)
+    assert shared.keys() == own.keys() and "Tw" in own
+    for name, values in own.items():
+        same = np.array_equal(shared[name], values, equal_nan=values.dtype.kind == "f") if isinstance(
+            values, np.ndarray) else shared[name] == values  # fmt: skip
+        assert same, name
+
+
 @pytest.mark.parametrize(("first", "then", "frame"), [
     ({}, {"t_end": 1.5}, 9), ({"t_end": 1.5}, {}, 9), ({"t_end": 0.97}, {"t_end": 1.3}, 9),
     (BOX, {**BOX, "t_end": 1.5}, 9), ({**BOX, "t_end": 1.5}, BOX, 9),
@@ -67,6 +78,7 @@ def variables(settings: Settings, job) -> dict[str, np.ndarray]:
     ({"ends.end": END, **BOX}, {"ends.end": {"preset": "free"}, **BOX}, 5),
     ({"numerics.verify": True}, {"numerics.verify": True, "t_end": 1.4}, 9),
     ({}, {"output.fields": ["r", "kappa"], "t_end": 1.2}, 9),
+    ({"contact": {}}, {"contact": {}, "t_end": 1.4}, 9),  # what its ends do later is what they have done
 ])  # fmt: skip
 def test_it_is_the_same_as_alone(database, settings, first, then, frame):
     registry = Registry(database)
@@ -89,20 +101,19 @@ def test_it_is_the_same_as_alone(database, settings, first, then, frame):
         patch.setattr(attempt, "begun_with", watched)
         run_next(database, settings)
         run_next(database, settings)
-    assert begun[0] is not None and begun[0].steps > 0 and begun[1] is None
+    assert begun[0] is not None and begun[1] is None
     assert sum(segment.frames for segment in begun[0].segments) <= frame + 1
-    shared, own = (variables(settings, registry.get(job.id)) for job in (follower, alone))
-    assert shared.keys() == own.keys() and "Tw" in own
-    for name, values in own.items():
-        same = np.array_equal(shared[name], values, equal_nan=values.dtype.kind == "f") if isinstance(
-            values, np.ndarray) else shared[name] == values  # fmt: skip
-        assert same, name
+    assert_same(settings, *(registry.get(job.id) for job in (follower, alone)))
+    taken_over = registry.get(follower.id).attributes["steps_taken_over"]
+    assert 0 < taken_over < registry.get(follower.id).reached.steps == registry.get(alone.id).reached.steps
+    assert "steps_taken_over" not in registry.get(alone.id).attributes
 
 
 @pytest.mark.parametrize(("first", "then"), [
     ({}, {"loads.damping": 0.5}), ({}, {"numerics.intervals": 14}), ({}, {"output.interval": 0.2}),
     ({"output.fields": ["r"]}, {"t_end": 2.0}), ({}, {"output.topology": False}), ({}, {"rod.density": 1400.0}),
-    ({}, {"analysis": "static"}), ({"contact": {}}, {"contact": {}, "t_end": 2.0}), ({}, {"t_end": 0.1}),
+    ({}, {"analysis": "static"}), ({}, {"t_end": 0.1}),
+    ({"contact": {}, "ends.end": END}, {"contact": {}, "ends.end": "free"}),
     ({"loads.point": [{"s": 0.5, "force": [{**TABLE, "interpolation": "pchip"}, 0.0, 0.0]}]},
      {"loads.point": [{"s": 0.5, "force": [{**OTHER, "interpolation": "pchip"}, 0.0, 0.0]}]}),
 ])  # fmt: skip
@@ -110,11 +121,19 @@ def test_what_differs_from_the_start_has_no_beginning_in_common(first, then):
     assert common_frame(parse_case(case(**first)), parse_case(case(**then))) == 0
 
 
-def test_where_the_run_depends_on_what_comes_it_begins_by_itself(database, settings, caplog):
+TURNS = {"contact": {}, "ends.end": {"preset": "free", "omega3": 10.0}}
+
+
+@pytest.mark.parametrize(("first", "then"), [
+    ({"ends.end": "free"}, {"ends.end": END}),  # what turns about one axis has its own method
+    (TURNS, {**TURNS, "t_end": 2.0}),  # with more turns strands would press harder
+    ({"numerics": {"tolerance": 0.01}, **TURNS}, {"numerics": {"tolerance": 0.01}, **TURNS, "t_end": 2.0}),
+])  # fmt: skip
+def test_where_the_run_depends_on_what_comes_it_begins_by_itself(database, settings, caplog, first, then):
     registry = Registry(database)
-    leader = registry.submit(NewJob(case(**{"ends.end": "free"})))  # what turns about one axis has its own method
+    leader = registry.submit(NewJob(case(**first)))
     run_next(database, settings)
-    follower = registry.submit(NewJob(case(**{"ends.end": END}), begins_with=leader.id, begins_at=9))
+    follower = registry.submit(NewJob(case(**then), begins_with=leader.id, begins_at=9))
     run_next(database, settings)
     ended = registry.get(follower.id)
     assert (ended.status, ended.begins_with) == (Status.SUCCESSFUL, None)

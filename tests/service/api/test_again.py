@@ -11,7 +11,7 @@ import pytest
 
 from service.api.submitting import requested
 from service.cases import apply_settings, load_case
-from worker import beginnings
+from worker import beginnings, trials
 from worker.run import run_next
 
 
@@ -23,6 +23,7 @@ def problem(answer):
 def all_states(monkeypatch):
     """Those of short runs too."""
     monkeypatch.setattr(beginnings, "WORTH", 0.0)
+    monkeypatch.setattr(trials, "WORTH", 0.0)
 
 
 @pytest.fixture
@@ -71,14 +72,39 @@ def test_a_finished_job_goes_on_beyond_its_end_as_if_asked_for_at_once(client, r
 
 
 @pytest.mark.parametrize(("change", "why"), [
-    ({"numerics": {"tolerance": 0.01}}, "numerics.tolerance"), ({"contact": {}}, "law of contact"),
-    ({"t_end": 1.6}, ""), ({"numerics": {"method": "box", "intervals": 10}}, ""),
+    ({"numerics": {"method": "box", "intervals": 10}}, ""), ({"numerics": {"tolerance": 0.01}}, ""),
+    ({"contact": {}}, ""), ({"t_end": 1.6}, ""),
 ])  # fmt: skip
 def test_what_cannot_go_on_says_so_when_it_is_handed_in(client, case, change, why):
     first = client.post("/v1/jobs", json={"case": {**case, **change}}).json()
     longer = client.post("/v1/jobs", json={"job": first["id"], "set": {"t_end": 1.7}}).json()
     assert longer["begins_with"] == (None if why else first["id"])
     assert longer["message"].startswith("computed from its start: " if why else "") and why in longer["message"]
+
+
+def test_what_can_only_be_known_as_it_runs_is_said_then(client, registry, settings, run, case):
+    """With more turns strands would press harder: the law is another one."""
+    turning = {"contact": {}, "ends": {**case["ends"], "end": {"preset": "free", "omega3": 10.0}}}
+    first, _ = run({"case": {**case, **turning}})
+    answer = client.post("/v1/jobs", json={"job": first["id"], "set": {"t_end": 2.0}})
+    told = answer.json()
+    assert (told["begins_with"], told["message"]) == (first["id"], "")
+    run_next(registry.database, settings)
+    ended = client.get(answer.headers["location"]).json()
+    assert (ended["status"], ended["begins_with"]) == ("successful", None)
+
+
+@pytest.mark.parametrize("change", [{"set": {"t_end": 1.6}}, {"fork": {"at": 0.75, "end": {"omega3": -1.0}}}])
+def test_a_job_to_a_tolerance_goes_on_as_if_asked_for_at_once(run, case, change):
+    case = {**case, "numerics": {"tolerance": 0.01}}
+    first, _ = run({"case": case})
+    then, values = run({"job": first["id"], **change})
+    fork = {"ends.end.switches": [{"at": 0.75, "omega3": -1.0}]}
+    alone, expected = run({"case": apply_settings(case, change.get("set", fork)), "reuse": False})
+    assert (then["begins_with"], alone["begins_with"]) == (first["id"], None)
+    assert then["case_sha256"] == alone["case_sha256"]
+    assert same(values, expected) and "kappa_error" in values
+    assert then["attributes"]["steps_taken_over"] > 0 and "steps_taken_over" not in alone["attributes"]
 
 
 def test_a_fork_moves_the_ends_otherwise_from_its_time_on(client, run, case, done):
@@ -104,7 +130,9 @@ def test_what_cannot_be_done_is_refused(client, done, change, expected):
         422, "invalid_case")
 
 
-def test_members_that_differ_late_begin_as_one_does(client, registry, settings, case):
+@pytest.mark.parametrize("numerics", [None, {"tolerance": 0.01}])
+def test_members_that_differ_late_begin_as_one_does(client, registry, settings, case, numerics):
+    case = case if numerics is None else {**case, "numerics": numerics}
     body = {"case": case, "parameters": {"t_end": [0.7, 1.5, 1.0], "loads.damping": [0.1, 0.2]}}
     told = client.post("/v1/ensembles", json=body).json()
     members = client.get(told["links"]["members"]).json()["members"]

@@ -1,0 +1,183 @@
+"""A job to a tolerance that begins with the run of another gives what it gives alone, to the bit."""
+
+from __future__ import annotations
+
+import signal
+from typing import Any
+
+import pytest
+
+from service.jobs import Job, NewJob, Registry, Status
+from service.jobs.audit import Actor
+from service.jobs.reconciler import beats, take_back
+from solver import Simulation
+from tests.worker.killed import killed_after
+from tests.worker.test_beginnings import OTHER, TABLE, all_states, assert_same, case, database, settings
+from worker import beginnings, trials
+from worker.run import run_next
+
+__all__ = ["all_states", "database", "settings"]
+
+TOLERANCE = {"numerics": {"tolerance": 1e-2}}
+FINE = {"numerics": {"tolerance": 3e-4}}
+
+
+def tolerated(name: str = "cantilever-vibration", **told: Any) -> dict[str, Any]:
+    return case(name, **{"numerics": {"tolerance": 1e-2}, **told})
+
+
+@pytest.fixture
+def registry(database) -> Registry:
+    return Registry(database)
+
+
+@pytest.fixture
+def ran(registry, settings):
+    """Hand in a case, run it, and give the job, with how many steps were computed for it."""
+
+    def run(case: dict[str, Any], **told: Any) -> tuple[Job, int]:
+        job, steps = registry.submit(NewJob(case, **told)), 0
+        take = Simulation._take
+
+        def counted(simulation, *told):
+            nonlocal steps
+            steps += 1
+            take(simulation, *told)
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(Simulation, "_take", counted)
+            run_next(registry.database, settings)
+        ended = registry.get(job.id)
+        assert ended.status is Status.SUCCESSFUL, ended.message
+        return ended, steps
+
+    return run
+
+
+def taken_over(job: Job) -> int:
+    return int(job.attributes.get("steps_taken_over", 0))
+
+
+def load(table: dict[str, Any]) -> dict[str, Any]:
+    return {"loads.point": [{"s": 0.5, "force": [table, 0.0, 0.0]}]}
+
+
+def switched(omega3: float) -> dict[str, Any]:
+    return {"ends.end": {"preset": "free", "switches": [{"at": 0.55, "omega3": omega3}]}}
+
+
+@pytest.mark.parametrize(("first", "then", "frame"), [
+    ({}, {"t_end": 1.5}, 9), ({"t_end": 1.5}, {}, 9), (FINE, {**FINE, "t_end": 1.5}, 9),
+    (load(TABLE), load(OTHER), 4), (switched(1.0), switched(-1.0), 5),
+    (switched(1.0), {"ends.end": {"preset": "free", "switches": [{"at": 0.8, "omega3": 1.0}]}}, 5),
+    ({"output.fields": ["r"]}, {"t_end": 1.3}, 9),  # rows hold all
+    ({"contact": {}}, {"contact": {}, "t_end": 1.4}, 9),
+])  # fmt: skip
+def test_it_is_the_same_as_alone_for_fewer_steps(ran, settings, first, then, frame):
+    leader, _ = ran(tolerated(**first))
+    follower, computed = ran(tolerated(**then), begins_with=leader.id, begins_at=frame)
+    alone, whole = ran(tolerated(**then))
+    assert_same(settings, follower, alone)
+    assert follower.begins_with == leader.id
+    assert follower.reached.steps == alone.reached.steps == whole == computed + taken_over(follower)
+    assert taken_over(alone) == 0 < taken_over(follower)
+
+
+def test_who_begins_with_one_that_began_with_another_takes_over_from_it(ran, settings):
+    first, _ = ran(tolerated())
+    second, _ = ran(tolerated(t_end=1.5), begins_with=first.id, begins_at=9)
+    third, computed = ran(tolerated(t_end=2.0), begins_with=second.id, begins_at=14)
+    alone, whole = ran(tolerated(t_end=2.0))
+    assert_same(settings, third, alone)
+    assert taken_over(third) > taken_over(second) > 0
+    assert computed < 0.5 * whole
+
+
+@pytest.mark.parametrize(("first", "then"), [(28.0, 30.0), (29.0, 30.0)])
+def test_what_ends_its_first_attempt_because_strands_press_is_the_same_too(ran, settings, first, then):
+    """The twisted cable touches itself after 28 s."""
+    leader, _ = ran(tolerated("goyal-2003", **{"t_end": first, "output.interval": 0.5}))
+    told = {"begins_with": leader.id, "begins_at": int(first / 0.5) - 1}
+    follower, computed = ran(tolerated("goyal-2003", **{"t_end": then, "output.interval": 0.5}), **told)
+    alone, whole = ran(tolerated("goyal-2003", **{"t_end": then, "output.interval": 0.5}))
+    assert_same(settings, follower, alone)
+    assert computed == whole - taken_over(follower) < 0.6 * whole
+
+
+def test_what_another_tolerance_computed_is_not_taken_over(ran):
+    leader, _ = ran(tolerated())
+    follower, _ = ran(tolerated(t_end=1.5, **FINE), begins_with=leader.id, begins_at=9)
+    assert (follower.begins_with, taken_over(follower)) == (None, 0)
+
+
+@pytest.mark.parametrize("harm", ["states", "rows", "one state", "deleted", "emptied"])
+def test_whatever_is_not_there_any_more_it_gives_the_same(ran, registry, settings, harm):
+    leader, _ = ran(tolerated())
+    kept = settings.data / "beginnings" / leader.id
+    attempts = sorted(kept.iterdir())
+    assert len(attempts) > 2
+    assert all([path.name for path in sorted(attempt.iterdir())]
+               == ["00000002", "00000005", "00000007", "00000009", "rows"] for attempt in attempts)  # fmt: skip
+    for attempt in attempts:
+        for path in attempt.iterdir():
+            if harm == "emptied":
+                path.unlink()
+            elif path.name == {"rows": "rows", "one state": "00000009"}.get(harm, path.name) and harm != "deleted":
+                path.write_bytes(path.read_bytes()[:-9] if path.name == "rows" else b"x" * 100)
+    if harm == "deleted":
+        registry.delete(leader.id, Actor("local"))
+    follower, computed = ran(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9)
+    alone, whole = ran(tolerated(t_end=1.5))
+    assert_same(settings, follower, alone)
+    if harm == "one state":
+        assert 0 < computed < whole and follower.begins_with == leader.id
+    else:
+        assert computed == whole and follower.begins_with is None
+
+
+def test_one_attempt_whose_states_are_lost_is_run_whole_and_the_others_begin_later(ran, settings):
+    leader, _ = ran(tolerated())
+    kept = sorted((settings.data / "beginnings" / leader.id).iterdir())
+    for path in kept[0].iterdir():
+        path.unlink()
+    follower, computed = ran(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9)
+    alone, whole = ran(tolerated(t_end=1.5))
+    assert_same(settings, follower, alone)
+    assert 0 < computed < whole and follower.begins_with == leader.id
+
+
+def test_short_attempts_keep_states_for_those_alone_who_wait(ran, registry, settings, monkeypatch):
+    monkeypatch.setattr(trials, "WORTH", 1e9)
+    leader = registry.submit(NewJob(tolerated()))
+    waiting = registry.submit(NewJob(tolerated(t_end=1.3), begins_with=leader.id, begins_at=4, waits=True))
+    run_next(registry.database, settings)
+    kept = settings.data / "beginnings" / leader.id
+    assert {path.name for path in kept.glob("*/*")} == {"00000004", "rows"}
+    run_next(registry.database, settings)
+    assert taken_over(registry.get(waiting.id)) > 0
+    ran(tolerated(t_end=0.9))
+    assert [path.name for path in kept.parent.iterdir()] == [leader.id]
+    late, _ = ran(tolerated(t_end=1.4), begins_with=leader.id, begins_at=3)
+    assert (late.begins_with, taken_over(late)) == (None, 0)
+
+
+@pytest.mark.parametrize(("whose", "steps"), [
+    ("leader", 1), ("leader", 20), ("leader", 50), ("leader", 60),
+    ("follower", 1), ("follower", 8), ("follower", 16), ("follower", 30),
+])  # fmt: skip
+def test_a_job_that_is_killed_on_its_way_goes_on_and_gives_the_same(ran, registry, settings, whose, steps):
+    leader = registry.submit(NewJob(tolerated()))
+    follower = registry.submit(NewJob(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9, waits=True))
+    if whose == "follower":
+        run_next(registry.database, settings)
+    assert killed_after(steps, settings.data, 1e-9) == -signal.SIGKILL
+    for beat in beats(registry.database):
+        take_back(registry.database, beat, 3)
+    while run_next(registry.database, settings):
+        pass
+    ended = registry.get(follower.id)
+    alone, _ = ran(tolerated(t_end=1.5))
+    assert (registry.get(leader.id if whose == "leader" else follower.id).attempts, ended.begins_with) == (2, leader.id)
+    assert_same(settings, ended, alone)
+    assert taken_over(ended) > 0.5 * ended.reached.steps
+    assert beginnings.WORTH == 0.0

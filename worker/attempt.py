@@ -30,7 +30,7 @@ from worker.endings import LEAST_FREE, Ending, OutOfDisk, is_full
 from worker.lease import Lease
 from worker.lock import JobLock
 from worker.shown import Shown
-from worker.trials import Another, Steps, Trials
+from worker.trials import Steps
 
 log = logging.getLogger(__name__)
 Result = TypeVar("Result")
@@ -82,7 +82,7 @@ class Attempt:
         self._with_room(lambda: self._directory.mkdir(mode=0o700, parents=True, exist_ok=True))
         spec = parse_case(self._held.case)
         simulation, segments = self._start(spec)
-        self._share(spec)
+        self._share(spec, simulation)
         self._with_room(lambda: self._shown.begin(segments, simulation))
         with DatasetWriter(self._path, spec, self._directory, segments) as writer:
             status, outcome, message = Status.SUCCESSFUL, Outcome.COMPLETED, ""
@@ -97,14 +97,13 @@ class Attempt:
         drift, scalars = self._numbers(spec)
         return Ending(status, outcome, message, dataset, drift, simulation.attributes(), scalars)
 
-    def _share(self, spec: CaseSpec) -> None:
-        """Have the run keep states from which others may begin."""
-        states, followed = self._datasets.states(self._held.job.id), self._held.followers()
+    def _share(self, spec: CaseSpec, simulation: Run) -> None:
+        """Have the run keep states from which others may begin; one to a tolerance begins with others as it goes."""
         if spec.numerics.tolerance is not None:
-            another = Another.of(self._held, spec, self._datasets)
-            self._steps = Steps(self._held, Trials(states, spec.frames, followed), another)
+            self._steps = Steps(self._held, spec, self._datasets, simulation)
         elif spec.analysis == "dynamic":
-            self._beginnings = Beginnings(states, code_digest(), spec.frames, followed)
+            states = self._datasets.states(self._held.job.id)
+            self._beginnings = Beginnings(states, code_digest(), spec.frames, self._held.followers())
 
     def _start(self, spec: CaseSpec) -> tuple[Run, tuple[Segment, ...]]:
         """The run, where it goes on or begins, and its frames until then."""

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from service.cases import CaseSpec, build_scene
 from service.jobs.held import HeldJob
 from service.results import Datasets
-from solver import Frame, Refined, Scene, Trial, UnderWay, code_digest
+from solver import Frame, Refined, Run, Scene, Trial, UnderWay, code_digest
 from worker.beginnings import NOTHING_TO_TAKE, Beginnings, Common, begins_by_itself
 from worker.merging import AnotherBeginning, begun
 
@@ -80,19 +80,13 @@ class Another:
     most: int
 
     @classmethod
-    def of(cls, held: HeldJob, spec: CaseSpec, datasets: Datasets) -> Another | None:
-        """None where the job begins by itself; it tells so where it was to begin with another."""
-        if held.job.begins_with is None:
-            return None
-        try:
-            common = Common.of(held, held.job.begins_with, spec)
-            trials = Trials(datasets.states(common.other.id), common.first.frames)
-            if not trials.any:
-                raise LookupError("no state of it is kept")
-            return cls(trials, build_scene(common.first), common.most)
-        except NOTHING_TO_TAKE as error:
-            begins_by_itself(held, error)
-            return None
+    def of(cls, held: HeldJob, other_id: str, spec: CaseSpec, datasets: Datasets) -> Another:
+        """Raises what `NOTHING_TO_TAKE` lists."""
+        common = Common.of(held, other_id, spec)
+        trials = Trials(datasets.states(other_id), common.first.frames)
+        if not trials.any:
+            raise LookupError("no state of it is kept")
+        return cls(trials, build_scene(common.first), common.most)
 
     def begin(self, run: Refined, attempt: UnderWay) -> None:
         """Have the attempt that the run is about to begin go on from the last state of one like it that it passes
@@ -107,9 +101,15 @@ class Another:
 class Steps:
     """Takes the steps of a run to a tolerance."""
 
-    def __init__(self, held: HeldJob, trials: Trials, another: Another | None) -> None:
-        """`trials`: those of this run; `another`: with which it begins."""
-        self._held, self._trials, self._another = held, trials, another
+    def __init__(self, held: HeldJob, spec: CaseSpec, datasets: Datasets, run: Run) -> None:
+        self._held = held
+        self._trials = Trials(datasets.states(held.job.id), spec.frames, held.followers())
+        self._another: Another | None = None
+        if held.job.begins_with is not None:
+            try:
+                self._another = Another.of(held, held.job.begins_with, spec, datasets)
+            except NOTHING_TO_TAKE as error:
+                self._in_vain(run, error)
 
     def advance(self, run: Refined) -> Frame | None:
         """Take one step. Each attempt may begin where another's was; its states are kept, and its rows at its end."""
@@ -125,8 +125,8 @@ class Steps:
             self._trials.keep_rows(before.trial, rows)
         elif len(rows) > passed:
             self._trials.keep(now, passed)
-        if now is None and self._another is not None and not run.statistics.taken_over:
-            begins_by_itself(self._held, "no state of the attempts that were made is kept")
+        if now is None and self._another is not None:
+            self._in_vain(run, "no state of the attempts that were made is kept")
         return frame
 
     def _begin(self, run: Refined, attempt: UnderWay) -> None:
@@ -136,6 +136,10 @@ class Steps:
             self._another.begin(run, attempt)
         except (AnotherBeginning, LookupError, ValueError) as error:
             log.warning("%s begins at its start: %s", run.phase, error)
-            if not run.statistics.taken_over:
-                self._another = None
-                begins_by_itself(self._held, error)
+            self._another = None
+            self._in_vain(run, error)
+
+    def _in_vain(self, run: Run, reason: object) -> None:
+        """Tell that nothing can be taken over, if nothing has been."""
+        if not run.statistics.taken_over:
+            begins_by_itself(self._held, reason)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from shutil import rmtree
 from typing import Any
 
 import pytest
@@ -10,15 +11,15 @@ import pytest
 from service.jobs import Job, NewJob, Registry, Status
 from service.jobs.audit import Actor
 from service.jobs.reconciler import beats, take_back
+from service.settings import Settings
 from solver import Simulation
 from tests.worker.killed import killed_after
 from tests.worker.test_beginnings import OTHER, TABLE, all_states, assert_same, case, database, settings
-from worker import beginnings, trials
+from worker import trials
 from worker.run import run_next
 
 __all__ = ["all_states", "database", "settings"]
 
-TOLERANCE = {"numerics": {"tolerance": 1e-2}}
 FINE = {"numerics": {"tolerance": 3e-4}}
 
 
@@ -161,6 +162,12 @@ def test_short_attempts_keep_states_for_those_alone_who_wait(ran, registry, sett
     assert (late.begins_with, taken_over(late)) == (None, 0)
 
 
+def killed(registry: Registry, settings: Settings, steps: int) -> None:
+    assert killed_after(steps, settings.data, 1e-9) == -signal.SIGKILL
+    for beat in beats(registry.database):
+        take_back(registry.database, beat, 3)
+
+
 @pytest.mark.parametrize(("whose", "steps"), [
     ("leader", 1), ("leader", 20), ("leader", 50), ("leader", 60),
     ("follower", 1), ("follower", 8), ("follower", 16), ("follower", 30),
@@ -170,9 +177,7 @@ def test_a_job_that_is_killed_on_its_way_goes_on_and_gives_the_same(ran, registr
     follower = registry.submit(NewJob(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9, waits=True))
     if whose == "follower":
         run_next(registry.database, settings)
-    assert killed_after(steps, settings.data, 1e-9) == -signal.SIGKILL
-    for beat in beats(registry.database):
-        take_back(registry.database, beat, 3)
+    killed(registry, settings, steps)
     while run_next(registry.database, settings):
         pass
     ended = registry.get(follower.id)
@@ -180,4 +185,16 @@ def test_a_job_that_is_killed_on_its_way_goes_on_and_gives_the_same(ran, registr
     assert (registry.get(leader.id if whose == "leader" else follower.id).attempts, ended.begins_with) == (2, leader.id)
     assert_same(settings, ended, alone)
     assert taken_over(ended) > 0.5 * ended.reached.steps
-    assert beginnings.WORTH == 0.0
+
+
+def test_a_job_goes_on_from_its_checkpoint_though_who_it_began_with_is_gone(ran, registry, settings):
+    leader, _ = ran(tolerated())
+    follower = registry.submit(NewJob(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9))
+    killed(registry, settings, 6)
+    registry.delete(leader.id, Actor("local"))
+    rmtree(settings.data / "beginnings" / leader.id)
+    run_next(registry.database, settings)
+    ended = registry.get(follower.id)
+    alone, _ = ran(tolerated(t_end=1.5))
+    assert_same(settings, ended, alone)
+    assert ended.begins_with == leader.id and 0 < taken_over(ended) < 0.5 * ended.reached.steps

@@ -73,7 +73,7 @@ def test_a_finished_job_goes_on_beyond_its_end_as_if_asked_for_at_once(client, r
 
 @pytest.mark.parametrize(("change", "why"), [
     ({"numerics": {"method": "box", "intervals": 10}}, ""), ({"numerics": {"tolerance": 0.01}}, ""),
-    ({"contact": {}}, ""), ({"t_end": 1.6}, ""),
+    ({"contact": {}}, ""), ({"t_end": 1.6}, ""), ({"analysis": "static"}, "static analysis"),
 ])  # fmt: skip
 def test_what_cannot_go_on_says_so_when_it_is_handed_in(client, case, change, why):
     first = client.post("/v1/jobs", json={"case": {**case, **change}}).json()

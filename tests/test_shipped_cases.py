@@ -59,12 +59,7 @@ def test_the_energy_balance_closes(name: str):
     assert max(abs(f.energy_balance) for f in frames) < 0.01 * max(stored)
 
 
-STRETCHES = pytest.mark.xfail(strict=True, reason="goyal-2003 stretches by 6.2e-3 at 32.2 s, 1.45 times the bound")
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[STRETCHES] if name == "goyal-2003" else []) for name in shipped_cases()]
-)
+@pytest.mark.parametrize("name", shipped_cases())
 def test_the_rod_keeps_its_length_and_its_frames_stay_orthonormal(name: str):
     scene, frames = run(name)
     ds = scene.rod.length / scene.numerics.intervals

@@ -71,13 +71,15 @@ def test_a_finished_job_goes_on_beyond_its_end_as_if_asked_for_at_once(client, r
     assert same(values, expected) and len(values["time"]) == 17
 
 
-@pytest.mark.parametrize(("change", "why"), [
-    ({"numerics": {"method": "box", "intervals": 10}}, ""), ({"numerics": {"tolerance": 0.01}}, ""),
-    ({"contact": {}}, ""), ({"t_end": 1.6}, ""), ({"analysis": "static"}, "static analysis"),
+@pytest.mark.parametrize(("change", "later", "why"), [
+    ({"numerics": {"method": "box", "intervals": 10}}, {}, ""), ({"numerics": {"tolerance": 0.01}}, {}, ""),
+    ({"contact": {}}, {}, ""), ({"t_end": 1.6}, {}, ""),
+    ({}, {"output.topology": False}, "its output has other frames, or variables"),
+    ({"contact": {}}, {"ends.end": "free"}, "law of contact"),
 ])  # fmt: skip
-def test_what_cannot_go_on_says_so_when_it_is_handed_in(client, case, change, why):
+def test_what_cannot_go_on_says_so_when_it_is_handed_in(client, case, change, later, why):
     first = client.post("/v1/jobs", json={"case": {**case, **change}}).json()
-    longer = client.post("/v1/jobs", json={"job": first["id"], "set": {"t_end": 1.7}}).json()
+    longer = client.post("/v1/jobs", json={"job": first["id"], "set": {"t_end": 1.7} | later}).json()
     assert longer["begins_with"] == (None if why else first["id"])
     assert longer["message"].startswith("computed from its start: " if why else "") and why in longer["message"]
 

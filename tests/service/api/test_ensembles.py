@@ -70,7 +70,7 @@ def test_all_members_of_a_grid_are_accepted_at_once(client, grid):
     for one in members:
         case = client.get(one["links"]["job"] + "/case").json()
         assert case["loads"] == {"gravity": [one["values"]["gravity"], 0.0, 0.0], "distributed": [], "point": [],
-                                 "damping": one["values"]["damping"]}  # fmt: skip
+                                 "obstacles": [], "damping": one["values"]["damping"]}  # fmt: skip
         assert client.get(one["links"]["job"]).json()["label"] == "first"
 
 

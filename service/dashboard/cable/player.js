@@ -17,9 +17,9 @@ export class Player {
    * @param {(place: number) => number[]} [body] the colour of each run's cable */
   constructor(runs, tell, body = () => BODY) {
     this.runs = runs.map((run) => ({ ...run, film: new Film(), nodes: new Float32Array(0) }));
-    this.shape = runs[0].shape;
+    this.shapes = runs.map(({ shape }) => shape);
     this.body = body;
-    this.stage = new Stage(`cable in three dimensions: ${runs.map(({ shape }) => shape.title || shape.name).join("; ")}`);
+    this.stage = new Stage(`cable in three dimensions: ${this.shapes.map(({ title, name }) => title || name).join("; ")}`);
     this.stage.content = () => this.content();
     this.clock = new Clock((t) => {
       this.stage.redraw();
@@ -48,7 +48,7 @@ export class Player {
 
   /** @param {string} kind */
   name(kind) {
-    return `${this.shape.name || "cable"}-${told(this.clock.t)}s.${kind}`;
+    return `${this.shapes[0].name || "cable"}-${told(this.clock.t)}s.${kind}`;
   }
 
   /** The film whose colours are offered. */
@@ -70,7 +70,7 @@ export class Player {
     if (news.some(Boolean)) {
       for (const run of shown) run.nodes = new Float32Array(NODE * run.film.nodes);
       if (first) this.open(shown);
-      else this.stage.follow(this.shape, ...this.around(shown));
+      else this.stage.follow(this.shapes, boxOf(shown));
       const longest = shown.reduce((best, run) => end(run) > end(best) ? run : best);
       this.clock.set(longest.film.time);
       this.paint();
@@ -83,17 +83,8 @@ export class Player {
     this.place.hidden = false;
     const names = [...(this.colour?.options ?? [])].map((one) => one.value);
     this.colour?.append(...this.film.colours.filter((name) => !names.includes(name)).map((name) => new Option(name)));
-    const { film } = shown[0], r = film.values("r"), last = 3 * (film.nodes - 1), [box, obstacles] = this.around(shown);
-    this.stage.set(this.shape, box, [0, 1, 2].map((i) => r[last + i] - r[i]), obstacles);
-  }
-
-  /** The box of all frames of some runs, and the obstacles of all. @param {{film: Film}[]} shown
-   * @returns {[import("./obstacles.js").Box, import("./obstacles.js").Obstacle[]]} */
-  around(shown) {
-    /** @param {number} side @param {(...values: number[]) => number} most */
-    const corner = (side, most) => [0, 1, 2].map((i) => most(...shown.map((run) => run.film.box[side][i])));
-    const places = this.runs.flatMap(({ shape }) => shape.loads?.obstacles ?? []).map(({ start, end, radius }) => JSON.stringify({ start, end, radius }));
-    return [[corner(0, Math.min), corner(1, Math.max)], [...new Set(places)].map((place) => JSON.parse(place))];
+    const { film } = shown[0], r = film.values("r"), last = 3 * (film.nodes - 1);
+    this.stage.set(this.shapes, boxOf(shown), [0, 1, 2].map((i) => r[last + i] - r[i]));
   }
 
   /** Show the chosen colour and its scale. */
@@ -113,7 +104,7 @@ export class Player {
     this.runs.forEach(({ film, nodes, shape }, place) => {
       if (!film.time.length) return;
       film.at(t, colour, nodes);
-      this.stage.surroundings?.shadow(nodes, seen.lines);
+      this.stage.surroundings?.shadow(shape, nodes, seen.lines);
       if (film.contacts[film.frame(t)] > 0) seen.points.push(...touching(nodes, film.s, shape));
       seen.points.push(...pressed(nodes, film.s, shape));
       seen.rods.push({ nodes, radius: this.radius(shape), body: this.body(place), range: this.range ?? null });
@@ -132,6 +123,13 @@ export class Player {
     this.clock.close();
     this.stage.close();
   }
+}
+
+/** The box of all frames of some runs. @param {{film: Film}[]} runs @returns {import("./obstacles.js").Box} */
+function boxOf(runs) {
+  /** @param {number} side @param {(...values: number[]) => number} most */
+  const corner = (side, most) => [0, 1, 2].map((i) => most(...runs.map(({ film }) => film.box[side][i])));
+  return [corner(0, Math.min), corner(1, Math.max)];
 }
 
 /** @param {{film: Film}} run */

@@ -25,11 +25,11 @@ export class Preview {
     const r = centreline(shape.initial, shape.rod.length), nodes = placed(r, shape.initial.a1);
     /** @type {[Vector, Vector]} */
     const box = [[0, 1, 2].map((i) => Math.min(...r.map((at) => at[i]))), [0, 1, 2].map((i) => Math.max(...r.map((at) => at[i])))];
-    this.stage.set(shape, box, add(r[NODES - 1], r[0], -1));
+    this.stage.set([shape], box, add(r[NODES - 1], r[0], -1));
     const extent = Math.max(...add(box[1], box[0], -1)), thick = Math.max(diameter(shape) / 2, SEEN * extent);
     /** @type {number[]} */
     const lines = [], points = ends(shape, r);
-    this.stage.surroundings?.shadow(nodes, lines);
+    this.stage.surroundings?.shadow(shape, nodes, lines);
     this.caption.textContent = `start: ${end(shape, "start")}, end: ${end(shape, "end")}`;
     loads(shape, r, 0.16 * extent, lines);
     this.stage.content = () => ({ rods: [{ nodes, radius: thick, body: BODY, range: null }], lines, points });

@@ -7,7 +7,6 @@ import { Surroundings, upright } from "./surroundings.js";
 
 /** @typedef {import("./picture.js").Rod} Rod */
 /** @typedef {import("./obstacles.js").Box} Box */
-/** @typedef {import("./obstacles.js").Obstacle} Obstacle */
 /** @typedef {import("./vectors.js").Vector} Vector */
 export const VIEWS = /** @type {Record<string, Vector | null>} */ ({
   free: null, "along e1": [1, 0, 0], "along e2": [0, 1, 0], "along e3": [0, 0, 1] });
@@ -36,26 +35,26 @@ export class Stage {
     this.listen();
   }
 
-  /** Set the vertical, the ground and what is seen, for a case and the box of its rod.
-   * @param {any} shape @param {Box} box @param {Vector} along the rod at first @param {Obstacle[]} [obstacles] those of the case, if not others */
-  set(shape, box, along, obstacles) {
-    const [up, right] = upright(shape, box, along);
+  /** Set the vertical, the ground and what is seen, for cases and the box of their rods.
+   * @param {any[]} shapes @param {Box} box @param {Vector} along a rod at first */
+  set(shapes, box, along) {
+    const [up, right] = upright(shapes, box, along);
     this.camera = new Camera(up, right);
-    this.surround(shape, box, obstacles);
+    this.surround(shapes, box);
     this.fit();
   }
 
-  /** The same for a rod that has gone on: the whole stays in the picture unless somebody has moved it.
-   * @param {any} shape @param {Box} box @param {Obstacle[]} [obstacles] */
-  follow(shape, box, obstacles) {
-    this.surround(shape, box, obstacles);
+  /** The same for rods that have gone on: the whole stays in the picture unless somebody has moved it.
+   * @param {any[]} shapes @param {Box} box */
+  follow(shapes, box) {
+    this.surround(shapes, box);
     if (this.moved) this.redraw();
     else this.fit();
   }
 
-  /** Set the ground and the obstacles for a box of the rod. @param {any} shape @param {Box} box @param {Obstacle[]} [obstacles] */
-  surround(shape, box, obstacles) {
-    this.surroundings = new Surroundings(shape, box, this.camera.basis[2], obstacles);
+  /** Set what is around the rods. @param {any[]} shapes @param {Box} box */
+  surround(shapes, box) {
+    this.surroundings = new Surroundings(shapes, box, this.camera.basis[2]);
     this.box = this.surroundings.obstacles.box;
     this.legend.replaceChildren(...this.surroundings.told.map(([text, colour]) => element("span", colour && `key-${colour}`, text)));
   }
@@ -70,12 +69,12 @@ export class Stage {
   fit() {
     this.moved = false;
     this.picture.resize();
-    const low = this.box[0].slice(), high = this.box[1].slice(), ground = this.surroundings;
-    if (ground) {
+    const low = this.box[0].slice(), high = this.box[1].slice(), around = this.surroundings;
+    for (const ground of around?.grounds ?? []) {
+      const { up, centre, extent } = /** @type {Surroundings} */ (around), below = around?.onGround(centre, ground) ?? centre;
       for (let i = 0; i < 3; i += 1) {
-        const at = ground.onGround(ground.centre)[i];
-        const near = ground.up[i] ** 2 > 0.5 && Math.abs(at - ground.centre[i]) < ground.extent;
-        if (near) [low[i], high[i]] = [Math.min(low[i], at), Math.max(high[i], at)];
+        const near = up[i] ** 2 > 0.5 && Math.abs(below[i] - centre[i]) < extent;
+        if (near) [low[i], high[i]] = [Math.min(low[i], below[i]), Math.max(high[i], below[i])];
       }
     }
     this.camera.fit([low, high], this.picture.aspect);

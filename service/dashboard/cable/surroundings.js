@@ -1,5 +1,5 @@
 // @ts-check
-/** What is around a rod in its picture: the ground with its shadow, a floor, obstacles, weight, current, the lab axes, contacts. */
+/** What is around rods in their picture: the ground with their shadows, floors, obstacles, weight, current, the lab axes, contacts. */
 import { NODE } from "./film.js";
 import { depth, Obstacles } from "./obstacles.js";
 import { ticks, told } from "../scale.js";
@@ -9,6 +9,7 @@ import { across, add, dot, size, times, unit } from "./vectors.js";
 /** @typedef {import("./picture.js").Strokes} Strokes */
 /** @typedef {import("./obstacles.js").Box} Box */
 /** @typedef {import("./obstacles.js").Obstacle} Obstacle */
+/** A plane: the places whose part along the normal is height. @typedef {{normal: Vector, height: number}} Plane */
 
 const GRID = [0.5, 0.55, 0.62, 0.35], SHADOW = [0.35, 0.4, 0.48, 0.6], FLOOR = [0.55, 0.42, 0.3, 0.8];
 const WEIGHT = [0.68, 0.14, 0.11, 1], CURRENT = [0.04, 0.45, 0.7, 1], CONTACT = [0.9, 0.1, 0.15, 1];
@@ -16,10 +17,10 @@ const MARKS = 60, ROUNDING = 2 ** -22; // of places that are 4-byte floats
 const AXES = [[0.8, 0.15, 0.15, 1], [0.1, 0.55, 0.2, 1], [0.15, 0.35, 0.9, 1]];
 
 /** Up, against gravity; without gravity e3, or -e1 where the rod lies along e3, as in the paper's figures.
- * And to the right what is longest. @param {any} shape a case @param {Box} box @param {Vector} along the rod at first
+ * And to the right what is longest. @param {any[]} shapes cases @param {Box} box @param {Vector} along the rod at first
  * @returns {[Vector, Vector]} */
-export function upright(shape, box, along) {
-  const gravity = shape.loads?.gravity ?? [0, 0, 0], lies = size(along) > 0 && Math.abs(unit(along)[2]) > 0.7;
+export function upright(shapes, box, along) {
+  const [gravity] = [...shapes.flatMap(weight), [0, 0, 0]], lies = size(along) > 0 && Math.abs(unit(along)[2]) > 0.7;
   const up = size(gravity) > 0 ? unit(times(gravity, -1)) : lies ? [-1, 0, 0] : [0, 0, 1];
   const extent = add(box[1], box[0], -1);
   const level = [0, 1, 2].map((i) => add([0, 1, 2].map((j) => i === j ? 1 : 0), up, -up[i]));
@@ -47,49 +48,64 @@ export function arrow(into, from, along, colour) {
   }
 }
 
+/** @param {any} shape a case @returns {Vector[]} its gravity, if there is any */
+const weight = ({ loads }) => size(loads?.gravity ?? []) > 0 ? [loads.gravity] : [];
+
+/** @param {any} shape a case @returns {Vector[]} its current, if there is any */
+const current = ({ fluid }) => size(fluid?.current ?? []) > 0 ? [fluid.current] : [];
+
+/** @param {any} shape a case @returns {Plane[]} its floor, if there is one */
+const floor = ({ loads }) => loads?.floor ? [{ normal: unit(loads.floor.normal ?? [0, 0, 1]), height: loads.floor.height ?? 0 }] : [];
+
+/** @param {any} shape a case @returns {Obstacle[]} */
+const obstacles = ({ loads }) => (loads?.obstacles ?? []).map((/** @type {Obstacle} */ { start, end, radius }) => ({ start, end, radius }));
+
+/** What some cases have, each once. @template T @param {any[]} shapes @param {(shape: any) => T[]} of @returns {T[]} */
+function distinct(shapes, of) {
+  return [...new Map(shapes.flatMap(of).map((one) => [JSON.stringify(one), one])).values()];
+}
+
 export class Surroundings {
-  /** @param {any} shape the case @param {Box} rod the box of all frames @param {Vector} up
-   * @param {Obstacle[]} obstacles those of the case, or of several */
-  constructor(shape, rod, up, obstacles = shape.loads?.obstacles ?? []) {
-    this.shape = shape;
+  /** @param {any[]} shapes the cases @param {Box} rod the box of all frames of all @param {Vector} up */
+  constructor(shapes, rod, up) {
     this.up = up;
-    this.obstacles = new Obstacles(obstacles, rod);
+    this.obstacles = new Obstacles(distinct(shapes, obstacles), rod);
+    this.weights = distinct(shapes, (shape) => weight(shape).map(unit));
+    this.currents = distinct(shapes, (shape) => current(shape).map(unit));
+    this.floors = distinct(shapes, floor);
     const [low, high] = this.obstacles.box;
     const extent = Math.max(...add(high, low, -1));
     this.centre = times(add(low, high), 0.5);
     this.extent = extent;
     const half = [0, 1, 2].reduce((sum, i) => sum + Math.abs(up[i]) * (high[i] - low[i]) / 2, 0);
-    const floor = shape.loads?.floor;
-    this.normal = floor ? unit(floor.normal ?? [0, 0, 1]) : up;
-    const below = dot(this.centre, this.normal) - half - 0.12 * extent;
-    /** How far the ground lies along its normal. */
-    this.height = floor ? floor.height ?? 0 : below;
+    /** The floors, or a plane below all. @type {Plane[]} */
+    this.grounds = this.floors.length ? this.floors : [{ normal: up, height: dot(this.centre, up) - half - 0.12 * extent }];
     /** @type {Strokes} */
     this.lines = [];
     /** The squares of the ground, m. */
     this.step = ticks(0, extent, 8)[1];
-    this.ground(floor ? FLOOR : GRID, low, high);
+    for (const ground of this.grounds) this.grid(ground, low, high);
     this.arrows(low);
   }
 
-  /** What is drawn around the rod, in words, each with the class of its colour. */
+  /** What is drawn around the rods, in words, each with the class of its colour. */
   get told() {
-    const { loads, fluid } = this.shape, { triangles, far } = this.obstacles, none = [0, 0, 0];
+    const { triangles, far } = this.obstacles;
     const all = /** @type {[string, string, boolean][]} */ ([[`squares of ${told(this.step)} m`, "", true],
-      ["e1", "e1", true], ["e2", "e2", true], ["e3", "e3", true], ["floor", "floor", Boolean(loads?.floor)],
+      ["e1", "e1", true], ["e2", "e2", true], ["e3", "e3", true], ["floor", "floor", this.floors.length > 0],
       ["obstacle", "obstacle", triangles.length > 0], [`obstacles too far away to be drawn: ${far}`, "", far > 0],
-      ["weight", "weight", size(loads?.gravity ?? none) > 0], ["current", "current", size(fluid?.current ?? none) > 0]]);
+      ["weight", "weight", this.weights.length > 0], ["current", "current", this.currents.length > 0]]);
     return all.filter(([, , drawn]) => drawn);
   }
 
-  /** @param {Vector} at */
-  onGround(at) {
-    return add(at, this.normal, this.height - dot(at, this.normal));
+  /** @param {Vector} at @param {Plane} ground */
+  onGround(at, { normal, height } = this.grounds[0]) {
+    return add(at, normal, height - dot(at, normal));
   }
 
-  /** @param {number[]} colour @param {Vector} low @param {Vector} high */
-  ground(colour, low, high) {
-    const [first, second] = across(this.normal), middle = this.onGround(this.centre);
+  /** @param {Plane} ground @param {Vector} low @param {Vector} high */
+  grid(ground, low, high) {
+    const [first, second] = across(ground.normal), middle = this.onGround(this.centre, ground);
     /** @param {Vector} axis */
     const reach = (axis) => Math.max(0.2 * this.extent,
       [0, 1, 2].reduce((sum, i) => sum + Math.abs(axis[i]) * (high[i] - low[i]) / 2, 0)) + this.step;
@@ -97,7 +113,7 @@ export class Surroundings {
       const [long, wide] = [reach(along), reach(aside)], many = Math.ceil(wide / this.step);
       for (let k = -many; k <= many; k += 1) {
         const at = add(middle, aside, k * this.step);
-        line(this.lines, add(at, along, -long), add(at, along, long), colour);
+        line(this.lines, add(at, along, -long), add(at, along, long), this.floors.length ? FLOOR : GRID);
       }
     }
   }
@@ -106,17 +122,17 @@ export class Surroundings {
   arrows(low) {
     const length = 0.1 * this.extent, corner = this.onGround(low);
     AXES.forEach((colour, i) => line(this.lines, corner, add(corner, [0, 1, 2].map((j) => i === j ? length : 0)), colour));
-    const gravity = this.shape.loads?.gravity ?? [0, 0, 0], current = this.shape.fluid?.current ?? [0, 0, 0];
     const from = add(corner, this.up, 2.5 * length);
-    if (size(gravity) > 0) arrow(this.lines, from, times(unit(gravity), length), WEIGHT);
-    if (size(current) > 0) arrow(this.lines, from, times(unit(current), length), CURRENT);
+    for (const way of this.weights) arrow(this.lines, from, times(way, length), WEIGHT);
+    for (const way of this.currents) arrow(this.lines, from, times(way, length), CURRENT);
   }
 
-  /** The shadow of a rod on the ground. @param {Float32Array} nodes @param {Strokes} into */
-  shadow(nodes, into) {
+  /** The shadow of a rod on its floor, or the first ground. @param {any} shape its case @param {Float32Array} nodes @param {Strokes} into */
+  shadow(shape, nodes, into) {
+    const [ground] = [...floor(shape), ...this.grounds];
     let before = null;
     for (let k = 0; k < nodes.length; k += NODE) {
-      const at = add(this.onGround([nodes[k], nodes[k + 1], nodes[k + 2]]), this.normal, 1e-3 * this.extent);
+      const at = add(this.onGround([nodes[k], nodes[k + 1], nodes[k + 2]], ground), ground.normal, 1e-3 * this.extent);
       if (before) line(into, before, at, SHADOW);
       before = at;
     }
@@ -146,15 +162,14 @@ export function touching(nodes, s, shape) {
 
 /** Where a rod is pressed into a floor or an obstacle, at most MARKS places along it. @param {Float32Array} nodes
  * @param {number[]} s @param {any} shape the case @returns {Strokes} */
-export function pressed(nodes, s, { loads }) {
-  const { floor, obstacles = [] } = loads ?? {}, apart = s[s.length - 1] / MARKS, points = [];
-  const normal = unit(floor?.normal ?? [0, 0, 1]);
+export function pressed(nodes, s, shape) {
+  const planes = floor(shape), solids = obstacles(shape), apart = s[s.length - 1] / MARKS, points = [];
   let last = -Infinity;
   for (let k = 0; k < s.length; k += 1) {
     if (s[k] - last < apart) continue;
     const at = [nodes[NODE * k], nodes[NODE * k + 1], nodes[NODE * k + 2]], rounding = ROUNDING * size(at);
-    const inFloor = floor && (floor.height ?? 0) - dot(at, normal) > rounding;
-    if (!inFloor && !obstacles.some((/** @type {Obstacle} */ one) => depth(one, at) > rounding)) continue;
+    const inFloor = planes.some(({ normal, height }) => height - dot(at, normal) > rounding);
+    if (!inFloor && !solids.some((one) => depth(one, at) > rounding)) continue;
     points.push(...at, ...CONTACT);
     last = s[k];
   }

@@ -73,7 +73,7 @@ def test_a_verified_run_is_coloured_by_its_error(server, run, page):
 FLOOR = {"stiffness": 100.0, "normal": [-1.0, 0.0, 0.0], "height": -0.5, "friction": 0.3}
 LINES = """async (shape) => {
   const { Surroundings } = await import("/dashboard/cable/surroundings.js");
-  const { lines } = new Surroundings(shape, [[0, 0, 0], [0.5, 0, 1]], [-1, 0, 0]), heights = [];
+  const { lines } = new Surroundings([shape], [[0, 0, 0], [0.5, 0, 1]], [-1, 0, 0]), heights = [];
   for (let k = 0; k < lines.length; k += 7) if (Math.abs(lines[k + 3] - 0.55) < 1e-6) heights.push(lines[k]);
   return heights;
 }"""
@@ -169,17 +169,43 @@ def test_runs_beside_each_other_are_drawn_with_the_obstacles_of_all(server, run,
     assert grey(seen(page)).sum() > 3000
 
 
+AROUND = """async (shapes) => {
+  const { Stage } = await import("/dashboard/cable/stage.js");
+  const stage = new Stage("");
+  stage.set(shapes, [[0, 0, 0], [1, 0, 0.2]], [1, 0, 0]);
+  const { grounds, weights, currents, up } = stage.surroundings, shadows = shapes.map((shape) => {
+    const lines = [];
+    stage.surroundings.shadow(shape, new Float32Array(16).fill(0.1), lines);
+    return lines[2];
+  });
+  const legend = stage.legend.innerText;
+  stage.close();
+  return { grounds, weights, currents, up, shadows, legend };
+}"""
+
+
+def test_runs_beside_each_other_have_the_floors_weights_and_currents_of_all(server, page):
+    page.goto(server.address)
+    low, high = ({"loads": {"floor": {"height": height}, "gravity": [0, 0, -9.81]}} for height in (-1, -0.5))
+    flows = {"loads": {"gravity": [0, 0, -1.62]}, "fluid": {"current": [0.5, 0, 0]}}
+    got = page.evaluate(AROUND, [{"loads": {}}, low, high, low, flows])
+    assert [ground["height"] for ground in got["grounds"]] == [-1, -0.5]
+    assert (got["weights"], got["currents"], got["up"]) == ([[0, 0, -1]], [[1, 0, 0]], [0, 0, 1])
+    assert got["shadows"] == pytest.approx([-1, -1, -0.5, -1, -1], abs=2e-3)
+    assert all(name in got["legend"] for name in ("floor", "weight", "current"))
+
+
 FOLLOWED = """async (ball) => {
   const { Stage } = await import("/dashboard/cable/stage.js");
   const stage = new Stage(""), shape = { loads: { obstacles: [ball] } }, seen = [];
   document.body.append(stage.canvas);
   const look = () => seen.push([stage.camera.distance, stage.surroundings.obstacles.triangles.length > 0]);
-  stage.set(shape, [[0, 0, 0], [0.1, 0, 0]], [1, 0, 0]);
+  stage.set([shape], [[0, 0, 0], [0.1, 0, 0]], [1, 0, 0]);
   look();
-  stage.follow(shape, [[0, 0, -0.3], [0.1, 0, 0]]);
+  stage.follow([shape], [[0, 0, -0.3], [0.1, 0, 0]]);
   look();
   stage.zoom(0.5);
-  stage.follow(shape, [[0, 0, -0.9], [0.1, 0, 0]]);
+  stage.follow([shape], [[0, 0, -0.9], [0.1, 0, 0]]);
   look();
   stage.fit();
   look();

@@ -118,7 +118,7 @@ class NumericsSpec(Spec):
     def build(self, frames: int) -> Numerics:
         """The solver's settings for a run of so many frames."""
         most = min(Numerics.most_intervals, MOST_NODE_FRAMES // frames)
-        return Numerics(**self.model_dump(exclude_none=True), most_intervals=most)
+        return Numerics(**{name: value for name, value in self if value is not None}, most_intervals=most)
 
 
 class OutputSpec(Spec):

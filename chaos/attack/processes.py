@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from chaos.attack.table import Row
-from chaos.campaign import STEPS_BETWEEN, come_to_an_end, environment, free_port, keep_open, let_run
+from chaos.campaign import come_to_an_end, environment, free_port, keep_open, let_run
 from chaos.cases import cases, undisturbed
 from chaos.faults import Fault, Target
 from chaos.faults.broker import kill_broker, stall_broker
@@ -37,6 +37,9 @@ FAULTS: tuple[Fault, ...] = (
     stop_worker_past_its_lease, stop_api_past_its_lease, stall_broker, jump_clock, fill_disk,
 )  # fmt: skip
 QUEUED = 4
+STEPS_BETWEEN = 12_000.0
+"""Steps that the workers take between two faults, on average: three jobs, since a stop for longer than a lease takes as
+long as many."""
 ROOM = "3g"
 """Disk: each job leaves 4.5 MB, and 500 are wanted."""
 LEASES = 3

@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import ColumnElement, bindparam, func, insert, select, true
+from sqlalchemy import ColumnElement, Executable, bindparam, func, insert, select, true
 from sqlalchemy.dialects import postgresql, sqlite
 
 from outcomes import Outcome
@@ -198,14 +198,23 @@ class Registry:
         return true() if self.owner is None else jobs.c.owner == self.owner
 
 
+def _counted(dialect: Any) -> Executable:
+    """An owner with so many unfinished jobs, or with so many more."""
+    added = dialect.insert(owners)
+    more = {"unfinished": owners.c.unfinished + added.excluded.unfinished}
+    return added.on_conflict_do_update(index_elements=["name"], set_=more)  # type: ignore[no-any-return]
+
+
+COUNTED = {dialect.__name__.rpartition(".")[-1]: _counted(dialect) for dialect in (sqlite, postgresql)}
+"""By the dialect's name. To put it together takes a tenth of a submission's transaction."""
+
+
 def insert_jobs(transaction: Transaction, new: Sequence[NewJob]) -> list[Job]:
     """Write accepted jobs, the owners that are new, and the jobs' first events; gives the jobs."""
     connection = transaction.connection
-    dialect = postgresql if connection.dialect.name == "postgresql" else sqlite
-    for owner, many in sorted(Counter(job.owner for job in new).items()):  # in one order: rows are locked in it
-        added = dialect.insert(owners).values(name=owner, unfinished=many)
-        more = {"unfinished": owners.c.unfinished + added.excluded.unfinished}
-        connection.execute(added.on_conflict_do_update(index_elements=["name"], set_=more))
+    many = sorted(Counter(job.owner for job in new).items())  # in one order: rows are locked in it
+    counts = [{"name": owner, "unfinished": more} for owner, more in many]
+    connection.execute(COUNTED[connection.dialect.name], counts)
     rows = [{
         "id": job.id, "owner": job.owner, "status": Status.ACCEPTED.value, "title": job.title, "label": job.label,
         "priority": job.priority, "case_json": job.case_json, "case_sha256": job.case_sha256,

@@ -17,28 +17,30 @@ from benchmarks.load.backlog import backlog
 from benchmarks.load.scenes import SUBMITTERS, choices, events, first_step, statuses, submissions
 from benchmarks.load.service import with_workers, without_workers
 from benchmarks.load.table import Row, table
+from chaos.postgres import postgres
 from service.settings import Settings
 from validation.provenance import provenance
 
 RESULTS = Path(__file__).parents[1] / "results" / "load.md"
 QUEUED, FEW = 10_000, 20
 HOW = f"""\
-Two API processes as `hockle serve` starts them, SQLite in WAL mode with synchronous=FULL, on loopback; the clients
-are one process beside them (asyncio with uvloop), on the same cores. Latency is from the write of the request to
-the last byte of the answer. Status: 1000 keep-alive connections, each once a second, out of step. Submissions: so many
-connections, each one after the other, every case another one. These are measured without workers, so that what
-jobs cost is not in them, nor is the choice among the jobs that wait, which is measured by itself; first with no
-queue, then with {QUEUED:,} jobs in it. The rest is measured with the whole of `hockle serve` and one worker, warmed by
-a job. First step: one job at a time, from the request to the worker's claim, to the first steps that its log tells of,
-and to the end of a job of a single step, its dataset published. Events: from the time in `ended` to its arrival at
-200 listeners. Before each of these jobs there is a pause of random length, so that neither the rest of another job nor
-the sleep of the feed (0.1 s) is the same every time.
+Two API processes as `hockle serve` starts them, on loopback, with the registry in SQLite (WAL mode, synchronous=FULL)
+and then in a PostgreSQL of the same machine (its own settings of durability), on an empty database for what needs no
+worker and another for the rest; the clients are one process beside them (asyncio with uvloop), on the same cores.
+Latency is from the write of the request to the last byte of the answer. Status: 1000 keep-alive connections, each once
+a second, out of step. Submissions: so many connections, each one after the other, every case another one. These are
+measured without workers, so that what jobs cost is not in them, nor is the choice among the jobs that wait, which is
+measured by itself; first with no queue, then with {QUEUED:,} jobs in it. The rest is measured with the whole of
+`hockle serve` and one worker, warmed by a job. First step: one job at a time, from the request to the worker's claim,
+to the first steps that its log tells of, and to the end of a job of a single step, its dataset published. Events: from
+the time in `ended` to its arrival at 200 listeners. Before each of these jobs there is a pause of random length, so
+that neither the rest of another job nor the sleep of the feed (0.1 s) is the same every time.
 
-First steps and events are measured three times: with an idle worker, and with one that is busy with a queue of
-{FEW} or of {QUEUED:,} jobs of a single step. Those of the queue have a lower priority than what is measured, and are
-made up for as they are worked off. A worker lets no job go for another, so that a submission first waits for the
-rest of the job that the worker is at: it comes at any moment of that, and the short queue is the control of the long
-one. The control of all else is the same with none queued. The load of the machine, beside ours, is in the figures."""
+First steps and events are measured three times: with an idle worker, and with one that is busy with a queue of {FEW}
+or of {QUEUED:,} jobs of a single step. Those of the queue have a lower priority than what is measured, and are made up
+for as they are worked off. A worker lets no job go for another, so that a submission first waits for the rest of the
+job that the worker is at: it comes at any moment of that, and the short queue is the control of the long one. The
+control of all else is the same with none queued. The load of the machine, beside ours, is in the figures."""
 
 
 async def of_api(host: str, port: int, settings: Settings) -> list[Row]:
@@ -75,13 +77,13 @@ def labelled(rows: Sequence[Row], queued: str = "", controls: Sequence[Row] = ()
     return rows
 
 
-async def measure() -> list[Row]:
-    """Every scene with its queues."""
-    with without_workers() as place:
+async def measure(api_database: str = "", worker_database: str = "") -> list[Row]:
+    """Every scene with its queues, on SQLite or on these databases."""
+    with without_workers(api_database) as place:
         none = labelled(await of_api(*place))
         await submissions(*place[:2], clients=SUBMITTERS[-1], many=QUEUED)
         many = labelled(await of_api(*place), f", {QUEUED:,} queued", none)
-    with with_workers() as place:
+    with with_workers(database=worker_database) as place:
         idle = labelled(await of_worker(*place))
         async with backlog(*place, FEW):
             short = labelled(await of_worker(*place), f", busy, {FEW} queued")
@@ -93,10 +95,12 @@ async def measure() -> list[Row]:
 async def main() -> None:
     """Measure, print and keep."""
     before = os.getloadavg()
-    rows = await measure()
+    on_sqlite = await measure()
+    with postgres() as server:
+        on_postgresql = await measure(server.create("api"), server.create("workers"))
     text = [*(f"- {line}" for line in provenance()),
             f"- load average of the machine before {before[0]:.1f}, after {os.getloadavg()[0]:.1f}", "", HOW, "",
-            *table(rows)]  # fmt: skip
+            "## SQLite", "", *table(on_sqlite), "", "## PostgreSQL", "", *table(on_postgresql)]  # fmt: skip
     print("\n".join(text))
     RESULTS.write_text("\n".join([*text, ""]), encoding="utf-8")
 

@@ -49,30 +49,31 @@ def started(word: str = "") -> set[int]:
 
 
 @contextmanager
-def with_workers(workers: int = 1) -> Iterator[tuple[str, int, Settings]]:
-    """`hockle serve` with so many workers; host and port, and its settings."""
+def with_workers(workers: int = 1, database: str = "") -> Iterator[tuple[str, int, Settings]]:
+    """`hockle serve` with so many workers, on SQLite or the database at an address; host and port, and its
+    settings."""
     with tempfile.TemporaryDirectory(prefix="hockle-load-") as data:
         command = [sys.executable, "-m", "hockle", "serve", "--port", "0", "--workers", str(workers)]
         command += ["--data", data]
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=os.environ | VARIABLES)
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=_environment(database))
         try:
             assert process.stdout is not None
             address = urlsplit(process.stdout.readline().split()[3].rstrip(","))
-            yield address.hostname or "", address.port or 0, Settings(Path(data))
+            yield address.hostname or "", address.port or 0, Settings(Path(data), database=database)
         finally:
             process.terminate()
             process.wait(120)
 
 
 @contextmanager
-def without_workers() -> Iterator[tuple[str, int, Settings]]:
+def without_workers(database: str = "") -> Iterator[tuple[str, int, Settings]]:
     """The API processes alone, so that nothing computes beside them; host and port, and their settings."""
     with ExitStack() as cleanup:
         data = cleanup.enter_context(tempfile.TemporaryDirectory(prefix="hockle-load-"))
         sockets = [cleanup.enter_context(listening) for listening in listen("127.0.0.1", 0, many=APIS)]
         for listening in sockets:
             command = [sys.executable, "-m", "hockle", "api", "--fd", str(listening.fileno())]
-            process = subprocess.Popen(command, env=os.environ | VARIABLES | {"HOCKLE_DATA": data},
+            process = subprocess.Popen(command, env=_environment(database) | {"HOCKLE_DATA": data},
                                        pass_fds=[listening.fileno()])  # fmt: skip
             cleanup.callback(process.wait, 60)
             cleanup.callback(process.terminate)
@@ -85,4 +86,8 @@ def without_workers() -> Iterator[tuple[str, int, Settings]]:
                     break
                 except httpx.TransportError:
                     time.sleep(0.1)
-        yield host, port, Settings(Path(data))
+        yield host, port, Settings(Path(data), database=database)
+
+
+def _environment(database: str) -> dict[str, str]:
+    return os.environ | VARIABLES | {"HOCKLE_DATABASE": database}

@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from importlib.metadata import version
 
-from fastapi import Depends, FastAPI
+from fastapi import FastAPI
 
 from service.access import KeyStore
 from service.access.limits import RateLimit
@@ -38,7 +38,6 @@ from service.api.description import describe
 from service.api.feed import Feed
 from service.api.gate import Gate
 from service.api.health import Health, Part
-from service.api.once import each_once
 from service.api.parts import Parts
 from service.cases import load_case, parse_case, shipped_cases
 from service.jobs import Database, Registry
@@ -96,8 +95,7 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
 
     app = FastAPI(title="hockle", version=version("hockle"), lifespan=lifespan, openapi_tags=TAGS,
                   generate_unique_id_function=lambda route: route.name,
-                  openapi_url="/v1/openapi.json", docs_url=None, redoc_url=None, redirect_slashes=False,
-                  dependencies=[Depends(each_once)])
+                  openapi_url="/v1/openapi.json", docs_url=None, redoc_url=None, redirect_slashes=False)
     app.openapi = lambda: describe(app, keyed)  # type: ignore[method-assign]
     hosts = {name.strip().lower() for name in settings.hosts.split(",")} - {""}
     app.add_middleware(Gate, keyed=keyed, hosts=hosts)

@@ -1,4 +1,4 @@
-"""What every request passes before any route: Host, Origin, API key, rate limit."""
+"""What every request passes before any route: Host, Origin, API key, rate limit, parameters that come once."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.access import Caller, Refused, authenticate
 from service.access.limits import Grant
 from service.api.listening import is_loopback
+from service.api.once import check_once
 from service.api.problems import Problem, unreachable
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ log = logging.getLogger(__name__)
 
 
 class Gate:
-    """Refuses a foreign Host (DNS rebinding), a write from another site's page, a bad key, and haste.
+    """Refuses a foreign Host (DNS rebinding), a write from another site's page, a bad key, haste, a repeated parameter.
 
     What passes has its caller in `scope["caller"]`. `keyed`: whether a key is required;
     `hosts`: the names of this service beside its addresses.
@@ -56,7 +57,9 @@ class Gate:
             return
         send = _safely(send)
         try:
-            grant = self._let_in(scope, Headers(scope=scope))
+            if grant := self._let_in(scope, Headers(scope=scope)):
+                send = _telling(send, grant)
+            check_once(scope["query_string"])
         except Exception as error:
             problem = error if isinstance(error, Problem) else unreachable(error)
             if problem is None:
@@ -64,7 +67,7 @@ class Gate:
             log.info("refused", extra={"problem": problem.name, "method": scope["method"], "path": scope["path"]})
             await problem.response()(scope, receive, send)
         else:
-            await self._app(scope, receive, _telling(send, grant) if grant else send)
+            await self._app(scope, receive, send)
 
     def _let_in(self, scope: Scope, headers: Headers) -> Grant | None:
         if len(headers.getlist("host")) != 1:

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections import Counter
 
-from fastapi import Request
+from starlette.datastructures import QueryParams
 
 from service.api.problems import Problem
 
 
-async def each_once(request: Request) -> None:
+def check_once(query: bytes) -> None:
     """Refuse a parameter that is repeated: all of its values but the last would be passed over. Raises Problem 422."""
-    counts = Counter(name for name, _ in request.query_params.multi_items())
+    if b"&" not in query:
+        return
+    parameters = QueryParams(query)
+    counts = Counter(name for name, _ in parameters.multi_items())
     rule = "must come once; several names have commas between them"
-    if errors := [{"parameter": name, "value": request.query_params.getlist(name), "rule": rule}
+    if errors := [{"parameter": name, "value": parameters.getlist(name), "rule": rule}
                   for name, count in counts.items() if count > 1]:  # fmt: skip
         raise Problem(422, "invalid_parameters", f"{errors[0]['parameter']} {rule}", errors=errors)

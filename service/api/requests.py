@@ -122,6 +122,10 @@ class JobRequest(BaseModel):
     ] = LimitsRequest()  # fmt: skip
 
 
+BARE = JobRequest()
+"""What a bare case is handed in with."""
+
+
 @dataclass(frozen=True)
 class ParsedRequest:
     """A request understood: the case that will run, and the rest of the request."""
@@ -136,7 +140,7 @@ def parse_request(body: Annotated[dict[str, Any], Depends(json_object)]) -> Pars
     Pointers lead into the body; those of a shipped case, which is not in the body, lead into the case.
     """
     if "case" not in body:
-        return ParsedRequest(parse_case(body), JobRequest(case=body))
+        return ParsedRequest(parse_case(body), BARE)
     try:
         request = JobRequest.model_validate(body)
     except ValidationError as error:

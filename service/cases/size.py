@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import inf
 from typing import TYPE_CHECKING
 
@@ -25,7 +24,8 @@ MOST_CONTACT_PAIRS = 20_000_000
 """Of points within the cutoff of each other, where strands lie side by side all along."""
 MOST_TABLE_POINTS = 200_000
 """Of all tables together: about 30 MB, and where they are schedules as many steps that end on them."""
-PLAIN = (float, int, str, bool, type(None))
+TABLES: tuple[type, ...] = (ProfileTable, ScheduleTable)
+PLAIN = frozenset({float, int, str, bool, type(None)})
 """What holds no table."""
 
 
@@ -43,14 +43,16 @@ def contact_points(case: CaseSpec) -> tuple[float, float]:
     return points, points * cutoff / spacing if spacing else 0.0
 
 
-def tables_in(part: object, pointer: str = "") -> Iterator[tuple[str, ProfileTable | ScheduleTable]]:
-    """Every table of a part of a case, and where it is."""
-    if isinstance(part, ProfileTable | ScheduleTable):
-        yield pointer, part
-        return
+def tables_in(part: object, pointer: str = "") -> list[tuple[str, ProfileTable | ScheduleTable]]:
+    """Every table below a part of a case, and where it is."""
+    tables: list[tuple[str, ProfileTable | ScheduleTable]] = []
     for name, inner in enumerate(part) if isinstance(part, tuple) else vars(part).items():
-        if type(inner) not in PLAIN:  # most are, and pydantic's classes are slow to ask
-            yield from tables_in(inner, f"{pointer}/{name}")
+        kind = type(inner)  # most hold none, and pydantic's classes are slow to ask
+        if kind in TABLES:
+            tables.append((f"{pointer}/{name}", inner))
+        elif kind not in PLAIN:
+            tables += tables_in(inner, f"{pointer}/{name}")
+    return tables
 
 
 def _refuse_output(case: CaseSpec) -> None:

@@ -61,6 +61,10 @@ class _Bounded(HttpToolsProtocol):
     def __init__(self, *parameters: Any, **named: Any) -> None:
         super().__init__(*parameters, **named)
         self._deadline: asyncio.TimerHandle | None = None
+        self._within: float | None = None
+        self._moved = False
+        """Whether the deadline is another one since bytes came: its timer is set when all of them are read, so that a
+        request that is here at once needs none."""
         self._reader: asyncio.TimerHandle | None = None
         self._address = ""
         self._refused = False
@@ -81,6 +85,7 @@ class _Bounded(HttpToolsProtocol):
         transport.set_write_buffer_limits(0)  # be told of whatever is not read at once
         super().connection_made(transport)
         self._by(self.bounds.head_within)
+        self._set_timer()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget it."""
@@ -88,6 +93,7 @@ class _Bounded(HttpToolsProtocol):
         if not self.addresses[self._address]:
             del self.addresses[self._address]
         self._by(None)
+        self._set_timer()
         if self._reader is not None:
             self._reader.cancel()
         if self.transport is not None:  # it was let in
@@ -103,6 +109,7 @@ class _Bounded(HttpToolsProtocol):
         super().data_received(data)
         if self._beside > self.bounds.header_bytes:
             self._refuse(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE)
+        self._set_timer()
 
     def on_message_begin(self) -> None:
         """A request begins."""
@@ -170,10 +177,17 @@ class _Bounded(HttpToolsProtocol):
             self._hang_up()
 
     def _by(self, seconds: float | None) -> None:
-        """Set the time by which the request must have come farther, or none."""
+        """Within so many seconds the request must come farther, or there is no such time."""
+        self._within, self._moved = seconds, True
+
+    def _set_timer(self) -> None:
+        """Count from now, if the deadline is another one."""
+        if not self._moved:
+            return
+        self._moved = False
         if self._deadline is not None:
             self._deadline.cancel()
-        self._deadline = None if seconds is None else self.loop.call_later(seconds, self._late)
+        self._deadline = None if self._within is None else self.loop.call_later(self._within, self._late)
 
     def _late(self) -> None:
         if self._in_head:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ipaddress
 import socket
+from functools import lru_cache
 from typing import Any
 
 
@@ -41,6 +42,7 @@ def on_loopback(listening: socket.socket) -> bool:
     return is_loopback(listening.getsockname()[0])
 
 
+@lru_cache(256)  # asked of every request
 def is_loopback(host: str) -> bool:
     """Whether a host name or address is this machine's own."""
     if host == "localhost":

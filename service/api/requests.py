@@ -53,7 +53,7 @@ class LimitsRequest(BaseModel):
 
     def within(self, most: Limits) -> Limits:
         """The limits that the job gets. Raises CaseError for those beyond `most`."""
-        limits = self.model_dump(exclude_none=True)
+        limits = {name: value for name, value in self if value is not None}
         beyond = [FieldError(f"/limits/{name}", value, f"must be <= {getattr(most, name):g}, which this service allows")
                   for name, value in limits.items() if value > getattr(most, name)]
         if beyond:

@@ -18,5 +18,6 @@ def serve(settings: Settings, listening: socket.socket) -> None:
     app = create_app(settings, keyed=settings.require_keys or not on_loopback(listening))
     write_json()
     config = uvicorn.Config(app, log_config=None, log_level="warning", access_log=False, server_header=False,
-                            http=bounded(bounds_here()), ws="none")
+                            http=bounded(bounds_here()), ws="none",
+                            proxy_headers=False)  # nothing here depends on the client's address or scheme
     uvicorn.Server(config).run(sockets=[listening])

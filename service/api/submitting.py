@@ -7,7 +7,7 @@ import hashlib
 import json
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Request, Response
+from fastapi import APIRouter, Header, Request, Response
 
 from service.access import Caller
 from service.api.again import Again
@@ -37,8 +37,7 @@ ANSWERS: dict[int | str, dict[str, Any]] = {
 @router.post("", status_code=202, response_model=JobDocument, openapi_extra=CASE_BODY,
              responses={**ANSWERS, **problems(400, 409, 413, 415, 422)})
 async def submit(
-    request: Request, parts: InParts, caller: Submitter, body: Annotated[dict[str, Any], Depends(json_object)],
-    idempotency_key: IdempotencyKey = None,
+    request: Request, parts: InParts, caller: Submitter, idempotency_key: IdempotencyKey = None,
     prefer: Annotated[str | None, Header(alias="Prefer", description="`wait=SECONDS`, up to 60")] = None,
 ) -> Response:
     """Accept a case to be run; the job is on disk when the answer comes.
@@ -47,6 +46,7 @@ async def submit(
     job for a day. A job of one's own that has run the same case is the answer instead of a new one, unless `reuse` is
     false.
     """
+    body = await json_object(request)
     submission = await understood(request, body, parts, caller, idempotency_key or "")
     with parts.submissions.put(submission) as future:
         job = await asyncio.wrap_future(future)

@@ -113,4 +113,6 @@ class Database:
 
 
 def _postgresql(url: str, reading: bool) -> Engine:
-    return create_engine(url, connect_args=FOUND_DEAD, pool_pre_ping=True, pool_timeout=BUSY, **isolation(reading))
+    # the connection that was used last knows the statements already
+    return create_engine(url, connect_args=FOUND_DEAD, pool_pre_ping=True, pool_use_lifo=True, pool_timeout=BUSY,
+                         **isolation(reading))

@@ -12,7 +12,7 @@ from service.jobs import Dataset, Job, NewJob, Reached, Registry, Status
 from service.jobs.audit import Actor, trail
 from service.jobs.held import claim
 from service.jobs.reconciler import beats, take_back
-from service.jobs.submission import REMEMBERED, KeyReused, QuotaReached, Submission, Terms, submit_all
+from service.jobs.submission import ALIKE, REMEMBERED, KeyReused, QuotaReached, Submission, Terms, submit_all
 from service.jobs.submissions import InFlight, Submissions
 
 MANY = Terms(1000)
@@ -92,6 +92,16 @@ def test_neither_an_unfinished_nor_a_failed_job_nor_anothers_is_reused(database)
     run(database, theirs)
     [last] = submit(database, wanted(reuse=True))
     assert len({waiting.id, failed.id, theirs.id, mine.id, last.id}) == 5
+
+
+def test_whether_a_case_was_run_is_looked_up_by_the_case_however_many_jobs_there_are(database):
+    submit(database, *(wanted({"t_end": float(i)}) for i in range(2000)), terms=Terms(10_000))
+    with database.reading() as connection:
+        statement = ALIKE.params(hashes=["0" * 64, "1" * 64])
+        text = statement.compile(connection, compile_kwargs={"literal_binds": True})
+        explain = "EXPLAIN QUERY PLAN" if connection.dialect.name == "sqlite" else "EXPLAIN"
+        plan = "\n".join(str(row) for row in connection.exec_driver_sql(f"{explain} {text}"))
+    assert "jobs_by_case" in plan and "jobs_by_end" not in plan and "jobs_listed" not in plan, plan
 
 
 def test_a_quota_bounds_the_unfinished_jobs_of_an_owner(database):

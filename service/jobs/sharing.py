@@ -29,13 +29,17 @@ def next_in_turn(database: Database, besides: Collection[str] = (), host: str = 
     running = (
         select(func.count()).where(jobs.c.status == Status.RUNNING, jobs.c.owner == owners.c.name).scalar_subquery()
     )
+    # told row by row, not by `exists` and `max`: PostgreSQL, while it knows of no rows that wait, reads all to answer
+    waits = select(jobs.c.id).where(*of_owner).limit(1).scalar_subquery().is_not(None)
     owner = (
         select(owners.c.name)
-        .where(exists().where(*of_owner), ~_paused(host), true() if most is None else running < most)
+        .where(waits, ~_paused(host), true() if most is None else running < most)
         .order_by(running, owners.c.served, owners.c.name).limit(1).scalar_subquery()
     )  # fmt: skip
     of_next_owner = (jobs.c.owner == owner, *waiting_for_a_worker(besides))
-    highest = select(func.max(jobs.c.priority)).where(*of_next_owner).scalar_subquery()
+    highest = (
+        select(jobs.c.priority).where(*of_next_owner).order_by(jobs.c.priority.desc()).limit(1).scalar_subquery()
+    )
     oldest = select(jobs.c.id).where(*of_next_owner, jobs.c.priority == highest).order_by(jobs.c.id).limit(1)
     with database.reading() as connection:
         return connection.scalar(oldest)

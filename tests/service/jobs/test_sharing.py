@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import re
 import threading
+from typing import Any
 
 import pytest
+from sqlalchemy import event
 
-from service.jobs import NewJob, Reached, Registry, Status
+from service.jobs import Database, NewJob, Reached, Registry, Status
 from service.jobs.audit import Actor, trail
 from service.jobs.held import HeldJob, Wish, claim
 from service.jobs.pauses import drain, pause, paused, resume
+from service.jobs.registry import insert_jobs
 from service.jobs.sharing import PATIENCE, Running, choose, make_room, next_in_turn
 
 LEASE, TURN = 10.0, 30.0
+FEW = 10
 BOSS = Actor("boss", "abc")
 
 
@@ -134,3 +139,21 @@ def test_a_job_that_was_claimed_while_its_host_began_to_drain_is_handed_back_too
     assert late.renew(LEASE, Reached()) is Wish.GO_ON
     drain(registry.database)
     assert late.renew(LEASE, Reached()) is Wish.GIVE_WAY
+
+
+def test_a_choice_reads_few_jobs_however_many_wait(server):
+    """On PostgreSQL, which has counted none of them yet: by SQLite's plan nothing of this can be seen."""
+    database = Database(server.create("choices"))
+    jobs = [NewJob({"t_end": float(number)}, owner="alice") for number in range(2000)]
+    with database.writing() as transaction:
+        insert_jobs(transaction, jobs)
+    statements: list[tuple[str, Any]] = []
+    with database.reading() as connection:
+        engine = connection.engine
+    event.listen(engine, "before_cursor_execute", lambda *given: statements.append((given[2], given[3])))
+    assert next_in_turn(database) == min(job.id for job in jobs)
+    with database.reading() as connection:
+        plan = "\n".join(row[0] for row in connection.exec_driver_sql(f"EXPLAIN ANALYZE {statements[0][0]}",
+                                                                      statements[0][1]))  # fmt: skip
+    database.close()
+    assert all(int(rows) < FEW for rows in re.findall(r"actual time=\S+ rows=(\d+)", plan)), plan

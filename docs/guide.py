@@ -57,13 +57,7 @@ def costs() -> str:
     def micro(rate: float) -> str:
         return f"{rate * 1e6:g}"
 
-    moves = {
-        "a motion that frames follow": outlook.FOLLOWED, "in water": outlook.IN_WATER,
-        "long and heavy there": outlook.DEEP, "let go, loaded at once or thrown, in a plane": outlook.LET_GO,
-        "in space": outlook.IN_SPACE, "held straight": outlook.HELD, "on a floor": outlook.ON_FLOOR,
-        "wound up": outlook.WOUND,
-    }  # fmt: skip
-    least = ", ".join(f"{kind} {seconds:g}" for kind, seconds in moves.items())
+    least = "; ".join(f"{kind}: {seconds:g}" for kind, seconds in outlook.SECONDS.items())
     rows = [
         ("a step", f"{micro(cost.STEP)} + {micro(cost.STEP_NODE)} nodes"),
         ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes"),

@@ -2,18 +2,18 @@
 
 A run whose motion the frames follow needs a few coarse meshes. One that is let go, loaded at once or thrown has waves
 that only short steps follow, and one that is wound up buckles and winds on: there the work grows until what may be
-spent is spent. The seconds of CPU time are about the medians of such scenes in `stress/plausible/bank.py`, of 40 to 60
-frames each, at a tolerance of 1e-3. How many scenes of that bank they are right for to a factor of 3 stands in
-`stress/results/plausible.md`; of its kinds no number that is the same for all scenes of a kind is right for more than
-nine in ten.
+spent is spent. The seconds of CPU time are about those of such scenes in `stress/plausible/bank.py`, of 40 to 60 frames
+each, at a tolerance of 1e-3, in the middle between the least and the most. For how many scenes of that bank they are
+right to a factor of 3 stands in `stress/results/plausible.md`.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from service.cases.driven import Driven
 from solver import Scene
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
@@ -22,16 +22,26 @@ from solver.physics.axial import axial_compliance
 from solver.physics.elasticity import elasticity_of, moments, principal
 from solver.physics.loads import solids
 from solver.physics.section import sample
-from solver.run.first_mesh import twisted
+from solver.run.first_mesh import first_mesh
 from solver.scene.ends import End
 from solver.scene.layout import nodes_at_rest
 
-WOUND, HELD, ON_FLOOR, IN_SPACE, DEEP, IN_WATER, LET_GO, FOLLOWED = 8.0, 2.5, 7.0, 1.8, 2.0, 0.45, 2.0, 0.25
+SLOWLY = "slow in space"
+SECONDS = {
+    "wound up": 9.0, "pulled taut": 8.0, "held straight": 1.6, "on a floor": 3.5, "overdamped": 0.1,
+    "in space and moved or let go": 3.0, SLOWLY: 0.35, "long and heavy in water": 0.9,
+    "shaken in water": 0.7, "towed through water": 0.13, "in water": 0.3, "let go or loaded at once": 1.5,
+    "let go gently": 0.3, "followed by the frames": 0.15,
+}  # fmt: skip
+"""CPU seconds at a tolerance of 1e-3, by what moves the rod; what is slow in space with a first mesh of 16 intervals: a
+finer one costs the more."""
 TURN = 15.0
 """Rotation (rad) of the ends relative to each other from which on a rod is taken to buckle and wind itself up."""
 INTERVALS = 16
-SMALL = 1e-3
-"""Moment, in EJ/L, that sets nothing moving."""
+SMALL, DRIVEN = 1e-3, 0.02
+"""Moment, in EJ/L, that sets nothing moving; and that of the rod's inertia where its ends are moved."""
+GENTLE, DAMPED = 4.0, 0.03
+"""Moment of the weight, in EJ/L, and least damping, in the first angular frequency, with which waves do not matter."""
 MUCH = 100.0
 """Damping, in the rod's first angular frequency, with which nothing swings."""
 LIMP = 1e5
@@ -42,23 +52,80 @@ FIRST_FREQUENCY = 3.516
 
 def likely_seconds(scene: Scene) -> float:
     """CPU seconds at a tolerance of 1e-3, but for what very many frames or nodes cost."""
-    overdamped = scene.damping > MUCH * _frequency(scene)
-    if twisted(scene) > TURN and not overdamped:
-        return WOUND
+    kind = kind_of(scene)
+    finer = 2.0 ** first_mesh(scene, pressed=False) if kind == SLOWLY else 1.0
+    return SECONDS[kind] * finer
+
+
+def kind_of(scene: Scene) -> str:
+    """What moves the rod, of `SECONDS`."""
+    driven, frequency = Driven.of(scene), _frequency(scene)
+    urged = Urged.of(scene, driven)
+    overdamped = scene.damping > MUCH * frequency
+    if driven.turned > TURN and not overdamped:
+        return "wound up"
     if axial_compliance(scene) > 0.0:
-        return HELD
+        return "pulled taut" if driven.apart else "held straight"
     if any(isinstance(load, solids.Given) for load in scene.loads):
-        return ON_FLOOR
+        return "on a floor"
     if overdamped:
-        return FOLLOWED
+        return "overdamped"
     if axis_of(replace(scene, numerics=replace(scene.numerics, intervals=INTERVALS))) is None:
-        return IN_SPACE
+        let_go = scene.damping == 0.0 and max(urged.stress, urged.force, urged.held_weight) > SMALL
+        return "in space and moved or let go" if urged.inertia > DRIVEN or let_go else SLOWLY
     if scene.fluid is not None:
-        stiffness, mass = _mean(scene)
-        weight = float(np.linalg.norm(scene.gravity)) * mass * scene.rod.length**3
-        return DEEP if weight > LIMP * stiffness else IN_WATER
-    swings = scene.damping < 2.0 * _frequency(scene)
-    return LET_GO if swings and _is_let_go(scene) else FOLLOWED
+        if urged.weight > LIMP:
+            return "long and heavy in water"
+        return "shaken in water" if driven.to_and_fro else "towed through water" if driven.moved else "in water"
+    swings = scene.damping < 2.0 * max(frequency, _pendulum(scene))
+    if not (swings and urged.at_once):
+        return "followed by the frames"
+    gentle = max(urged.stress, urged.force) < SMALL and urged.weight < GENTLE and scene.damping > DAMPED * frequency
+    return "let go gently" if gentle else "let go or loaded at once"
+
+
+@dataclass(frozen=True)
+class Urged:
+    """What moves a rod, as moments in EJ/L: of its weight, of the part of that across the rod, and across a rod that is
+    `held` somewhere; of its stress at t = 0, of forces that are there at once, of its inertia where its ends are
+    driven; and whether it is `thrown`."""
+
+    weight: float
+    weight_across: float
+    held_weight: float
+    stress: float
+    force: float
+    inertia: float
+    thrown: bool
+
+    @classmethod
+    def of(cls, scene: Scene, driven: Driven) -> Urged:
+        """As a scene has it."""
+        length, (stiffness, mass) = float(scene.rod.length), _mean(scene)
+        s = np.linspace(0.0, length, INTERVALS + 1)
+        _, quaternion, kappa = nodes_at_rest(scene.initial, s)
+        tangent = rotate(quaternion, np.tile([0.0, 0.0, 1.0], (len(quaternion), 1)))
+        unit = mass * length**3 / stiffness
+        crossed = [np.cross(tangent[0], [c.value(0.0) for c in load.force]) for load in scene.points]
+        across = [float(np.linalg.norm(force)) for force in crossed]
+        across += [_across(scene.start, tangent[0]), _across(scene.end, tangent[-1])]
+        weight_across = float(np.linalg.norm(np.cross(tangent, scene.gravity), axis=1).mean()) * unit
+        return cls(
+            weight=float(np.linalg.norm(scene.gravity)) * unit, weight_across=weight_across,
+            held_weight=weight_across if _is_held(scene.start) or _is_held(scene.end) else 0.0,
+            stress=float(np.abs(moments(elasticity_of(scene.rod, s), kappa)).max()) * length / stiffness,
+            force=max(across) * length**2 / stiffness, inertia=driven.acceleration * unit,
+            thrown=any((*scene.initial.velocity, *scene.initial.angular_velocity)),
+        )  # fmt: skip
+
+    @property
+    def at_once(self) -> bool:
+        """Whether the rod is not at rest where it begins."""
+        return self.thrown or max(self.weight_across, self.stress, self.force) > SMALL
+
+
+def _is_held(end: End) -> bool:
+    return any(component[0].kind != "load" for component in (*end.translation, *end.rotation))
 
 
 def _frequency(scene: Scene) -> float:
@@ -67,27 +134,16 @@ def _frequency(scene: Scene) -> float:
     return float(FIRST_FREQUENCY * np.sqrt(stiffness / mass) / scene.rod.length**2)
 
 
+def _pendulum(scene: Scene) -> float:
+    """The angular frequency (rad/s) of the rod as a rope that swings."""
+    return float(np.sqrt(np.linalg.norm(scene.gravity) / scene.rod.length))
+
+
 def _mean(scene: Scene) -> tuple[float, float]:
     """EJ (N m^2) of the softer axis and mass per length (kg/m)."""
     s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
     softer = principal(elasticity_of(scene.rod, s))[:, :2].min(axis=1)
     return float(softer.mean()), float(sample(scene.rod, s).mass.mean())
-
-
-def _is_let_go(scene: Scene) -> bool:
-    """Whether the rod is not at rest where it begins: by its stress, its weight, a load that is there at once, or its
-    motion."""
-    length, (stiffness, mass) = float(scene.rod.length), _mean(scene)
-    s = np.linspace(0.0, length, INTERVALS + 1)
-    _, quaternion, kappa = nodes_at_rest(scene.initial, s)
-    tangent = rotate(quaternion, np.tile([0.0, 0.0, 1.0], (len(quaternion), 1)))
-    weight = float(np.linalg.norm(np.cross(tangent, scene.gravity), axis=1).mean()) * mass * length**3
-    stress = float(np.abs(moments(elasticity_of(scene.rod, s), kappa)).max()) * length
-    crossed = [np.cross(tangent[0], [c.value(0.0) for c in load.force]) for load in scene.points]
-    across = [float(np.linalg.norm(force)) for force in crossed]
-    across += [_across(scene.start, tangent[0]), _across(scene.end, tangent[-1])]
-    thrown = any((*scene.initial.velocity, *scene.initial.angular_velocity))
-    return thrown or max(weight, stress, max(across) * length**2) > SMALL * stiffness
 
 
 def _across(end: End, tangent: Array) -> float:

@@ -9,9 +9,9 @@
     bytes   = 8 frames n (components of the stored fields), before compression
 
 With `verify` five times the seconds (the second run has twice the intervals and steps) and twice the bytes. With a
-`tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the seconds and the bytes, or
-the seconds that such scenes take (`outlook`) if these are more; a tolerance below the usual one makes it
-(usual/tolerance)^(1/2) times as much, up to the WORK after which it ends.
+`tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the bytes; or the seconds
+that such scenes take (`outlook`) if these are more; a tolerance below the usual one makes it (usual/tolerance)^(1/2)
+times as much, up to the WORK after which it ends.
 
 The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
 a step from goyal-2003 to 32 s (about two Newton iterations a step, contact included), WRITHE of a rod whose strands lie
@@ -39,7 +39,7 @@ STATIC_CONTACT_NODE = 5e-4  # six, and a count of all rotations together
 FRAME, FRAME_NODE = 100e-6, 4e-6
 WRITHE = 1.5e-9
 POINT, PAIR = 1e-7, 5e-9
-PILOTS, VERIFIED = 2, 5
+VERIFIED = 5
 WORK = 10.0
 """Seconds that solver.run.plan spends on a tolerance (MOST_WORK)."""
 MOST_HALVED = 2.0**22
@@ -81,7 +81,6 @@ def by_size(spec: CaseSpec) -> Cost:
     frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
     seconds = steps * step + frames * frame
     if numerics.tolerance:
-        seconds *= PILOTS
         seconds = max(seconds, min(seconds * _finer(numerics.tolerance), WORK + frames * frame))
     elif numerics.verify:
         seconds *= VERIFIED

@@ -28,10 +28,10 @@ from solver.scene.layout import nodes_at_rest
 
 SLOWLY = "slow in space"
 SECONDS = {
-    "wound up": 9.0, "pulled taut": 8.0, "held straight": 1.6, "on a floor": 3.5, "overdamped": 0.1,
-    "in space and moved or let go": 3.0, SLOWLY: 0.35, "long and heavy in water": 0.9,
-    "shaken in water": 0.7, "towed through water": 0.13, "in water": 0.3, "let go or loaded at once": 1.5,
-    "let go gently": 0.3, "followed by the frames": 0.15,
+    "wound up": 10.0, "pulled taut": 7.0, "held straight and twisted": 1.8, "held straight": 1.3, "on a floor": 3.0,
+    "overdamped": 0.1, "in space and moved or let go": 3.0, "flying freely": 0.12, SLOWLY: 0.3,
+    "long and heavy in water": 1.2, "shaken in water": 0.6, "towed through water": 0.13, "in water": 0.29,
+    "let go or loaded at once": 1.6, "let go gently": 0.3, "followed by the frames": 0.14,
 }  # fmt: skip
 """CPU seconds at a tolerance of 1e-3, by what moves the rod; what is slow in space with a first mesh of 16 intervals: a
 finer one costs the more."""
@@ -65,14 +65,17 @@ def kind_of(scene: Scene) -> str:
     if driven.turned > TURN and not overdamped:
         return "wound up"
     if axial_compliance(scene) > 0.0:
-        return "pulled taut" if driven.apart else "held straight"
+        return "pulled taut" if driven.apart else "held straight and twisted" if driven.turned else "held straight"
     if any(isinstance(load, solids.Given) for load in scene.loads):
         return "on a floor"
     if overdamped:
         return "overdamped"
     if axis_of(replace(scene, numerics=replace(scene.numerics, intervals=INTERVALS))) is None:
-        let_go = scene.damping == 0.0 and max(urged.stress, urged.force, urged.held_weight) > SMALL
-        return "in space and moved or let go" if urged.inertia > DRIVEN or let_go else SLOWLY
+        urging = max(urged.stress, urged.force, urged.held_weight) > SMALL
+        if urged.inertia > DRIVEN or (urging and scene.damping == 0.0):
+            return "in space and moved or let go"
+        flies = not (urging or _is_held(scene.start) or _is_held(scene.end))
+        return "flying freely" if flies else SLOWLY
     if scene.fluid is not None:
         if urged.weight > LIMP:
             return "long and heavy in water"

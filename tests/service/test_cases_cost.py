@@ -104,6 +104,8 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
      "in space and moved or let go"),
     ({"ends__end": "clamp"}, "held straight"),
     ({"ends__end": moved(x3=True, to=-0.1)}, "held straight"),
+    ({"ends__end": moved(x3=True, to=-0.1) | moved(theta3=True, to=5.0)}, "held straight and twisted"),
+    ({"ends__start": "free", "loads__point": [], "loads__gravity": ASKEW}, "flying freely"),
     ({"ends__end": moved(x3=True, to=0.01)}, "pulled taut"),
     ({"loads__floor": {"stiffness": 1.0}}, "on a floor"),
     ({"loads__obstacles": [{"start": [0, 0, -9], "radius": 1.0, "stiffness": 1.0}]}, "on a floor"),

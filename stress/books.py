@@ -8,8 +8,7 @@
 - Topology: Tw + Wr = Lk + constant between ends that do not swing, within `TURNS` and what the box method's mean
   curvature may miss, (kappa ds)^2 / 8 of the turns. A pass-through changes it by 2; so does a hop over an end, if the
   run says that there was one. An end behind the start is let be.
-- Statics: forces and moments on the whole rod are in equilibrium, within `FORCE` of the largest, and (kappa ds)^2 at
-  the ends, now or in the initial shape: segments that are laid along a curve are turned against its frames by as much.
+- Statics: forces and moments on the whole rod are in equilibrium, within `FORCE` of the largest.
 """
 
 from __future__ import annotations
@@ -69,7 +68,7 @@ class Books:
         self._enter_length(frame, bend)
         self._enter_turns(frame, bend, hops)
         if self._scene.analysis == "static":
-            self._enter_forces(frame, bend)
+            self._enter_forces(frame)
         else:
             self._enter_energy(frame)
         self._before = frame
@@ -134,15 +133,13 @@ class Books:
             self._missing += change
         self._made, self._lost = max(self._made, self._missing), min(self._lost, self._missing)
 
-    def _enter_forces(self, frame: Frame, bend: Array) -> None:
+    def _enter_forces(self, frame: Frame) -> None:
         """The whole rod in equilibrium: what its ends bear is what is put on it, if that is weight alone."""
         scene = self._scene
-        if scene.distributed or scene.points or scene.fluid:
+        if scene.distributed or scene.points or scene.fluid or scene.loads:
             return
         ds = self._length / (len(frame.r) - 1)
-        at_ends = frame.q[[0, -1]]  # as half way to the next quarter of an interval: turned to the ends' own frames
-        at_ends = at_ends + 0.25 * ds * np.cross(frame.kappa[[0, -1]], at_ends) * np.array([[1.0], [-1.0]])
-        F, Q = rotate(frame.orientation, frame.f), rotate(frame.orientation[[0, -1]], at_ends)
+        F, Q = rotate(frame.orientation, frame.f), rotate(frame.orientation[[0, -1]], frame.q[[0, -1]])
         middles = np.asarray((np.arange(len(frame.r) - 1) + 0.5) * ds, dtype=np.float64)
         weights = (scene.rod.mass(middles) * ds)[:, None] * np.array(scene.gravity)
         places = 0.5 * (frame.r[1:] + frame.r[:-1])
@@ -153,15 +150,8 @@ class Books:
         span = self._length + float(np.abs(frame.r).max())
         worst = max(float(np.abs(force).max()), float(np.abs(moment).max()) / span)
         off = worst / (largest + NOISE / FORCE * self._force)
-        turned = max(float(np.linalg.norm(frame.kappa[[0, -1]] * ds, axis=1).max()), self._turned_at_start(ds))
-        if off > FORCE + turned**2:
+        if off > FORCE:
             self._report(Ending.OUT_OF_BALANCE, f"by {off:.2g} of the largest force at {frame.parameter:g} s")
-
-    def _turned_at_start(self, ds: float) -> float:
-        """The larger angle (rad) by which the initial shape turns within an interval at its ends."""
-        s = ds * np.arange(3.0)
-        shapes = (self._scene.initial.centreline(at) for at in (s, self._length - s))
-        return max(float(np.linalg.norm(np.diff(np.diff(r, axis=0), axis=0))) / ds for r in shapes)
 
 
 def _has_passed(frame: Frame) -> bool:

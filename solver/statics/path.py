@@ -103,10 +103,10 @@ class Path:
         to_corner = min((forward * (c - point.q) for c in self._corners if forward * (c - point.q) > REACHED),
                         default=np.inf)  # fmt: skip
         room, wanted = min(remaining, to_corner), self._length
-        limit = room / max(abs(dq), REACHED)
+        limit, beyond = room / max(abs(dq), REACHED), False
         while min(wanted, limit) > SHORTEST:
             length = min(wanted, limit)
-            lands = abs(dq) > STEEP and length * abs(dq) > room * (1.0 - 1e-9)
+            lands = abs(dq) > STEEP and (beyond or length * abs(dq) > room * (1.0 - 1e-9))
             guess = point.moved(length * self.direction.z, forward * room if lands else length * dq)
             self._equations.look_ahead(point, guess)
             end, kinked = self._correct(guess, None if lands else self.direction), False
@@ -120,7 +120,9 @@ class Path:
                 smooth = cornered or kinked or direction.dot(self.direction.z, dq) > SHARPEST
                 if smooth and (modes == self.modes or direction.dq * dq < 0.0 or length < CROSSING):
                     swept, part = (room, 1.0) if lands else _sweep(end.q - point.q, dq, direction.dq, length, room)
-                    if part > 0.99:
+                    # past where it is to stop, but not by a fold: from now on to be found there
+                    beyond = part < 1.0 and abs(dq) > STEEP and direction.dq * dq > 0.0
+                    if part > 0.99 and not beyond:
                         self._accept(end, direction, modes, swept)
                         # a step that a stop cut short says nothing of how long the next may be
                         grown = 2.0 * wanted if self._easy and length == wanted else wanted
@@ -129,7 +131,7 @@ class Path:
                     limit = length * part
                     continue
             self.failed += 1
-            wanted = 0.5 * length
+            wanted, beyond = 0.5 * length, False
         _, solver = self._equations.linearise(point)
         if solver.singular:
             raise self._failure(Outcome.SINGULAR_SYSTEM, "a pivot vanished")
@@ -195,5 +197,5 @@ def _sweep(dq: float, slope: float, end_slope: float, length: float, room: float
     x = np.linspace(0.0, 1.0, 1001)
     q = x * (1 - x) ** 2 * slope * length + x**2 * (3 - 2 * x) * dq - x**2 * (1 - x) * end_slope * length
     swept = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(q)))])
-    part = float(np.interp(room, swept, x)) if swept[-1] > room * (1.0 + 1e-6) else 1.0
+    part = float(np.interp(room, swept, x)) if swept[-1] > room * (1.0 + 1e-9) else 1.0
     return float(min(swept[-1], room)), part

@@ -195,6 +195,15 @@ def test_a_bent_start_is_let_go_to_where_it_has_no_stress() -> None:
     assert np.hypot(first.r[-1, 0], first.r[-1, 2]) == pytest.approx(LENGTH, abs=1e-10)
 
 
+@pytest.mark.parametrize("diameter", [0.0131, 0.05, 0.2])
+def test_a_bent_start_is_let_go_all_the_way(diameter: float) -> None:
+    rod = Rod.circular(LENGTH, diameter, 1.25e7, 5e6, 1500.0)
+    first = next(iter(simulate(static(rod=rod, initial=ARC, gravity=(-9.81, 0.0, 0.0)))))
+    weight = 9.81 * 1500.0 * pi * diameter**2 / 4.0 * LENGTH
+    F = rotate(first.orientation, first.f)
+    assert F[-1] - F[0] == pytest.approx([weight, 0.0, 0.0], abs=1e-8 * weight)
+
+
 def test_a_rod_between_pins_may_spin_and_still_has_its_sag() -> None:
     # the arc bulges towards -e1 + e3
     scene = static(rod=ARC_ROD, initial=ARC, start=End.pin(), end=End.pin(), gravity=(-0.3, 0.0, 0.2))

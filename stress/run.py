@@ -18,6 +18,9 @@ from stress.ending import FAILURES, Ending, Result, Task
 
 SEVERE = (Ending.NOT_FINITE, Ending.CROSSED)
 """Faults that no name excuses."""
+WORD = 100
+"""Steps within which, and before its next frame, a run that passed through itself ends by that name: the curve between
+the nodes, on which the solver looks for it, may do so somewhat later than the straight lines of `crossing`."""
 PLACES = 11
 """Of the centreline, equally spaced, that a result keeps."""
 
@@ -37,7 +40,7 @@ def run(task: Task) -> Result:
     except Exception:
         ending, detail = Ending.EXCEPTION, traceback.format_exc(limit=-3)
     if watch is not None and ending is not Ending.EXCEPTION:
-        watch.books.close()
+        watch.close(outcome)
         fault = watch.books.fault
         if fault is not None and not _excused(ending, fault[0]):
             ending, detail = fault[0], f"{detail} {fault[1]}".strip()
@@ -77,22 +80,36 @@ class Watch:
         contact = scene.contact
         skip = None if contact is None else spaced(contact, scene.rod).skip
         self._crossings = None if skip is None else Crossings(float(scene.rod.length), skip)
+        self._crossed: tuple[float, int] | None = None
+        """When (s) it passed through itself, and the steps by then."""
         self._last: Frame | None = None
 
     def follow(self, steps: int, until: float) -> bool:
         """Step to the end, unless `steps` are taken or the process has used `until` CPU seconds; whether it ended."""
         while not self.simulation.finished:
-            tried = self.simulation.statistics.steps + self.simulation.statistics.failed_steps
-            if tried >= steps or process_time() > until:
+            if self._crossed is None and (self._tried >= steps or process_time() > until):
                 return False
             frame = self.simulation.advance()
-            self._look_for_crossings()
+            if self._crossed is None:
+                self._look_for_crossings()
+            elif frame is not None or self._tried >= self._crossed[1] + WORD:
+                self.close("")
             if frame is not None:
                 self._last = frame
                 self.books.enter(frame, self.simulation.remarks.end_hops)
             if self.books.fault is not None and self.books.fault[0] in SEVERE:
                 return True
         return True
+
+    def close(self, outcome: str) -> None:
+        """Judge the whole of a run that ended with this outcome, or with none."""
+        self.books.close()
+        if self._crossed is not None and outcome != Outcome.ROD_CROSSED_ITSELF.value:
+            self.books.fault = Ending.CROSSED, f"between two steps before t = {self._crossed[0]:g} s"
+
+    @property
+    def _tried(self) -> int:
+        return self.simulation.statistics.steps + self.simulation.statistics.failed_steps
 
     def centreline(self) -> list[list[float]]:
         """The last frame's centreline at equally spaced places."""
@@ -106,4 +123,4 @@ class Watch:
         if self._crossings is None or not isinstance(self.simulation, Simulation):
             return
         if self._crossings.passed(self.simulation._method.fields().r):
-            self.books.fault = Ending.CROSSED, f"between two steps before t = {self.simulation.t:g} s"
+            self._crossed = self.simulation.t, self._tried

@@ -180,6 +180,8 @@ ONCE_WRONG = {
     9969: "statics: an end slid past the other one, where the rays that close the curve meet and Wr is half its jump",
     "77-451": "a torque that jumps, steps far longer than a twist wave takes: its mean power is far from its work",
     "77-772": "the same at a slider whose torque changes its sign at once",
+    "1-363": "strands slip through each other, by the lines between the nodes some steps before the curve says so",
+    "1-2293": "statics: not all that held the bent start was let go: a step that had passed the end was taken",
 }
 """By number in the draws of seed 1, or by seed and number; they lie beside this file: other sources make others."""
 CASES = json.loads(Path(__file__).with_name("once_wrong.json").read_text(encoding="utf-8"))

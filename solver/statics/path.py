@@ -84,17 +84,21 @@ class Path:
             self.direction = self._direction(self.point, 1.0)
             self.modes = negative_modes(self._equations)
             self._begun = True
-        if stop - self.travelled > REACHED:
+        if self._left(stop) > REACHED:
             if self._idle == MOST_STEPS:
                 raise self._failure(Outcome.EQUILIBRIUM_LOST, f"{MOST_STEPS} steps did not reach the next frame")
-            self._step(stop - self.travelled)
+            self._step(self._left(stop))
             self._idle += 1
             if self.point.q < -REACHED and not self._equations.letting_go:
                 raise self._failure(Outcome.PATH_TURNED_BACK)
-        if stop - self.travelled > REACHED:
+        if self._left(stop) > REACHED:
             return False
         self.travelled, self._idle = stop, 0
         return True
+
+    def _left(self, stop: float) -> float:
+        """How far q is to travel to a stop; what holds the initial shape is let go where q is there, however it came."""
+        return stop - (self.point.q if self._equations.letting_go else self.travelled)
 
     def _step(self, remaining: float) -> None:
         """Take one step, no farther than the next corner and `remaining` of q."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-SIZE = "300m"
+SIZE = "600m"
 
 
 @contextmanager

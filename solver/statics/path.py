@@ -97,7 +97,7 @@ class Path:
         return True
 
     def _left(self, stop: float) -> float:
-        """How far q is to travel to a stop; what holds the initial shape is let go where q is there, however it came."""
+        """How far q is to travel to a stop. What holds the initial shape is let go where q is there, by any way."""
         return stop - (self.point.q if self._equations.letting_go else self.travelled)
 
     def _step(self, remaining: float) -> None:

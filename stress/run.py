@@ -92,7 +92,7 @@ class Watch:
             frame = self.simulation.advance()
             if self._crossed is None:
                 self._look_for_crossings()
-            elif frame is not None or self._tried >= self._crossed[1] + WORD:
+            elif frame is not None or self.simulation.statistics.steps >= self._crossed[1] + WORD:
                 self.close("")
             if frame is not None:
                 self._last = frame
@@ -123,4 +123,4 @@ class Watch:
         if self._crossings is None or not isinstance(self.simulation, Simulation):
             return
         if self._crossings.passed(self.simulation._method.fields().r):
-            self._crossed = self.simulation.t, self._tried
+            self._crossed = self.simulation.t, self.simulation.statistics.steps

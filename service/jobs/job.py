@@ -188,10 +188,12 @@ class Job:
 
 
 def new_id() -> str:
-    """An identifier that sorts by time and cannot be guessed: 48 bits of milliseconds, 80 random ones.
+    """An identifier that sorts by time and cannot be guessed: 48 bits of milliseconds, 10 of microseconds in them, so
+    that jobs are run as they were handed in, and 70 random ones.
 
     They are drawn without asking the system each time: a thread that does waits for its turn behind all others.
     """
     drawn = hashlib.blake2b(b"%d %d" % (os.getpid(), next(_DRAWN)), key=_SECRET, digest_size=10).digest()
-    number = (time.time_ns() // 1_000_000) << 80 | int.from_bytes(drawn)
+    milliseconds, microseconds = divmod(time.time_ns() // 1000, 1000)
+    number = milliseconds << 80 | microseconds << 70 | int.from_bytes(drawn) >> 10
     return "".join(CROCKFORD[number >> shift & 31] for shift in range(125, -5, -5))

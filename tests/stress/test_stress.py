@@ -180,7 +180,6 @@ ONCE_WRONG = {
     9969: "statics: an end slid past the other one, where the rays that close the curve meet and Wr is half its jump",
     "77-451": "a torque that jumps, steps far longer than a twist wave takes: its mean power is far from its work",
     "77-772": "the same at a slider whose torque changes its sign at once",
-    "1-363": "strands slip through each other, by the lines between the nodes some steps before the curve says so",
     "1-3046": "statics: q went to and fro on its way to 1, where all is let go, and 1 was how far it had gone in all",
     "1-2293": "statics: not all that held the bent start was let go: a step that had passed the end was taken",
 }

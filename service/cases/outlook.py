@@ -18,7 +18,7 @@ from solver import Scene
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.methods.space.one_axis.axis import axis_of
-from solver.physics.axial import axial_compliance
+from solver.physics.axial import axial_compliance, distances
 from solver.physics.elasticity import elasticity_of, moments, principal
 from solver.physics.loads import solids
 from solver.physics.section import sample
@@ -42,6 +42,8 @@ SMALL, DRIVEN = 1e-3, 0.02
 """Moment, in EJ/L, that sets nothing moving; and that of the rod's inertia where its ends are moved."""
 GENTLE, DAMPED = 4.0, 0.03
 """Moment of the weight, in EJ/L, and least damping, in the first angular frequency, with which waves do not matter."""
+FARTHER = 1e-6
+"""Part of their distance by which ends that come apart pull the rod taut."""
 MUCH = 100.0
 """Damping, in the rod's first angular frequency, with which nothing swings."""
 LIMP = 1e5
@@ -65,7 +67,9 @@ def kind_of(scene: Scene) -> str:
     if driven.turned > TURN and not overdamped:
         return "wound up"
     if axial_compliance(scene) > 0.0:
-        return "pulled taut" if driven.apart else "held straight and twisted" if driven.turned else "held straight"
+        if _come_apart(scene):
+            return "pulled taut"
+        return "held straight and twisted" if driven.turned else "held straight"
     if any(isinstance(load, solids.Given) for load in scene.loads):
         return "on a floor"
     if overdamped:
@@ -125,6 +129,12 @@ class Urged:
     def at_once(self) -> bool:
         """Whether the rod is not at rest where it begins."""
         return self.thrown or max(self.weight_across, self.stress, self.force) > SMALL
+
+
+def _come_apart(scene: Scene) -> bool:
+    """Whether ends that hold their places come farther apart than they are at first."""
+    apart = distances(scene)
+    return apart is not None and bool(apart.max() > apart[0] * (1.0 + FARTHER))
 
 
 def _is_held(end: End) -> bool:

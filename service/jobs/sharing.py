@@ -29,7 +29,7 @@ def next_in_turn(database: Database, besides: Collection[str] = (), host: str = 
     running = (
         select(func.count()).where(jobs.c.status == Status.RUNNING, jobs.c.owner == owners.c.name).scalar_subquery()
     )
-    # told row by row, not by `exists` and `max`: PostgreSQL, while it knows of no rows that wait, reads all to answer
+    # the first row, not `exists` and `max`: by old statistics, with no job that waits, PostgreSQL reads all that wait
     waits = select(jobs.c.id).where(*of_owner).limit(1).scalar_subquery().is_not(None)
     owner = (
         select(owners.c.name)

@@ -18,13 +18,13 @@ from service.jobs.tables import JOBS, idempotency_keys, job_of, jobs, owners, we
 REMEMBERED = 3 * 86400.0
 """How long (s) an idempotency key is remembered: a day, which is promised, between clocks that are a day wrong."""
 
-GOOD = (jobs.c.status == Status.SUCCESSFUL) & jobs.c.deleted.is_(None) & (jobs.c.dataset_fault == "")
+REUSABLE = (jobs.c.status == Status.SUCCESSFUL) & jobs.c.deleted.is_(None) & (jobs.c.dataset_fault == "")
 ALIKE = (
-    select(jobs.c.owner, jobs.c.case_sha256, func.max(jobs.c.id).filter(GOOD).label("id"))
+    select(jobs.c.owner, jobs.c.case_sha256, func.max(jobs.c.id).filter(REUSABLE).label("id"))
     .where(jobs.c.case_sha256.in_(bindparam("hashes", expanding=True)))
     .group_by(jobs.c.owner, jobs.c.case_sha256)
 )
-"""By the cases alone: with more conditions PostgreSQL, while it has no statistics, reads all that is not deleted."""
+"""By the cases alone: with more conditions SQLite, and PostgreSQL without statistics, read all that is not deleted."""
 MOST_KEYS = 100_000
 """Idempotency keys that are remembered of one owner: whoever sends more must wait until some are forgotten."""
 OWNED = (

@@ -48,13 +48,19 @@ def axial_stiffness(scene: Scene) -> float:
 
 def _has_to_stretch(scene: Scene) -> bool:
     """Whether both ends hold their places, and are ever as far apart as the rod is long."""
+    apart = distances(scene)
+    return apart is not None and bool(apart.max() >= TAUT * scene.rod.length)
+
+
+def distances(scene: Scene) -> Array | None:
+    """How far the ends are apart (m) at times from 0 to t_end (LOOKED_AT,), if both hold their places."""
     if not (_holds(scene.start) and _holds(scene.end)):
-        return False
+        return None
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
     r, quaternion, _ = nodes_at_rest(scene.initial, s)
     times = np.linspace(0.0, scene.t_end, LOOKED_AT)
     start, end = (_path(e, r[i], quaternion[i], times) for e, i in ((scene.start, 0), (scene.end, -1)))
-    return bool(np.linalg.norm(end - start, axis=1).max() >= TAUT * scene.rod.length)
+    return np.asarray(np.linalg.norm(end - start, axis=1))
 
 
 def _holds(end: End) -> bool:

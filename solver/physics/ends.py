@@ -10,6 +10,8 @@ from solver.scene.ends import Condition, End
 
 RATE, LOAD, RATE_LAB, LOAD_LAB = 0, 1, 2, 3
 """Kinds of a condition on a translation component; a rotation component is RATE or LOAD."""
+ABOUT_A3 = 5
+"""Of the six components the rotation about the rod itself."""
 
 Kinds = NDArray[np.int64]
 
@@ -80,12 +82,12 @@ class DrivenEnd:
             values[i] = self._value(i, t, dt, gain)
         return values
 
-    def rotation_prescribed(self, t: float) -> float | None:
-        """The exact rotation (rad) about a3 since t = 0, if it has been prescribed all along."""
-        total = 0.0
-        component = self._components[5]
-        for i, condition in enumerate(component):
-            until = component[i + 1].since if i + 1 < len(component) else t
+    def prescribed(self, component: int, t: float) -> float | None:
+        """The exact displacement (m) along, or rotation (rad) about, an axis since t = 0, if it has been prescribed all
+        along; `component`: 0 to 2 of the translation, 3 to 5 of the rotation."""
+        total, conditions = 0.0, self._components[component]
+        for i, condition in enumerate(conditions):
+            until = conditions[i + 1].since if i + 1 < len(conditions) else t
             if condition.kind not in ("rate", "position"):
                 return None
             total += travel(condition, min(until, t))

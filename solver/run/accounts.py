@@ -11,6 +11,7 @@ from solver.measures.frame import Frame
 from solver.measures.topology import writhe_of_rod
 from solver.methods.method import Method
 from solver.physics.elasticity import elasticity_of, principal
+from solver.physics.ends import ABOUT_A3
 from solver.scene.scene import Scene
 
 MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
@@ -92,6 +93,6 @@ class Accounts:
             self._Lk_at_start = Tw + Wr
         turned = []
         for end in (self._method.start, self._method.end):
-            exact = end.rotation_prescribed(t)
-            turned.append(float(end.travel[5]) if exact is None else exact)
+            exact = end.prescribed(ABOUT_A3, t)
+            turned.append(float(end.travel[ABOUT_A3]) if exact is None else exact)
         return self._Lk_at_start + (turned[1] - turned[0]) / (2 * pi)

@@ -6,7 +6,7 @@ from math import ceil, log2
 
 import numpy as np
 
-from solver.physics.ends import DrivenEnd
+from solver.physics.ends import ABOUT_A3, DrivenEnd
 from solver.run.plan import FIRST_INTERVALS
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
@@ -38,5 +38,5 @@ def twisted(scene: Scene) -> float:
     """The largest rotation (rad) of one end about itself relative to the other that the scene asks for."""
     ends = DrivenEnd(scene.start), DrivenEnd(scene.end)
     times = np.linspace(0.0, scene.t_end, TIMES).tolist()
-    turned = [[end.rotation_prescribed(t) or 0.0 for end in ends] for t in times]
+    turned = [[end.prescribed(ABOUT_A3, t) or 0.0 for end in ends] for t in times]
     return max(abs(start - end) for start, end in turned)

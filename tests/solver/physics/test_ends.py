@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Condition, Curve, End, Initial, Scene, simulate
-from solver.physics.ends import LOAD, LOAD_LAB, RATE, RATE_LAB, DrivenEnd
+from solver.physics.ends import ABOUT_A3, LOAD, LOAD_LAB, RATE, RATE_LAB, DrivenEnd
 from solver.run.step_control import CONSISTENT_STEPS
 from solver.scene.ends import FIXED, FREE
 from tests.solver.scenes import ARC, ARC_ROD, ROD, fixed_steps, last, moved_clamp, turned_clamp
@@ -96,18 +96,18 @@ def test_the_rotation_prescribed_adds_up_over_switches() -> None:
     first = Condition("rate", Curve.constant(2.0))
     second = Condition("position", Curve.table([0.0, 10.0], [0.0, 5.0]), since=3.0)
     end = DrivenEnd(End((FIXED, FIXED, FIXED), (FIXED, FIXED, (first, second))))
-    assert end.rotation_prescribed(1.0) == pytest.approx(2.0)
-    assert end.rotation_prescribed(3.0) == pytest.approx(6.0)
-    assert end.rotation_prescribed(7.0) == pytest.approx(6.0 + 2.0)
+    assert end.prescribed(ABOUT_A3, 1.0) == pytest.approx(2.0)
+    assert end.prescribed(ABOUT_A3, 3.0) == pytest.approx(6.0)
+    assert end.prescribed(ABOUT_A3, 7.0) == pytest.approx(6.0 + 2.0)
 
 
 def test_a_rotation_that_was_ever_free_is_not_prescribed() -> None:
     held = Condition("rate", since=2.0)
-    assert DrivenEnd(End((FIXED, FIXED, FIXED), (FIXED, FIXED, (FREE[0], held)))).rotation_prescribed(5.0) is None
+    assert DrivenEnd(End((FIXED, FIXED, FIXED), (FIXED, FIXED, (FREE[0], held)))).prescribed(ABOUT_A3, 5.0) is None
     stop = Condition("stop", since=2.0, within=0.1)
     end = DrivenEnd(End((FIXED, FIXED, FIXED), (FIXED, FIXED, (FIXED[0], stop))))
-    assert end.rotation_prescribed(1.0) == 0.0
-    assert end.rotation_prescribed(3.0) is None
+    assert end.prescribed(ABOUT_A3, 1.0) == 0.0
+    assert end.prescribed(ABOUT_A3, 3.0) is None
 
 
 TURNED = 3.0

@@ -1,8 +1,8 @@
 """How a worker shows that it gets on: its parent by Celery's own loop, each child by a thread.
 
 The parent's pulse is what the supervisor looks at; the parent looks at its children's, and kills those that stand
-still: the pool starts others. Each child tells the registry that there is one who can run a job, as long as its parent
-gets on too: without it no message comes.
+still: the pool starts others. Each child tells the registry that there is one who can run a job, and names its parent
+as soon as that does not get on, for without it no message comes: long before the supervisor replaces both.
 """
 
 from __future__ import annotations
@@ -113,5 +113,5 @@ class Child:
             self._presence.leave()
 
     def _present(self) -> None:
-        if self._listener.silent(last_beat(self._pulses, "worker", self._parent)) < STILL / 2:
-            self._presence.beat()
+        silent = self._listener.silent(last_beat(self._pulses, "worker", self._parent))
+        self._presence.beat(["parent"] if silent >= STILL / 2 else [])

@@ -91,7 +91,8 @@ class Roll:
         self._listeners = {process.id: self._listeners.get(process.id) or self._listener() for process in rows}
         self.ages = {process.id: self._listeners[process.id].silent(process.beat) for process in rows}
         quiet = {name for name, age in self.ages.items() if age > SILENT}
-        self.workers = sum(process.kind == "worker" and process.id not in quiet for process in rows)
+        able = (process.id not in quiet and not process.stuck for process in rows if process.kind == "worker")
+        self.workers = sum(able)
         parts = [f"{process.id} {part}" for process in rows if process.stuck for part in process.stuck.split(",")]
         self.silent = sorted(quiet) + parts
 

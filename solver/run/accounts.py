@@ -16,7 +16,8 @@ from solver.scene.scene import Scene
 
 MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
 """In the rod's own energy EJ/L, of the softer axis: what the balance may be off by where nothing moves. A mesh's errors
-may be worth a bend by 1e-3 rad, which a rod at rest may lose; it must not make as much."""
+may be worth a bend by 1e-3 of what a rod is bent by at first, of 1 rad at the most: a bent rod at rest may lose that,
+but must not make as much."""
 
 
 class Accounts:
@@ -32,6 +33,8 @@ class Accounts:
         self._jolts = [*([0.0] if thrown else []), *method.start.jolts(), *method.end.jolts()]
         s = np.linspace(0.0, scene.rod.length, 11)
         self._unit = float(principal(elasticity_of(scene.rod, s))[:, :2].min(axis=1).mean()) / scene.rod.length
+        bent = float(scene.rod.length * np.linalg.norm(method.fields().kappa[:, :2], axis=1).max())
+        self._unrest = max(MADE_OF_NOTHING, LOST_AT_REST * min(bent, 1.0) ** 2) * self._unit
         self._turnover, self._there = 0.0, 0.0
         self._Lk_at_start = 0.0
 
@@ -70,13 +73,13 @@ class Accounts:
 
         Negative where energy went nowhere. What an end's jolt took does not count.
         """
-        floor = MADE_OF_NOTHING if self._missing > 0.0 else LOST_AT_REST
-        return self._missing / (self._turnover + floor * self._unit)
+        floor = MADE_OF_NOTHING * self._unit if self._missing > 0.0 else self._unrest
+        return self._missing / (self._turnover + floor)
 
     @property
     def lost(self) -> float:
         """Energy that went nowhere until the last frame, over the largest that motion, strain and contact ever had."""
-        return max(-self._missing, 0.0) / (self._there + LOST_AT_REST * self._unit)
+        return max(-self._missing, 0.0) / (self._there + self._unrest)
 
     def _settle(self, t: float, balance: float) -> None:
         """Enter the balance (J) at time t."""

@@ -85,10 +85,11 @@ def _march(linear: Shooting, Y: Array, c0: float, h: float, nodes: Nodes, sectio
             for k in range(12):
                 A[i, k] = panel[6 + i, 12 + k]
             for m in range(7):
-                total = system.b[j, i] if m == 6 else 0.0
-                for k in range(12):
-                    total -= panel[6 + i, k] * marched[j, k, m]
-                marched[j + 1, i, m] = total
+                marched[j + 1, i, m] = system.b[j, i] if m == 6 else 0.0
+            for k in range(12):
+                if panel[6 + i, k] != 0.0:
+                    for m in range(7):
+                        marched[j + 1, i, m] -= panel[6 + i, k] * marched[j, k, m]
         if not _solve_dense(A, marched[j + 1]):
             return np.inf
     growth = _largest(marched[N]) / _largest(marched[0])

@@ -187,7 +187,7 @@ def test_while_the_database_goes_away_and_comes_back_there_is_only_503_and_right
     with serving(ran.settings) as address:
         thread.start()
         try:
-            met = schemathesis(address, ran, waiting, away, *examples(8, seconds=300), *ONLY_STATUSES)
+            met = schemathesis(address, ran, waiting, away, *examples(4, seconds=300), *ONLY_STATUSES)
         finally:
             over.set()
             thread.join()

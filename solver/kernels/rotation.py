@@ -220,11 +220,8 @@ def quaternion_of(R: Array) -> Array:
     largest = np.argmax(np.diagonal(products, axis1=1, axis2=2), axis=1)
     quaternions: Array = products[np.arange(len(R)), largest]
     quaternions /= np.linalg.norm(quaternions, axis=1)[:, None]
-    if quaternions[0, 0] < 0:
-        quaternions[0] *= -1.0
-    for i in range(1, len(quaternions)):
-        if np.dot(quaternions[i - 1], quaternions[i]) < 0:
-            quaternions[i] *= -1.0
+    turned_over = np.sum(quaternions[1:] * quaternions[:-1], axis=1) < 0.0
+    quaternions *= np.cumprod(np.where([quaternions[0, 0] < 0.0, *turned_over], -1.0, 1.0))[:, None]
     return quaternions
 
 

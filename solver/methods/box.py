@@ -222,9 +222,9 @@ class BoxMethod:
     def _ends(self, t: float, dt: float) -> EndValues:
         """What is given at both ends at the end of the step."""
         gain, length = LARGEST_FEEDBACK / dt, float(self.s[-1])
-        start = self.applied.driving(self.start, 0.0, t, dt, gain)
-        return EndValues(self.start.kinds, *start,
-                         self.end.kinds, *self.applied.driving(self.end, length, t, dt, gain))  # fmt: skip
+        values, dead = self.applied.driving(self.start, 0.0, t, (dt,), gain)
+        end_values, end_dead = self.applied.driving(self.end, length, t, (dt,), gain)
+        return EndValues(self.start.kinds, values[0], dead[0], self.end.kinds, end_values[0], end_dead[0])
 
 
 def _initial_state(initial: Initial, s: Array, section: Section) -> tuple[State, Array]:

@@ -120,10 +120,10 @@ class OneAxisMethod(RadauMethod):
         departed = np.matmul(weights, theta, out=self.stages.theta_t)  # which is not known yet
         extrapolate(self.trial, self.state, self._last_dt, tableau.C, dt, departed, self.stages.theta)
 
-    def _drive_end(self, i: int, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
+    def _drive_end(self, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
         driven, axis = self.driven, self._axis
-        driven.values[i, side] = values[self._components(end)]
-        driven.dead[i, side], driven.couple[i, side] = dead[:3] @ axis.lab, dead[3:] @ axis.n
+        driven.values[:, side] = values[:, self._components(end)]
+        driven.dead[:, side], driven.couple[:, side] = dead[:, :3] @ axis.lab, dead[:, 3:] @ axis.n
 
     def _components(self, end: DrivenEnd) -> list[int]:
         """Which of an end's six conditions are not fulfilled by themselves."""

@@ -228,6 +228,6 @@ class StaggeredMethod(RadauMethod):
         self.stages.shift[:] = 0.0
         self.stages.F[:] = self.state.F
 
-    def _drive_end(self, i: int, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
-        self.driven.values[i, side], self.driven.dead[i, side] = values, dead
+    def _drive_end(self, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
+        self.driven.values[:, side], self.driven.dead[:, side] = values, dead
         self.driven.kinds[side] = end.kinds

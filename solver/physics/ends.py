@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -75,11 +77,13 @@ class DrivenEnd:
                 self._travel_at_switch[i] = self.travel[i]
         self._set_kinds()
 
-    def values(self, t: float, dt: float, gain: float) -> Array:
-        """The six values (6,) at the end of the step from t to t + dt."""
-        values = np.where(self._held, gain * (self._travel_at_switch - self.travel), 0.0)
+    def values(self, t: float, later: Sequence[float], gain: float) -> Array:
+        """The six values (times, 6) at the times t + dt of a step from t, `later` being these dt."""
+        values = np.empty((len(later), 6))
+        values[:] = np.where(self._held, gain * (self._travel_at_switch - self.travel), 0.0)
         for i in self._moving:
-            values[i] = self._value(i, t, dt, gain)
+            for k, dt in enumerate(later):
+                values[k, i] = self._value(i, t, dt, gain)
         return values
 
     def prescribed(self, component: int, t: float) -> float | None:

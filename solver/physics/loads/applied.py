@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf
 from typing import Any
 
@@ -14,8 +15,6 @@ from solver.physics.loads.load import Samples
 from solver.physics.loads.registry import entrained_mass, records_about, records_of, sources_of
 from solver.physics.section import Section
 from solver.scene.scene import Scene
-
-NO_LOAD = np.zeros(6)
 
 
 class AppliedLoads:
@@ -56,12 +55,14 @@ class AppliedLoads:
                 total += [c.value(t) for c in (*load.force, *load.moment)]
         return total if s > 0.0 else -total
 
-    def driving(self, end: DrivenEnd, s: float, t: float, dt: float, gain: float) -> tuple[Array, Array]:
-        """What drives the end at s at t + dt: values (6,) of its conditions, loads added, and dead lab loads (6,)."""
-        values, dead = end.values(t, dt, gain), NO_LOAD
+    def driving(self, end: DrivenEnd, s: float, t: float, later: Sequence[float], gain: float) -> tuple[Array, Array]:
+        """What drives the end at s at the times t + dt, `later` being these dt: values (times, 6) of its conditions,
+        loads added, and dead lab loads (times, 6)."""
+        values, dead = end.values(t, later, gain), np.zeros((len(later), 6))
         if self._at_ends:
-            following, dead = (self.at_end(t + dt, s, frame) for frame in ("material", "lab"))
-            values += np.where(end.kinds % 2 == 1, following, 0.0)
+            for k, dt in enumerate(later):
+                following, dead[k] = (self.at_end(t + dt, s, frame) for frame in ("material", "lab"))
+                values[k] += np.where(end.kinds % 2 == 1, following, 0.0)
         return values, dead
 
     def set_time(self, t: float, i: int = 0) -> None:

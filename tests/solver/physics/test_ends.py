@@ -23,7 +23,7 @@ def along(*conditions: Condition, frame: str = "material") -> DrivenEnd:
 
 
 def value(end: DrivenEnd, t: float, dt: float = 0.1, gain: float = 0.0) -> float:
-    return float(end.values(t, dt, gain)[2])
+    return float(end.values(t, (dt,), gain)[0, 2])
 
 
 def test_the_kinds_say_what_is_held_and_in_which_frame() -> None:

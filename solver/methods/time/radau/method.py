@@ -123,8 +123,8 @@ class RadauMethod(ABC):
         self.relative_increment(1.0)
 
     @abstractmethod
-    def _drive_end(self, i: int, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
-        """Write what is given at an end at stage i: `values` (6,) of its conditions, `dead` lab loads (6,)."""
+    def _drive_end(self, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
+        """Write what is given at an end at the stages: `values` (3, 6) of its conditions, `dead` lab loads (3, 6)."""
 
     @abstractmethod
     def _go_on(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
@@ -172,10 +172,11 @@ class RadauMethod(ABC):
 
     def _drive(self, t: float, dt: float) -> None:
         """Write what is given at the stages of a step."""
-        for i, c in enumerate(tableau.C):
-            self.applied.set_time(t + c * dt, i)
-            for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
-                self._drive_end(i, side, end, *self.applied.driving(end, s, t, c * dt, FEEDBACK / dt))
+        later = [float(c * dt) for c in tableau.C]
+        for i, time in enumerate(later):
+            self.applied.set_time(t + time, i)
+        for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
+            self._drive_end(side, end, *self.applied.driving(end, s, t, later, FEEDBACK / dt))
 
     def _guess(self, dt: float) -> None:
         """The motion of the last step goes on; after a start, that of the state."""

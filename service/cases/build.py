@@ -15,7 +15,8 @@ from service.cases.errors import CaseError, FieldError
 from service.cases.initial import InitialSpec
 from service.cases.rod import RodSpec
 from solver import Curve, Initial, Rod, Scene, Vector, check_end
-from solver.scene.layout import nodes_at_rest
+from solver.run.plan import FIRST_INTERVALS
+from solver.scene.layout import nodes_at_rest, sampled
 
 Part = TypeVar("Part")
 KEPT = 64
@@ -33,8 +34,8 @@ def build_scene(spec: CaseSpec) -> Scene:
         _part("/ends/end", lambda: check_end(build_end(spec.ends.end)))
     initial = _part("/initial", lambda: _initial(spec.initial, spec.rod.length))
     if spec.rod.kappa0 == "initial":
-        intervals = spec.numerics.expected_intervals
-        kappa0 = _part("/initial", lambda: _curvature(spec.initial, spec.rod.length, intervals))
+        intervals = spec.numerics.intervals or FIRST_INTERVALS
+        kappa0 = _part("/initial", lambda: _curvature(spec.initial, spec.rod.length, sampled(intervals)))
         rod = replace(rod, kappa0=kappa0)
     return _part("", lambda: _scene(spec, rod, initial))
 

@@ -33,7 +33,11 @@ def neutral_modes(equations: Equations, falling: int) -> int:
 
 
 def _least(equations: Equations) -> float:
-    """NEUTRAL, and as much as a spin costs because kappa0 is shifted by what the mesh makes of the initial shape."""
+    """NEUTRAL, and as much as the spin of a rod that is straight by nature costs because its kappa0 is shifted by what
+    the mesh makes of the initial shape."""
+    natural = equations.chain.elastic.kappa0 - equations.offset
+    if natural[:, :2].any():
+        return NEUTRAL
     shift, bend = (float(np.abs(x).max()) for x in (equations.offset, equations.stages.bend[0]))
     return NEUTRAL + shift * bend / equations.chain.h * float(equations.s[-1]) ** 2
 

@@ -32,6 +32,7 @@ from solver import (
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.physics.loads.solids import Floor, Obstacle
+from solver.scene.layout import nodes_at_rest, sampled
 from solver.statics.equations import FORCE, PSI, Equations, X, levers
 from tests.solver.scenes import ARC, ARC_ROD, DENSITY, DIAMETER, EJ, GJ, LENGTH, ROD, arc, last, turned_clamp
 
@@ -293,6 +294,21 @@ def test_free_spin_and_free_swing_are_neutral_and_not_unstable(weight: float, mo
     gravity = weight * EJ / LENGTH**3 / mass * down / np.linalg.norm(down)
     rest = last(static(initial=ARC, start=End.pin(), end=End.pin(), gravity=tuple(gravity)))
     assert (rest.negative_modes, rest.neutral_modes) == modes
+
+
+def test_a_clamped_coil_that_is_free_of_stress_has_no_neutral_direction() -> None:
+    """However many turns: it is curved by nature, so that even a spin about its own axis costs energy."""
+    radius, angle, nodes = 0.02 * LENGTH, 12 * pi / LENGTH, np.linspace(0.0, LENGTH, sampled(64) + 1)
+
+    def coil(s: Array) -> Array:
+        return np.column_stack([radius * np.cos(angle * s), radius * np.sin(angle * s),
+                                s * np.sqrt(1.0 - (radius * angle) ** 2)])  # fmt: skip
+
+    initial = Initial(coil)
+    kappa1, kappa2, kappa3 = (Curve.table(nodes, column, "cubic") for column in nodes_at_rest(initial, nodes)[2].T)
+    rest = last(static(rod=replace(ROD, kappa0=(kappa1, kappa2, kappa3)), initial=initial,
+                       numerics=Numerics("staggered", intervals=64)))  # fmt: skip
+    assert (rest.negative_modes, rest.neutral_modes) == (0, 0)
 
 
 @pytest.mark.parametrize("clamped", ["start", "end"])

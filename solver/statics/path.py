@@ -35,8 +35,9 @@ MOST_STEPS = 5000
 """Steps from one frame to the next after which a branch is given up."""
 AHEAD = 3e-6
 """How far ahead of a corner of a schedule the branch's direction is taken."""
-CROSSING = 1e-3
-"""Longest step across which stability may change but at a fold: a longer one may have left the branch for another."""
+CROSSING = 1e-6
+"""Longest step across which stability may change but at a fold: a longer one may have left the branch for another, and
+passed the bend by which a small load leads to the stable one."""
 REACHED = 1e-10
 STEEP = 0.02
 """Least dq at which a step may end at a given q."""

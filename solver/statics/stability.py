@@ -29,7 +29,7 @@ def negative_modes(equations: Equations) -> int:
 
 def neutral_modes(equations: Equations, falling: int) -> int:
     """Directions in which the energy stays the same, besides those in which it is `falling`."""
-    return _count(equations, -_least(equations)) - falling
+    return max(_count(equations, -_least(equations)) - falling, 0)
 
 
 def _least(equations: Equations) -> float:

@@ -34,7 +34,20 @@ from solver.kernels.rotation import rotate
 from solver.physics.loads.solids import Floor, Obstacle
 from solver.scene.layout import nodes_at_rest, sampled
 from solver.statics.equations import FORCE, PSI, Equations, X, levers
-from tests.solver.scenes import ARC, ARC_ROD, DENSITY, DIAMETER, EJ, GJ, LENGTH, ROD, arc, last, turned_clamp
+from tests.solver.scenes import (
+    ARC,
+    ARC_ROD,
+    DENSITY,
+    DIAMETER,
+    EJ,
+    GJ,
+    LENGTH,
+    ROD,
+    arc,
+    last,
+    moved_clamp,
+    turned_clamp,
+)
 
 N = 16
 ZERO = Curve.constant(0.0)
@@ -294,6 +307,15 @@ def test_free_spin_and_free_swing_are_neutral_and_not_unstable(weight: float, mo
     gravity = weight * EJ / LENGTH**3 / mass * down / np.linalg.norm(down)
     rest = last(static(initial=ARC, start=End.pin(), end=End.pin(), gravity=tuple(gravity)))
     assert (rest.negative_modes, rest.neutral_modes) == modes
+
+
+def test_a_small_load_leads_a_rod_that_is_pressed_by_its_clamps_to_the_stable_branch() -> None:
+    """As the guide advises where a symmetric rod buckles. The deflection of the elastica: see `validation.euler`."""
+    seed = DistributedLoad((Curve.constant(1e-6 * EJ / LENGTH**3), ZERO, ZERO), (ZERO, ZERO, ZERO))
+    rest = last(static(end=moved_clamp(ZERO, ZERO, ramp(-0.4 * LENGTH)), distributed=(seed,),
+                       numerics=Numerics("staggered", intervals=64)))  # fmt: skip
+    assert (rest.negative_modes, rest.neutral_modes) == (0, 0)
+    assert_allclose(np.abs(rest.r[32, 0]), 0.348713 * LENGTH, rtol=1e-3)
 
 
 def test_a_clamped_coil_that_is_free_of_stress_has_no_neutral_direction() -> None:

@@ -11,7 +11,8 @@ class Remarks:
 
     `crossings`: how often the rod passed through itself where it may, `first_crossing` (s) the frame after the first;
     `end_hops`: how often a loop hopped over an end; both by Tw + Wr - Lk from frame to frame, so that two of opposite
-    sign between frames cancel, and none is seen without topology. `deepest_overlap` (m) of strands, and the time
+    sign between frames cancel, and none is seen without topology; `unclear_jumps`: how often it was one of them, where
+    frames are too far apart to tell which. `deepest_overlap` (m) of strands, and the time
     `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
     it has to stretch, see `physics.axial`. `energy_lost`: energy that went nowhere, over the largest
     that motion, strain and contact ever had, if that is more than a tenth.
@@ -20,6 +21,7 @@ class Remarks:
     crossings: int = 0
     first_crossing: float = 0.0
     end_hops: int = 0
+    unclear_jumps: int = 0
     deepest_overlap: float = 0.0
     deepest_overlap_at: float = 0.0
     axial_stiffness: float = 0.0
@@ -41,6 +43,11 @@ class Remarks:
             sentences.append(
                 f"A loop hopped over an end of the rod {_times(self.end_hops)}: no crossing, but Tw + Wr differs from "
                 "Lk by 2 turns more for each."
+            )
+        if self.unclear_jumps:
+            sentences.append(
+                f"Tw + Wr jumped by 2 turns against Lk {_times(self.unclear_jumps)}: the rod passed through itself, or a "
+                "loop hopped over an end, between frames too far apart to tell which."
             )
         if self.deepest_overlap:
             sentences.append(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from solver.arrays import Array
 from solver.measures.frame import Frame
-from solver.measures.passages import Shape, passages, shape_of
+from solver.measures.passages import Passages, Shape, passages, shape_of
 from solver.measures.topology import share_of_rays
 from solver.run.remarks import Remarks
 
@@ -49,7 +49,7 @@ class Watch:
             self._remarks.end_hops += abs(hops)
             return "Tw + Wr - Lk jumped" if abs(jump - 2.0 * hops) > JUMP else ""
         if self._last and abs(jump) > JUMP:
-            self._enter(*passages(Shape(*self._last), shape), frame.t)
+            self._enter(round(0.5 * jump), passages(Shape(*self._last), shape), frame.t)
         self._keep(shape)
         return ""
 
@@ -59,11 +59,13 @@ class Watch:
         for old, new in zip(self._last, shape, strict=True):
             old[:] = new
 
-    def _enter(self, crossings: int, hops: int, t: float) -> None:
-        if crossings and not self._remarks.crossings:
+    def _enter(self, jumps: int, seen: Passages, t: float) -> None:
+        """Enter what is seen between the last frame and that at `t`, and what else must have been."""
+        if seen.crossings and not self._remarks.crossings:
             self._remarks.first_crossing = t
-        self._remarks.crossings += abs(crossings)
-        self._remarks.end_hops += abs(hops)
+        self._remarks.crossings += abs(seen.crossings)
+        self._remarks.end_hops += abs(seen.hops)
+        self._remarks.unclear_jumps += abs(jumps - seen.crossings - seen.hops)
 
     def _see_overlap(self, frame: Frame) -> None:
         if -frame.min_gap > self._remarks.deepest_overlap:  # NaN is not

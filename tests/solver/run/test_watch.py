@@ -52,6 +52,17 @@ def test_a_hop_over_an_end_ends_no_run(frame: Frame) -> None:
         assert "hopped over an end of the rod once" in remarks.sentences()[0]
 
 
+def test_a_jump_between_frames_that_show_neither_is_told_too(frame: Frame) -> None:
+    """As where a rod snaps over: on the straight way from one frame to the next nothing may meet."""
+    remarks = Remarks()
+    watch = Watch(remarks, holds=False)
+    watch.see(looks(frame, 0.52, 0.3, 1.0))
+    still = looks(frame, 0.52, 0.3, 2.0)
+    assert not watch.see(replace(still, Tw=still.Tw - 2.0))
+    assert remarks.attributes() == {"unclear_jumps": 1}
+    assert "too far apart to tell which" in remarks.sentences()[0]
+
+
 def test_a_crossing_ends_a_run_with_contact_and_is_told_without(frame: Frame) -> None:
     assert watched(frame, 0.52, True)[0]
     refusal, remarks = watched(frame, 0.52, False)

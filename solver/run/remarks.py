@@ -46,8 +46,8 @@ class Remarks:
             )
         if self.unclear_jumps:
             sentences.append(
-                f"Tw + Wr jumped by 2 turns against Lk {_times(self.unclear_jumps)}: the rod passed through itself, or a "
-                "loop hopped over an end, between frames too far apart to tell which."
+                f"Tw + Wr jumped by 2 turns against Lk {_times(self.unclear_jumps)}: the rod passed through itself, or "
+                "a loop hopped over an end, between frames too far apart to tell which."
             )
         if self.deepest_overlap:
             sentences.append(

@@ -16,8 +16,8 @@ from solver.scene.scene import Scene
 
 MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
 """In the rod's own energy EJ/L, of the softer axis: what the balance may be off by where nothing moves. A mesh's errors
-may be worth a bend by 1e-3 of what a rod is bent by at first, of 1 rad at the most: a bent rod at rest may lose that,
-but must not make as much."""
+may be worth a bend by 1e-3 of what a rod is bent by at first, of 1 rad at the most or if something pulls at it: it may
+lose that at rest, but must not make as much."""
 
 
 class Accounts:
@@ -33,8 +33,9 @@ class Accounts:
         self._jolts = [*([0.0] if thrown else []), *method.start.jolts(), *method.end.jolts()]
         s = np.linspace(0.0, scene.rod.length, 11)
         self._unit = float(principal(elasticity_of(scene.rod, s))[:, :2].min(axis=1).mean()) / scene.rod.length
+        pulled = any(scene.gravity) or scene.distributed or scene.points or scene.loads or scene.fluid
         bent = float(scene.rod.length * np.linalg.norm(method.fields().kappa[:, :2], axis=1).max())
-        self._unrest = max(MADE_OF_NOTHING, LOST_AT_REST * min(bent, 1.0) ** 2) * self._unit
+        self._unrest = max(MADE_OF_NOTHING, LOST_AT_REST * (1.0 if pulled else min(bent, 1.0)) ** 2) * self._unit
         self._turnover, self._there = 0.0, 0.0
         self._Lk_at_start = 0.0
 

@@ -35,9 +35,10 @@ MOST_STEPS = 5000
 """Steps from one frame to the next after which a branch is given up."""
 AHEAD = 3e-6
 """How far ahead of a corner of a schedule the branch's direction is taken."""
-CROSSING = 1e-6
+CROSSING, CROSSING_PRESSED = 1e-6, 1e-3
 """Longest step across which stability may change but at a fold: a longer one may have left the branch for another, and
-passed the bend by which a small load leads to the stable one."""
+passed the bend by which a small load leads to the stable one; and where strands press on each other, whose points
+change it whenever they come or go."""
 REACHED = 1e-10
 STEEP = 0.02
 """Least dq at which a step may end at a given q."""
@@ -109,6 +110,7 @@ class Path:
                         default=np.inf)  # fmt: skip
         room, wanted = min(remaining, to_corner), self._length
         limit, beyond = room / max(abs(dq), REACHED), False
+        crossing = CROSSING_PRESSED if self._equations.contact.pressing else CROSSING
         while min(wanted, limit) > SHORTEST:
             length = min(wanted, limit)
             lands = abs(dq) > STEEP and (beyond or length * abs(dq) > room * (1.0 - 1e-9))
@@ -123,7 +125,7 @@ class Path:
                 modes = negative_modes(self._equations)
                 kinked = kinked or (length < KINK and direction.dq * dq > 0.0)
                 smooth = cornered or kinked or direction.dot(self.direction.z, dq) > SHARPEST
-                if smooth and (modes == self.modes or direction.dq * dq < 0.0 or length < CROSSING):
+                if smooth and (modes == self.modes or direction.dq * dq < 0.0 or length < crossing):
                     swept, part = (room, 1.0) if lands else _sweep(end.q - point.q, dq, direction.dq, length, room)
                     # past where it is to stop, but not by a fold: from now on to be found there
                     beyond = part < 1.0 and abs(dq) > STEEP and direction.dq * dq > 0.0

@@ -89,7 +89,7 @@ class Equations:
         _lay_down(self.chain, state.quaternion, self.start.base, self.stages)
         R = self.stages.R[0]
         self.ends = (StaticEnd(scene.start, R[0]), StaticEnd(scene.end, R[-1]))
-        self._compliance = 0.5 * axial_compliance(scene)
+        self.compliance = 0.5 * axial_compliance(scene)
         self.contact = StaticContact(scene, self.s, self.nodes())
         self.contact.prepare(self.bending(), self.nodes(), np.zeros((N + 1, 3)))
         self._home = (state.quaternion[[0, -1]].copy(), np.stack([self.start.base, self.tip()]))
@@ -181,7 +181,7 @@ class Equations:
         force = dead[:3] + R @ self._follower(side) + (0.0 if end.follows else loaded[:3])
         across = end.axes.T @ (sign * (point.F[frame] - force)) / self._unit(X)
         place = point.base if side == 0 else self.tip()
-        if self._compliance > 0.0:
+        if self.compliance > 0.0:
             place = place + self._stretch(side, R) @ point.F[frame]
         away = (end.axes.T @ (place - self._home[1][side]) - values[:3]) / self.units[3]
         moment = sign * (inner - R.T @ dead[3:] - follower[3:] - loaded[3:]) / self._unit(PSI)
@@ -191,18 +191,18 @@ class Equations:
 
     def _stretch(self, side: int, R: Array) -> Array:
         """What takes the force at an end to how far what holds it is from the rod's end (3, 3): see `physics.axial`."""
-        return np.asarray((2.0 * side - 1.0) * self._compliance * np.outer(R[:, 2], R[:, 2]))
+        return np.asarray((2.0 * side - 1.0) * self.compliance * np.outer(R[:, 2], R[:, 2]))
 
     def _stretch_by_rotation(self, side: int, R: Array, F: Array) -> Array:
         """How that times the force (3,) changes with a rotation of the end's frame (3, 3): the tangent turns."""
         turned = np.column_stack([-R[:, 1], R[:, 0], np.zeros(3)])
         changed = turned * (R[:, 2] @ F) + np.outer(R[:, 2], F @ turned)
-        return np.asarray((2.0 * side - 1.0) * self._compliance * changed)
+        return np.asarray((2.0 * side - 1.0) * self.compliance * changed)
 
     def strain(self) -> float:
         """How far the ends are stretched, in rod lengths, of the point evaluated last."""
         forces, tangents = self.stages.F[0, [0, -1]], self.stages.R[0, [0, -1], :, 2]
-        return float(self._compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
+        return float(self.compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
 
     def _follower(self, side: int) -> Array:
         """Forces (3,) that follow an end's frame."""
@@ -289,7 +289,7 @@ class Equations:
                 block[X][end.held[:3]] = 0.0
             D[a, PSI, PSI][end.held[3:]] = one[end.held[3:]] * self._unit(PSI)
             D[a, X, X][end.held[:3]] = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
-            if self._compliance == 0.0:
+            if self.compliance == 0.0:
                 continue
             force = upper[0] if side == 0 else D[-1]
             rows = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]

@@ -35,10 +35,10 @@ MOST_STEPS = 5000
 """Steps from one frame to the next after which a branch is given up."""
 AHEAD = 3e-6
 """How far ahead of a corner of a schedule the branch's direction is taken."""
-CROSSING, CROSSING_PRESSED = 1e-6, 1e-3
-"""Longest step across which stability may change but at a fold: a longer one may have left the branch for another, and
-passed the bend by which a small load leads to the stable one; and where strands press on each other, whose points
-change it whenever they come or go."""
+FIRST_CROSSING, CROSSING = 1e-6, 1e-3
+"""Longest step across which stability may change but at a fold, the first time and later: a longer one may have left
+the branch for another. The first time, as where a rod buckles, it may also have passed the bend by which a small load
+leads to the stable branch; but not where strands press, whose points change stability whenever they come or go."""
 REACHED = 1e-10
 STEEP = 0.02
 """Least dq at which a step may end at a given q."""
@@ -70,12 +70,12 @@ class Path:
         self.steps, self.iterations, self.failed, self.last_iterations = 0, 0, 0, 0
         self.travelled, self.last_dq, self.modes = 0.0, 0.0, 0
         self._corners: list[float] = []
-        self._length, self._easy, self._begun, self._idle = FIRST, True, False, 0
+        self._length, self._easy, self._begun, self._idle, self._crossed = FIRST, True, False, 0, False
 
     def begin(self, corners: list[float]) -> None:
         """Go on with q from 0, from where the path is; the schedules bend at `corners`."""
         self.point.q, self.travelled, self.last_dq = 0.0, 0.0, 0.0
-        self._corners, self._length, self._begun, self._idle = corners, FIRST, False, 0
+        self._corners, self._length, self._begun, self._idle, self._crossed = corners, FIRST, False, 0, False
 
     def advance(self, stop: float) -> bool:
         """Take one step towards where q has travelled as far as `stop`; whether it is there.
@@ -110,7 +110,7 @@ class Path:
                         default=np.inf)  # fmt: skip
         room, wanted = min(remaining, to_corner), self._length
         limit, beyond = room / max(abs(dq), REACHED), False
-        crossing = CROSSING_PRESSED if self._equations.contact.pressing else CROSSING
+        crossing = CROSSING if self._crossed or self._equations.contact.pressing else FIRST_CROSSING
         while min(wanted, limit) > SHORTEST:
             length = min(wanted, limit)
             lands = abs(dq) > STEEP and (beyond or length * abs(dq) > room * (1.0 - 1e-9))
@@ -146,6 +146,7 @@ class Path:
 
     def _accept(self, end: Point, direction: Direction, modes: int, swept: float) -> None:
         self.last_dq = end.q - self.point.q
+        self._crossed = self._crossed or modes != self.modes
         self.point, self.direction, self.modes = end, direction, modes
         self.travelled += swept
         self.steps += 1

@@ -64,7 +64,8 @@ def _count(equations: Equations, softest: float) -> int:
 
 
 def _conditions(equations: Equations) -> tuple[Array, Array, int]:
-    """G (3 n, m), W (m, m) of the start's place and the conditions on places, and how many of these there are."""
+    """G (3 n, m), W (m, m) of the start's place and the conditions on places, which give way to the force along the
+    rod where it has to stretch, and how many of these there are."""
     R, length = equations.stages.R[0], float(equations.s[-1])
     held = [end.axes[:, end.held[:3]] for end in equations.ends]
     ties = np.hstack(held)
@@ -72,6 +73,10 @@ def _conditions(equations: Equations) -> tuple[Array, Array, int]:
     G, W = np.zeros((3 * len(R), many)), np.zeros((many, many))
     G[:, 3 + held[0].shape[1] :] = (-2.0 / length * levers(R, equations.chain.h) @ held[1]).reshape(3 * len(R), -1)
     W[:3, 3:], W[3:, :3] = ties, ties.T
+    give = equations.compliance * equations.stiffness / length**3
+    for side, rows in enumerate((slice(3, 3 + held[0].shape[1]), slice(3 + held[0].shape[1], many))):
+        along = R[-side, :, 2] @ held[side]
+        W[rows, rows] -= give * np.outer(along, along)
     return G, W, int(ties.shape[1])
 
 

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 ALONG = 1e-6
 """Sine of the angle below which a direction counts as along the rod."""
 SAMPLES = 2048
-"""Intervals in which a shape is looked at, at the least: the curvature of a helix of 15 turns is right to 1e-7 then, but to
-1e-3 at the very ends, where a spline is right to order 1 or 2 only."""
+"""Intervals in which a shape is looked at, at the least: the curvature of a helix of 15 turns is right to 1e-7 then,
+but to 1e-3 at the very ends, where a spline is right to a lower order."""
 
 
 def sampled(intervals: int) -> int:

@@ -35,7 +35,7 @@ class Accounts:
         self._unit = float(principal(elasticity_of(scene.rod, s))[:, :2].min(axis=1).mean()) / scene.rod.length
         pulled = any(scene.gravity) or scene.distributed or scene.points or scene.loads or scene.fluid
         bent = float(scene.rod.length * np.linalg.norm(method.fields().kappa[:, :2], axis=1).max())
-        self._unrest = max(MADE_OF_NOTHING, LOST_AT_REST * (1.0 if pulled else min(bent, 1.0)) ** 2) * self._unit
+        self._lost_at_rest = max(MADE_OF_NOTHING, LOST_AT_REST * (1.0 if pulled else min(bent, 1.0)) ** 2) * self._unit
         self._turnover, self._there = 0.0, 0.0
         self._Lk_at_start = 0.0
 
@@ -74,13 +74,13 @@ class Accounts:
 
         Negative where energy went nowhere. What an end's jolt took does not count.
         """
-        floor = MADE_OF_NOTHING * self._unit if self._missing > 0.0 else self._unrest
+        floor = MADE_OF_NOTHING * self._unit if self._missing > 0.0 else self._lost_at_rest
         return self._missing / (self._turnover + floor)
 
     @property
     def lost(self) -> float:
         """Energy that went nowhere until the last frame, over the largest that motion, strain and contact ever had."""
-        return max(-self._missing, 0.0) / (self._there + self._unrest)
+        return max(-self._missing, 0.0) / (self._there + self._lost_at_rest)
 
     def _settle(self, t: float, balance: float) -> None:
         """Enter the balance (J) at time t."""

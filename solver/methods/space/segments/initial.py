@@ -52,8 +52,7 @@ def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
     kappa0 is shifted by as much, so that a rod whose natural shape is its initial one starts without stress.
     """
     state = State.empty(len(s) - 1)
-    r, quaternion, _ = nodes_at_rest(initial, np.linspace(0.0, s[-1], 2 * len(s) - 1))
-    _, _, kappa = nodes_at_rest(initial, s)  # where kappa0 has it from: a finer sampling's is another one at the ends
+    r, quaternion, kappa = nodes_at_rest(initial, np.linspace(0.0, s[-1], 2 * len(s) - 1))
     state.quaternion[0], state.quaternion[1:-1], state.quaternion[-1] = quaternion[0], quaternion[1::2], quaternion[-1]
     spin = np.array(initial.angular_velocity, dtype=float)
     state.omega[:] = rotate_back(state.quaternion, np.tile(spin, (len(state.omega), 1)))
@@ -63,6 +62,6 @@ def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
     state.base[2] = np.cross(spin, np.cross(spin, arm))
     bend, moment, left, right = (np.zeros((len(s), 3)) for _ in range(4))
     bend_joints(chain, state.quaternion, bend, moment, left, right)
-    offset = np.asarray(bend / chain.span[:, None] - kappa)
+    offset = np.asarray(bend / chain.span[:, None] - kappa[::2])
     chain.elastic.kappa0[:] += offset
     return state, offset

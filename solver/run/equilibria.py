@@ -96,6 +96,7 @@ class Equilibria(Run):
             detail = f"stretched by {equations.strain():.2g} of its length"
             raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, detail)
         fields = self._fields(point)
+        self.remarks.turning_loads += equations.loads_turn()
         stages = equations.stages
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
         energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], motion)

@@ -15,7 +15,8 @@ class Remarks:
     frames are too far apart to tell which. `deepest_overlap` (m) of strands, and the time
     `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
     it has to stretch, see `physics.axial`. `energy_lost`: energy that went nowhere, over the largest
-    that motion, strain and contact ever had, if that is more than a tenth.
+    that motion, strain and contact ever had, if that is more than a tenth. `turning_loads`: frames of a static
+    analysis in which forces turned with the rod.
     """
 
     crossings: int = 0
@@ -26,6 +27,7 @@ class Remarks:
     deepest_overlap_at: float = 0.0
     axial_stiffness: float = 0.0
     energy_lost: float = 0.0
+    turning_loads: int = 0
 
     def attributes(self) -> dict[str, float | int]:
         """The values that are not zero, by name."""
@@ -63,6 +65,11 @@ class Remarks:
             sentences.append(
                 "The rod is held so that it has to stretch: it has the axial stiffness EA = "
                 f"{self.axial_stiffness:.3g} N."
+            )
+        if self.turning_loads:
+            sentences.append(
+                "Forces turn with the rod: negative_modes is counted with them held as they are, and says neither that "
+                "the rod stays there nor that it leaves. A dynamic run shows it."
             )
         return sentences
 

@@ -204,6 +204,10 @@ class Equations:
         forces, tangents = self.stages.F[0, [0, -1]], self.stages.R[0, [0, -1], :, 2]
         return float(self.compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
 
+    def loads_turn(self) -> bool:
+        """Whether forces turn with the rod, of the point that was looked at last: they have no potential."""
+        return bool(self.tangents.E.any() or self._driven.values[0, :, :3].any())
+
     def _follower(self, side: int) -> Array:
         """Forces (3,) that follow an end's frame."""
         return self._driven.values[0, side, :3]

@@ -32,6 +32,7 @@ from solver import (
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.physics.loads.solids import Floor, Obstacle
+from solver.run.equilibria import Equilibria
 from solver.scene.layout import nodes_at_rest, sampled
 from solver.statics.equations import FORCE, PSI, Equations, X, levers
 from tests.solver.scenes import (
@@ -101,6 +102,21 @@ def test_the_tangent_is_the_derivative_of_the_residual(loads: dict[str, object])
             z[a, X] = z[a - 1, X] - lever[a].T @ z[a, PSI] - lever[a - 1].T @ z[a - 1, PSI]
         up, down = (equations.residual(point.moved(step * z, 0.0)) for step in (1e-6, -1e-6))
         assert solver.solve((up - down) / 2e-6) / equations.units == pytest.approx(z / equations.units, abs=1e-4)
+
+
+@pytest.mark.parametrize(("loads", "turning"), [
+    (PRESSED["weight"], False), (PRESSED["lab"], False), (PRESSED["tip, lab"], False),
+    (PRESSED["pin and clamp"], False),
+    (PRESSED["following"], True), (PRESSED["current"], True),
+    ({"end": End((FREE, FREE, (Condition("load", ramp(-15.0 * EJ)),)), (FREE, FREE, FREE))}, True),
+])  # fmt: skip
+def test_of_forces_that_turn_with_the_rod_the_run_says_that_modes_prove_nothing(
+    loads: dict[str, object], turning: bool
+) -> None:
+    run = Equilibria(static(numerics=Numerics(intervals=4), **loads))
+    while not run.finished:
+        run.advance()
+    assert any("turn with the rod" in sentence for sentence in run.remarks.sentences()) == turning
 
 
 def test_a_cantilever_under_a_tip_load_is_eulers_elastica() -> None:

@@ -50,16 +50,17 @@ def cases(_: argparse.Namespace) -> int:
 
 def validate(arguments: argparse.Namespace) -> int:
     """Print what a case would cost and what looks like a slip in it, or everything that is wrong with it."""
-    from service.cases import build_scene, warnings_of
+    from service.cases import build_scene, estimate, warnings_of
 
     spec = _spec(arguments)
+    cost = estimate(spec)
     intervals, dt_max = spec.numerics.intervals, spec.numerics.dt_max
     if intervals is None or dt_max is None:
         size = f"{spec.frames} frames, nodes and steps as a tolerance of {spec.numerics.tolerance} needs"
     else:
         steps = spec.frames - 1 if spec.analysis == "static" else spec.t_end / dt_max
         size = f"{intervals + 1} nodes, {spec.frames} frames, {steps:.0f} steps or more"
-    print(f"{spec.name} is valid: {size}")
+    print(f"{spec.name} is valid: {size}; likely {cost.seconds:.2g} s of CPU, {cost.bytes / 1e6:.2g} MB")
     for warning in warnings_of(spec, build_scene(spec)):
         print(f"warning: {warning}", file=sys.stderr)
     return 0

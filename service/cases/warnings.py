@@ -29,6 +29,8 @@ GRAVITY = (1.0, 30.0)
 """m/s²: less than on the moon, more than on Jupiter."""
 SHORTENED = 1e-4
 """Part of its length by which a straight rod may be pressed shorter."""
+SHEARED = 0.5
+"""Shear strain of a rod's surface beyond that of any material but rubber."""
 GREENHILL = 8.987
 """A straight rod with clamped ends buckles at the twist moment GREENHILL EJ/L (Greenhill 1883)."""
 
@@ -36,7 +38,7 @@ GREENHILL = 8.987
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
-            *_column(spec, scene), *_obstacles(spec), *_frames(spec)]  # fmt: skip
+            *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_frames(spec)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -78,6 +80,17 @@ def _contact(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
         rule = (f"is not given, but the ends twist the rod by {turned / (2 * pi):.3g} turns, and it buckles at "
                 f"{bearable / (2 * pi):.3g}: it would pass through itself")
         yield FieldError("/contact", None, rule)
+
+
+def _sheared(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """Ends that wring the rod, as where turns were meant for rad, or rad/s last too long."""
+    D = float(np.max(scene.rod.diameter(np.linspace(0.0, spec.rod.length, 201))))
+    turned = _turned(scene)
+    strain = 0.5 * D * turned / spec.rod.length
+    if strain > SHEARED:
+        rule = (f"turn against each other by {turned / (2 * pi):.3g} turns: what is left as twist shears the rod's "
+                f"surface by up to {strain:.2g}")
+        yield FieldError("/ends", None, rule)
 
 
 def _column(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:

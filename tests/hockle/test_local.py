@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -17,7 +18,7 @@ import pytest
 import service.cases
 import solver
 from hockle.cli import main
-from service.cases import load_case
+from service.cases import apply_settings, estimate, load_case, parse_case
 from service.results import durable, open_dataset
 from solver import Frame, Outcome, RunFailed, Scene, Simulation
 
@@ -136,7 +137,12 @@ def test_validate_tells_the_size_of_a_case(tmp_path: Path, capsys: pytest.Captur
     path = tmp_path / "mine.json"
     path.write_text(json.dumps(load_case("goyal-2003")))
     assert main(["validate", str(path), "--set", "numerics.intervals=400"]) == 0
-    assert capsys.readouterr().out == "goyal-2003 is valid: 401 nodes, 341 frames, 680 steps or more\n"
+    size, likely = capsys.readouterr().out.split(";")
+    assert size == "goyal-2003 is valid: 401 nodes, 341 frames, 680 steps or more"
+    seconds, megabytes = (float(number) for number in re.findall(r"[\d.]+", likely))
+    cost = estimate(parse_case(apply_settings(load_case("goyal-2003"), {"numerics.intervals": 400})))
+    assert likely.endswith(" MB\n") and megabytes == pytest.approx(cost.bytes / 1e6, rel=0.05)
+    assert seconds == pytest.approx(cost.seconds, rel=0.05)
 
 
 def test_cases_lists_every_shipped_case(capsys: pytest.CaptureFixture[str]):

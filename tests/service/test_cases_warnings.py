@@ -63,6 +63,15 @@ def test_a_rod_that_buckles_by_twist_needs_contact(turns: float, end: str, warne
 
 
 
+@pytest.mark.parametrize(("turned", "warned"), [(720.0, True), (72.0, False)])
+def test_a_rod_that_its_ends_wring_is_told_so(turned: float, warned: bool):
+    """Of D = L / 100 the surface is sheared by 720 / 200."""
+    twist = {"t": [0.0, 1.0], "value": [0.0, turned], "interpolation": "linear"}
+    found = _warned(PRESSED | {"ends": {"start": {"preset": "clamp", "theta3": twist}, "end": "clamp"}})
+    assert [warning.pointer for warning in found] == ["/ends"] * warned
+    assert all("115 turns" in warning.rule and "up to 3.6" in warning.rule for warning in found)
+
+
 def _moved(x3: float) -> dict[str, Any]:
     """A clamp, and one that moves by so much along the rod."""
     schedule = {"t": [0.0, 1.0], "value": [0.0, x3], "interpolation": "smoothstep"}

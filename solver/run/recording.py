@@ -44,7 +44,7 @@ JUDGED_R, JUDGED_KAPPA = slice(0, 3), slice(3, 6)
 """Where they stand among these."""
 OMEGA, FORCE = column("omega"), column("f")
 TWIST, WRITHE, BALANCE = _number("Tw"), _number("Wr"), _number("energy_balance")
-CURVATURE = _number("max_curvature")
+CURVATURE, STEP = _number("max_curvature"), _number("dt")
 BENDING, TORSION = _number("energy_bending"), _number("energy_torsion")
 KINETIC, ADDED_MASS = _number("energy_kinetic"), _number("energy_added_mass")
 

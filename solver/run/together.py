@@ -21,6 +21,7 @@ from solver.run.recording import (
     NUMBERS,
     OMEGA,
     ORIENTATION,
+    STEP,
     WIDTH,
     WRITHE,
     Columns,
@@ -84,7 +85,7 @@ class Together:
         value, error = self._of_frames(slice(first, last))
         magnitudes = [np.linalg.norm(value.along[..., rows], axis=-1).max(axis=-1) for rows in (OMEGA, FORCE)]
         rows = self._recorded[self._chosen.finest]
-        lost = np.maximum.accumulate([abs(number_of(row, BALANCE)) for row in rows[: here.stop]])
+        lost = self._unfollowed * np.maximum.accumulate([abs(number_of(row, BALANCE)) for row in rows[: here.stop]])
         frames = []
         for k in here:
             beside = slice(max(k - BESIDE, 1) - first, min(k + BESIDE + 1, last) - first) if k > 0 else slice(0, 1)
@@ -138,7 +139,19 @@ class Together:
     @cached_property
     def _unseen(self) -> dict[str, Array]:
         """See `unseen`, of an energy of 1 J."""
-        return unseen(self._scene.rod, self.s, 1.0)
+        rows = self._recorded[self._chosen.finest]
+        dt = float(np.mean([number_of(row, STEP) for row in rows]))
+        return unseen(self._scene.rod, self.s, 1.0, dt)
+
+    @cached_property
+    def _unfollowed(self) -> float:
+        """Which part of the energy that the finest attempt lost was in waves that no attempt follows: what was in those
+        that one with shorter steps follows shows in its difference."""
+        *_, longer, shorter = (0, 0, *self._chosen.series)
+        if self._attempts[shorter].steps <= self.finest.steps:
+            return 1.0
+        lost, left = (abs(number_of(self._recorded[i][-1], BALANCE)) for i in (longer, shorter))
+        return float(min(left / lost, 1.0)) if lost > 0.0 else 1.0
 
     @property
     def _many(self) -> int:

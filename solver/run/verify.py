@@ -17,6 +17,9 @@ from solver.run.side_by_side import Kind, SideBySide
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 
+SHORTEST = 1e-300
+"""A step (s) that stands for none, as at t = 0."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class VerifiedFrame(Frame):
@@ -35,23 +38,29 @@ class Verified(SideBySide):
     def _together(self, *frames: Frame) -> Frame:
         coarse, fine = frames
         self._lost = float(np.fmax(self._lost, abs(fine.energy_balance)))
-        return extrapolate(coarse, fine, unseen(self._scene.rod, self.s, self._lost))
+        return extrapolate(coarse, fine, unseen(self._scene.rod, self.s, self._lost, fine.dt))
 
 
-def unseen(rod: Rod, s: Array, lost: float) -> dict[str, Array]:
-    """How large fields (n, 3) may be in waves with the energy `lost` (J), which both runs have damped away.
+def unseen(rod: Rod, s: Array, lost: float, dt: float) -> dict[str, Array]:
+    """How large fields (n, ...) may be in waves with the energy `lost` (J), damped away by both runs' steps of dt.
 
     Waves shorter than the steps are damped within a few of them, by either run alike, and their difference does not
     show it; but the energy that the finer run has missed so far does. In a field x with the energy 1/2 int K x^2 ds it
-    has the rms sqrt(2 lost / (K L)). Of omega only the spin about the tangent counts: in bending waves nearly all
-    kinetic energy is in v.
+    has the rms sqrt(2 lost / (K L)). In bending waves nearly all
+    kinetic energy is in v; of those that turn by 1 rad in dt, k^2 = (m / EJ)^(1/2) / dt, omega is k v and f is
+    m v / (k dt). How far they move the rod, v dt, hardly counts.
     """
     section = sample(rod, s)
-    spin = np.full((len(s), 3), np.inf)
-    spin[:, 2] = section.inertia[:, 2]
-    stiffness = principal(section.elastic)
-    weights = {"v": section.mass[:, None], "omega": spin, "kappa": stiffness, "q": 1.0 / stiffness}
-    return {name: np.sqrt(2.0 * lost / (weight * float(rod.length))) for name, weight in weights.items()}
+    stiffness, mass = principal(section.elastic), section.mass[:, None]
+    weights = {"v": mass, "omega": section.inertia, "kappa": stiffness, "q": 1.0 / stiffness}
+    fields = {name: np.sqrt(2.0 * lost / (weight * float(rod.length))) for name, weight in weights.items()}
+    dt = max(dt, SHORTEST)
+    k = (mass / stiffness[:, :2]) ** 0.25 / np.sqrt(dt)
+    fields["omega"][:, :2] = k * fields["v"]
+    f = np.zeros((len(s), 3))
+    f[:, :2] = mass * fields["v"] / (k * dt)
+    turned = 0.5 * dt * np.linalg.norm(fields["omega"][:, :2], axis=1)
+    return fields | {"f": f, "orientation": turned[:, None]}
 
 
 def extrapolate(coarse: Frame, fine: Frame, least: Mapping[str, Array]) -> VerifiedFrame:

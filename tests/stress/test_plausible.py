@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from service.cases import build_scene, parse_case
+from solver import Numerics, VerifiedFrame, simulate
 from stress.plausible.__main__ import written
 from stress.plausible.bank import EACH, KINDS, scene
 from stress.plausible.judge import judge
 from stress.plausible.judge import written as judgement
 from stress.plausible.run import ANSWERED, LATE, run
+from validation.error_bars import misses
 
 
 def test_it_is_large() -> None:
@@ -43,4 +47,15 @@ def test_an_answer_is_judged_by_a_finer_run_and_by_fixed_ones() -> None:
     assert verdict.outside <= 0.05
     assert 0.0 < verdict.error < 3.0 and verdict.error_of_truth < 0.5
     assert 0.0 < verdict.fixed
+    assert 0.0 < verdict.fixed_by_largest <= verdict.fixed
     assert "of 1 scenes" in "\n".join(judgement([verdict]))
+
+
+def test_waves_of_a_whip_that_no_attempt_follows_are_within_the_bars_of_how_it_turns() -> None:
+    whip = build_scene(parse_case(scene("whip", 0)))
+    whip = replace(whip, t_end=0.5 * whip.t_end)
+    finer = Numerics("staggered", intervals=128, dt_max=0.25 * whip.output_interval, increment_tolerance=1e-4)
+    truth = list(simulate(replace(whip, numerics=finer)))
+    frames = [frame for frame in simulate(whip) if isinstance(frame, VerifiedFrame)]
+    counts = misses(frames, truth, ("omega", "orientation", "kappa", "v"))
+    assert max(far / many for far, many in counts.values()) <= 0.05

@@ -32,9 +32,10 @@ from solver.run.recording import (
 )
 from solver.run.richardson import error_of_steps, extrapolate
 from solver.run.series import Attempt, chosen, is_diagonal
-from solver.run.verify import VerifiedFrame, unseen
+from solver.run.verify import OF_WAVES, VerifiedFrame, unseen
 from solver.scene.scene import Scene
 
+IN_WAVES = [i for i, output in enumerate(NUMBERS) if output.name in OF_WAVES]
 UNVERIFIED = np.array([not output.verified for output in NUMBERS])
 BESIDE = 3
 """Frames before and after one whose errors count for it."""
@@ -105,6 +106,7 @@ class Together:
             along[:, rows] = np.maximum(along[:, rows], UNFOLLOWED * min(tolerated, 1.0) * most)
         for name, least in self._unseen.items():
             along[:, column(name)] = np.maximum(along[:, column(name)], np.sqrt(lost) * least)
+        numbers[0, IN_WAVES] = np.maximum(numbers[0, IN_WAVES], lost)
         curvature = float(np.linalg.norm(along[:, KAPPA], axis=-1).max())
         numbers[0, CURVATURE] = max(numbers[0, CURVATURE], curvature)
         numbers[0, BALANCE] = max(numbers[0, BALANCE], abs(value.numbers[0, BALANCE]))  # of the solution it is none

@@ -33,7 +33,8 @@ def column(name: str) -> slice:
     return slice(at, at + ALONG[before].components)
 
 
-def _number(name: str) -> int:
+def number(name: str) -> int:
+    """Which of `NUMBERS` an output is."""
     return [output.name for output in NUMBERS].index(name)
 
 
@@ -43,10 +44,10 @@ JUDGED = [*range(R.start, R.stop), *range(KAPPA.start, KAPPA.stop)]
 JUDGED_R, JUDGED_KAPPA = slice(0, 3), slice(3, 6)
 """Where they stand among these."""
 OMEGA, FORCE = column("omega"), column("f")
-TWIST, WRITHE, BALANCE = _number("Tw"), _number("Wr"), _number("energy_balance")
-CURVATURE, STEP = _number("max_curvature"), _number("dt")
-BENDING, TORSION = _number("energy_bending"), _number("energy_torsion")
-KINETIC, ADDED_MASS = _number("energy_kinetic"), _number("energy_added_mass")
+TWIST, WRITHE, BALANCE = number("Tw"), number("Wr"), number("energy_balance")
+CURVATURE, STEP = number("max_curvature"), number("dt")
+BENDING, TORSION = number("energy_bending"), number("energy_torsion")
+KINETIC, ADDED_MASS = number("energy_kinetic"), number("energy_added_mass")
 
 
 def row_of(frame: Frame) -> Array:
@@ -72,8 +73,8 @@ def columns_of(rows: Sequence[Array] | Array, judged: bool = False) -> Columns:
 def frame_of(t: float, columns: Columns) -> Frame:
     """The frame at time `t` (s) of the outputs of one."""
     values: dict[str, Any] = {}
-    for output, number in zip(NUMBERS, columns.numbers[0], strict=True):
-        value = float(number)
+    for output, stored in zip(NUMBERS, columns.numbers[0], strict=True):
+        value = float(stored)
         values[output.name] = (0 if isnan(value) else int(value)) if output.type == "i4" else value
     for output in ALONG:
         field = columns.along[:, column(output.name)]

@@ -28,6 +28,7 @@ from solver.run.recording import (
     column,
     columns_of,
     frame_of,
+    number,
     number_of,
 )
 from solver.run.richardson import error_of_steps, extrapolate
@@ -105,7 +106,8 @@ class Together:
         for rows, most in zip((OMEGA, FORCE), largest, strict=True):
             along[:, rows] = np.maximum(along[:, rows], UNFOLLOWED * min(tolerated, 1.0) * most)
         for name, least in self._unseen.items():
-            along[:, column(name)] = np.maximum(along[:, column(name)], np.sqrt(lost) * least)
+            part = numbers[:, number(name)] if isinstance(least, float) else along[:, column(name)]
+            np.maximum(part, np.sqrt(lost) * least, out=part)
         numbers[0, IN_WAVES] = np.maximum(numbers[0, IN_WAVES], lost)
         curvature = float(np.linalg.norm(along[:, KAPPA], axis=-1).max())
         numbers[0, CURVATURE] = max(numbers[0, CURVATURE], curvature)
@@ -139,7 +141,7 @@ class Together:
         return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, hopeless, strict=True)]
 
     @cached_property
-    def _unseen(self) -> dict[str, Array]:
+    def _unseen(self) -> dict[str, Array | float]:
         """See `unseen`, of an energy of 1 J."""
         rows = self._recorded[self._chosen.finest]
         dt = float(np.mean([number_of(row, STEP) for row in rows]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -44,14 +45,15 @@ class Verified(SideBySide):
         return extrapolate(coarse, fine, {**least, **dict.fromkeys(OF_WAVES, self._lost)})
 
 
-def unseen(rod: Rod, s: Array, lost: float, dt: float) -> dict[str, Array]:
-    """How large fields (n, ...) may be in waves with the energy `lost` (J), damped away by both runs' steps of dt.
+def unseen(rod: Rod, s: Array, lost: float, dt: float) -> dict[str, Array | float]:
+    """How large outputs may be in waves with the energy `lost` (J), damped away by both runs' steps of dt: fields
+    (n, ...), and Tw and Wr.
 
     Waves shorter than the steps are damped within a few of them, by either run alike, and their difference does not
     show it; but the energy that the finer run has missed so far does. In a field x with the energy 1/2 int K x^2 ds it
     has the rms sqrt(2 lost / (K L)). In bending waves nearly all
     kinetic energy is in v; of those that turn by 1 rad in dt, k^2 = (m / EJ)^(1/2) / dt, omega is k v and f is
-    m v / (k dt). How far they move the rod, v dt, hardly counts.
+    m v / (k dt), and Tw and Wr differ by what the rod turns, omega dt. How far it moves, v dt, hardly counts.
     """
     section = sample(rod, s)
     stiffness, mass = principal(section.elastic), section.mass[:, None]
@@ -62,8 +64,9 @@ def unseen(rod: Rod, s: Array, lost: float, dt: float) -> dict[str, Array]:
     fields["omega"][:, :2] = k * fields["v"]
     f = np.zeros((len(s), 3))
     f[:, :2] = mass * fields["v"] / (k * dt)
-    turned = 0.5 * dt * np.linalg.norm(fields["omega"][:, :2], axis=1)
-    return fields | {"f": f, "orientation": turned[:, None]}
+    turned = dt * np.linalg.norm(fields["omega"][:, :2], axis=1)
+    turns = float(turned.max() / (2.0 * pi))
+    return {**fields, "f": f, "orientation": 0.5 * turned[:, None], "Tw": turns, "Wr": turns}
 
 
 def extrapolate(coarse: Frame, fine: Frame, least: Mapping[str, Array | float]) -> VerifiedFrame:

@@ -71,6 +71,7 @@ def test_what_an_energy_that_was_lost_may_be():
     V, k, EJ = found["v"][0, 0], found["omega"][0, 0] / found["v"][0, 0], float(ROD.stiffness[0](0.0))
     assert MASS * V / dt == pytest.approx(EJ * k**4 * V * dt) == pytest.approx(k * found["f"][0, 0])
     assert found["orientation"][0, 0] == pytest.approx(0.5 * dt * np.sqrt(2.0) * k * V)
+    assert 2.0 * np.pi * found["Tw"] == pytest.approx(2.0 * found["orientation"].max())
     assert not found["f"][:, 2].any()
 
 

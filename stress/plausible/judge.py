@@ -14,7 +14,6 @@ import argparse
 import json
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from multiprocessing import get_context
 from statistics import median
@@ -83,14 +82,23 @@ def judge(kind: str, number: int) -> Verdict:
     errors, known = _errors(built, answer, truth), _told(built, truth)
     verdict.error, verdict.error_of_truth = float(errors.max()), float(known.max())
     bounds = np.maximum(np.maximum(errors, known), SMALL)
-    for fixed in FIXED:
-        with suppress(RunFailed, TimeoutError):
-            frames, cpu = _fixed(built, *fixed, np.nanmin([verdict.fixed, DEAR * verdict.cpu]))
-            its_errors = _errors(built, frames, truth)
-            if np.all(its_errors <= bounds):
-                verdict.fixed = cpu
-            if its_errors.max() <= bounds.max():
-                verdict.fixed_by_largest = np.nanmin([verdict.fixed_by_largest, cpu])
+    too_dear: list[tuple[int, float]] = []
+    for intervals, tolerated in FIXED:
+        if any(intervals >= mesh and tolerated <= steps for mesh, steps in too_dear):
+            continue
+        try:
+            most = float(np.nanmin([verdict.fixed, DEAR * verdict.cpu]))
+            frames, cpu = _fixed(built, intervals, tolerated, most)
+        except RunFailed:
+            continue
+        except TimeoutError:
+            too_dear.append((intervals, tolerated))
+            continue
+        its_errors = _errors(built, frames, truth)
+        if np.all(its_errors <= bounds):
+            verdict.fixed = cpu
+        if its_errors.max() <= bounds.max():
+            verdict.fixed_by_largest = float(np.nanmin([verdict.fixed_by_largest, cpu]))
     return verdict
 
 

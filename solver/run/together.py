@@ -151,9 +151,10 @@ class Together:
     def _unfollowed(self) -> float:
         """Which part of the energy that the finest attempt lost was in waves that no attempt follows: what was in those
         that one with shorter steps follows shows in its difference."""
-        *_, longer, shorter = (0, 0, *self._chosen.series)
-        if self._attempts[shorter].steps <= self.finest.steps:
+        series = self._chosen.series
+        if len(series) < 2 or self._attempts[series[-1]].steps <= self.finest.steps:
             return 1.0
+        longer, shorter = series[-2:]
         lost, left = (abs(number_of(self._recorded[i][-1], BALANCE)) for i in (longer, shorter))
         return float(min(left / lost, 1.0)) if lost > 0.0 else 1.0
 

@@ -15,6 +15,9 @@ from solver.run.first_mesh import LARGEST_TURN
 from solver.run.plan import FIRST_INTERVALS, Trial
 from solver.run.recording import Columns, columns_of, row_of
 from solver.run.refined import Refined
+from solver.run.series import Attempt
+from solver.run.together import Together
+from solver.run.under_way import UnderWay
 from solver.scene.ends import FREE
 from tests.solver.bent import bent_cantilever
 from tests.solver.scenes import EJ
@@ -98,6 +101,20 @@ def test_where_the_work_that_may_be_done_is_little_there_is_an_answer(monkeypatc
     assert len(list(run)) == 17
     assert run.accuracy is not None
     assert 0.0 < run.accuracy.errors["r"] < 0.1
+
+
+def test_a_run_with_longer_steps_alone_makes_frames_of_unknown_error() -> None:
+    scene = tolerated(1e-3)
+    longer = UnderWay(scene, Trial(0, -2))
+    rows = []
+    while not longer.run.finished:
+        frame = longer.advance()
+        if frame is not None:
+            rows.append(row_of(frame))
+    slow = Attempt(0, 0, 1.0, 0.1, complete=False, slow=True)
+    together = Together(scene, [slow, slow._replace(steps=-2, t=4.0, complete=True)], [np.array([]), np.array(rows)])
+    assert len(together.piece(0).frames) == len(rows) == 17
+    assert np.isnan(together.errors()[:, 0]).all()
 
 
 def test_a_run_that_fails_on_every_mesh_gives_the_frames_until_then_and_fails_by_name() -> None:

@@ -271,13 +271,13 @@ class Equations:
         rows, columns = diags_array(np.tile(self._rows, n)), diags_array(np.tile(self.units, n))
         return csr_array(rows @ moves.T @ self.contact.stiffness() @ moves @ columns)
 
-    def blocks(self, softest: float = SOFTEST) -> tuple[Array, Array, Array]:
+    def blocks(self) -> tuple[Array, Array, Array]:
         """Diagonal (N + 2, 9, 9) of the tangent, and the blocks before and behind it, dimensionless."""
         T, R, n = self.tangents, self.stages.R[0], len(self.start.quaternion)
         D, lower, upper = (np.zeros((n, BLOCK, BLOCK)) for _ in range(3))
         lever, one = levers(R, self.chain.h), np.eye(3)
         D[:, PSI, PSI], lower[:, PSI, PSI], upper[:, PSI, PSI] = T.stiff, T.before, T.behind
-        D[:, PSI, PSI] += softest * self.stiffness * self.chain.h / self.s[-1] ** 2 * one
+        D[:, PSI, PSI] += SOFTEST * self.stiffness * self.chain.h / self.s[-1] ** 2 * one
         D[1:, PSI, FORCE], upper[:-1, PSI, FORCE] = lever[1:], lever[:-1]
         D[1:-1, X, PSI], D[1:-1, X, X] = -T.E, T.K
         D[1:, X, FORCE], upper[:-1, X, FORCE] = one, -one

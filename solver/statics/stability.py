@@ -14,7 +14,7 @@ from scipy.linalg.lapack import dgbsv
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
-from solver.statics.equations import PSI, Equations, X, levers
+from solver.statics.equations import Equations, levers
 
 BAND = 5
 NEUTRAL = 1e-7
@@ -44,14 +44,12 @@ def _least(equations: Equations) -> float:
 
 def _count(equations: Equations, softest: float) -> int:
     """Directions of falling energy where every rotation has as much stiffness more."""
-    pressing = equations.contact.pressing > 0
-    if equations.tangents.K.any() and not pressing:
-        return _with_place(equations, softest)
+    placed = equations.contact.pressing > 0 or bool(equations.tangents.K.any())
     length = float(equations.s[-1])
     T = equations.tangents
     bands = _second_variation(T.stiff, T.behind, equations, softest) * (length / equations.stiffness)
     G, W, ties = _conditions(equations)
-    if pressing:
+    if placed:
         return _all_together(equations, bands, G, W) - ties
     full = np.zeros((3 * BAND + 1, bands.shape[1]))
     full[2 * BAND :] = bands
@@ -81,8 +79,8 @@ def _conditions(equations: Equations) -> tuple[Array, Array, int]:
 
 
 def _all_together(equations: Equations, bands: Array, G: Array, W: Array) -> int:
-    """Negative eigenvalues of [H G^t; G W] where strands press on each other, which couples rotations far apart; loads
-    may depend on the place, too."""
+    """Negative eigenvalues of [H G^t; G W] where strands press on each other or loads depend on the place, which
+    couples rotations far apart. (Eliminated from segment to segment the counts fell below zero.)"""
     length = float(equations.s[-1])
     S, steps = _by_place(equations), -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
     n, unit = len(S), length / equations.stiffness
@@ -103,7 +101,9 @@ def _all_together(equations: Equations, bands: Array, G: Array, W: Array) -> int
 def _by_place(equations: Equations) -> Array:
     """The stiffness of contact and loads by the places of the nodes (N + 1, 3, N + 1, 3)."""
     n = len(equations.s)
-    S = equations.contact.stiffness().toarray().reshape(n, 3, n, 3)
+    S = np.zeros((n, 3, n, 3))
+    if equations.contact.pressing:
+        S += equations.contact.stiffness().toarray().reshape(n, 3, n, 3)
     segments = np.arange(n - 1)
     for one in (0, 1):  # a segment's centre lies between its nodes
         for other in (0, 1):
@@ -117,31 +117,6 @@ def _from_bands(bands: Array) -> Array:
     for k, band in enumerate(bands):
         np.fill_diagonal(lower[k:], band[: len(band) - k])
     return lower + np.tril(lower, -1).T
-
-
-def _with_place(equations: Equations, softest: float) -> int:
-    """The same where loads depend on the place: of the whole system, from block to block.
-
-    Rotations, displacements and forces are kept. The forces are the multipliers of as many conditions, each of which
-    has one negative eigenvalue. The start, whose place stands in no balance of its own, goes with the first segment.
-    """
-    D, lower, upper = equations.blocks(softest)
-    D[:, X, PSI] = 0.0  # forces that turn with the rod are held as they are
-    n, size = len(D), D.shape[1]
-    for side, end in enumerate(equations.ends):
-        held = np.concatenate([end.held[3:], end.held[:3], np.zeros(3, bool)])
-        D[-side][:, held] = 0.0
-        D[-side][held, held] = 1.0
-        (lower[1] if side == 0 else upper[-2])[:, held] = 0.0
-    beside = 0.5 * (lower[1:] + upper[:-1].transpose(0, 2, 1))
-    symmetric = 0.5 * (D + D.transpose(0, 2, 1))
-    own = np.block([[symmetric[0], beside[0].T], [beside[0], symmetric[1]]])
-    count = int(np.sum(eigvalsh(own) < 0.0))
-    for a in range(2, n):
-        coupled = np.hstack([np.zeros((size, len(own) - size)), beside[a - 1]])
-        own = symmetric[a] - coupled @ np.linalg.solve(own, coupled.T)
-        count += int(np.sum(eigvalsh(0.5 * (own + own.T)) < 0.0))
-    return count - 3 * (n - 1)
 
 
 def _second_variation(stiff: Array, behind: Array, equations: Equations, softest: float) -> Array:

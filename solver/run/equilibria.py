@@ -97,6 +97,7 @@ class Equilibria(Run):
             raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, detail)
         fields = self._fields(point)
         self.remarks.turning_loads += equations.loads_turn()
+        self.remarks.stretched(equations.strain() * float(self.s[-1]))
         stages = equations.stages
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
         energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], motion)

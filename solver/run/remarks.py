@@ -14,7 +14,8 @@ class Remarks:
     sign between frames cancel, and none is seen without topology; `unclear_jumps`: how often it was one of them, where
     frames are too far apart to tell which. `deepest_overlap` (m) of strands, and the time
     `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
-    it has to stretch, see `physics.axial`. `energy_lost`: energy that went nowhere, over the largest
+    it has to stretch, see `physics.axial`; `end_stretch` (m): how far both ends together were away from where
+    they are held, at the most, at a frame. `energy_lost`: energy that went nowhere, over the largest
     that motion, strain and contact ever had, if that is more than a tenth. `turning_loads`: frames of a static
     analysis in which forces turned with the rod.
     """
@@ -26,8 +27,13 @@ class Remarks:
     deepest_overlap: float = 0.0
     deepest_overlap_at: float = 0.0
     axial_stiffness: float = 0.0
+    end_stretch: float = 0.0
     energy_lost: float = 0.0
     turning_loads: int = 0
+
+    def stretched(self, by: float) -> None:
+        """At a frame, by so much (m)."""
+        self.end_stretch = max(self.end_stretch, by)
 
     def attributes(self) -> dict[str, float | int]:
         """The values that are not zero, by name."""
@@ -64,7 +70,8 @@ class Remarks:
         if self.axial_stiffness:
             sentences.append(
                 "The rod is held so that it has to stretch: it has the axial stiffness EA = "
-                f"{self.axial_stiffness:.3g} N."
+                f"{self.axial_stiffness:.3g} N. All stretch lies at its ends, which are together up to "
+                f"{self.end_stretch:.2g} m away from where they are held."
             )
         if self.turning_loads:
             sentences.append(

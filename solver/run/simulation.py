@@ -78,6 +78,8 @@ class Simulation(Run):
         if not self._control.reached(output, self.t):
             return None
         frame = self._accounts.frame(output)
+        if self.remarks.axial_stiffness:
+            self.remarks.stretched(self._method.strain() * float(self._scene.rod.length))
         made = self._accounts.made
         detail = f"{abs(made):.2g} of all that changed hands"
         if made > LARGEST_MADE:

@@ -67,7 +67,8 @@ def test_a_bar_that_is_pulled_bears_its_strain(initial: Initial, analysis: str) 
     *_, last = run
     assert last.f[:, 2] == pytest.approx(2e-3 * EA / LENGTH, rel=1e-4)
     assert run.attributes()["axial_stiffness"] == pytest.approx(EA)
-    assert "axial stiffness EA" in run.notes()[-1]
+    assert run.attributes()["end_stretch"] == pytest.approx(2e-3, rel=1e-4)
+    assert "axial stiffness EA" in run.notes()[-1] and "up to 0.002 m away" in run.notes()[-1]
 
 
 def test_a_straight_rod_between_clamps_stays_as_it_is() -> None:

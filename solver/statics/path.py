@@ -111,7 +111,8 @@ class Path:
         room, wanted = min(remaining, to_corner), self._length
         limit, beyond = room / max(abs(dq), REACHED), False
         crossing = CROSSING if self._crossed or self._equations.contact.pressing else FIRST_CROSSING
-        while min(wanted, limit) > SHORTEST:
+        shortest = min(SHORTEST, 0.5 * limit)  # the last step may have ended right before a stop
+        while min(wanted, limit) > shortest:
             length = min(wanted, limit)
             lands = abs(dq) > STEEP and (beyond or length * abs(dq) > room * (1.0 - 1e-9))
             guess = point.moved(length * self.direction.z, forward * room if lands else length * dq)

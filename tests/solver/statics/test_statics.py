@@ -388,3 +388,17 @@ def test_a_rod_that_hangs_onto_a_solid_is_stable_however_its_section_is_turned(
     )  # fmt: skip
     frames = list(simulate(hanging))
     assert [(frame.negative_modes, frame.neutral_modes) for frame in frames] == [(0, 0)] * len(frames)
+
+
+def test_a_thin_strip_that_is_seeded_buckles_sideways_at_prandtls_load() -> None:
+    """Its stiffnesses are as 1 to 1e4; a step ended 1e-9 before a frame, and none was as short as that."""
+    wide, thin, GJ = 500.0, 0.05, 0.04
+    rod = replace(ROD, stiffness=tuple(Curve.constant(x) for x in (wide, thin, GJ)))
+    prandtl = 4.0126 * np.sqrt(thin * GJ) / LENGTH**2
+    load = PointLoad(LENGTH, (ZERO, ZERO, ramp(-1.2 * prandtl)))
+    seed = DistributedLoad(constant_vector((0.0, 1e-5 * thin, 0.0)), constant_vector((0.0, 0.0, 0.0)))
+    initial = Initial.straight(direction=(1.0, 0.0, 0.0), a1=(0.0, 1.0, 0.0))
+    frames = list(simulate(static(rod=rod, initial=initial, points=(load,), distributed=(seed,), output_interval=0.05)))
+    before, behind = (next(frame for frame in frames if frame.parameter > part / 1.2) for part in (0.9, 1.1))
+    assert abs(before.r[-1, 1]) < 1e-3 * LENGTH < 0.1 * LENGTH < abs(behind.r[-1, 1])
+    assert not any(frame.negative_modes for frame in frames)

@@ -58,7 +58,8 @@ class Refined(Run):
         self._first_if_pressed = first_mesh(scene, pressed=True)
         self._progress, self._decided = 0.0, False
         self._detail = ""
-        self._errors_of_frames = np.zeros((0, len(QUANTITIES)))
+        self.errors_of_frames = np.zeros((0, len(QUANTITIES)))
+        """Of `QUANTITIES`, relative, once the frames come; see `accuracy`."""
         self._piece = Piece()
         self._before = replace(self.statistics)
         """What the attempts before that under way have cost."""
@@ -102,9 +103,9 @@ class Refined(Run):
     @property
     def accuracy(self) -> Accuracy | None:
         """The errors of its frames, once these come; None where there are none."""
-        if not len(self._errors_of_frames):
+        if not len(self.errors_of_frames):
             return None
-        return judge(self._scene.numerics.tolerance or 0.0, self._errors_of_frames)
+        return judge(self._scene.numerics.tolerance or 0.0, self.errors_of_frames)
 
     def warm(self) -> None:
         """Have every kernel compiled."""
@@ -165,7 +166,7 @@ class Refined(Run):
         return self._next_frame(0.0) if self._decided else None
 
     def _next_frame(self, output: float) -> Frame | None:
-        if self._frames >= len(self._errors_of_frames):
+        if self._frames >= len(self.errors_of_frames):
             last = self._attempts[-1]
             raise RunFailed(OUTCOMES[int(last.outcome)], last.t, self.statistics.steps, self._detail)
         if not self._piece.holds(self._frames):
@@ -217,7 +218,7 @@ class Refined(Run):
             self._excesses = [tuple(excess) for excess in self._together.excesses(self._errors)]
         then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
         if then is None:
-            self._decided, self._errors_of_frames = True, self._together.errors()
+            self._decided, self.errors_of_frames = True, self._together.errors()
             self.remarks = Remarks(*self._noticed[chosen(self._attempts).finest])  # type: ignore[arg-type]
         else:
             self._under_way = UnderWay(self._scene, then)

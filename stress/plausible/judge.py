@@ -71,15 +71,15 @@ def judge(kind: str, number: int) -> Verdict:
         verdict.unjudged = "statics have no tolerance"
         return verdict
     try:
-        answer, verdict.cpu = _refined(built)
-        truth = _true(built)
+        answer, verdict.cpu, _ = _refined(built)
+        truth, told = _true(built)
     except (RunFailed, TimeoutError) as error:
         verdict.unjudged = str(error)[:80]
         return verdict
     counts = misses(answer, truth)
     verdict.outside = missed(counts)
     verdict.by_variable = {name: round(far / many, 3) for name, (far, many) in counts.items() if far > MISSED * many}
-    errors, known = _errors(built, answer, truth), _told(built, truth)
+    errors, known = _errors(built, answer, truth), excess(built.numerics.tolerance, told)
     verdict.error, verdict.error_of_truth = float(errors.max()), float(known.max())
     bounds = np.maximum(np.maximum(errors, known), SMALL)
     too_dear: list[tuple[int, float]] = []
@@ -102,8 +102,8 @@ def judge(kind: str, number: int) -> Verdict:
     return verdict
 
 
-def _refined(scene: Scene) -> tuple[list[VerifiedFrame], float]:
-    """Its frames and its CPU time (s)."""
+def _refined(scene: Scene) -> tuple[list[VerifiedFrame], float, Array]:
+    """Its frames, its CPU time (s), and its errors (frames, 4) as it tells them."""
     begun = Refined(scene)
     begun.warm()
     started, frames = process_time(), []
@@ -113,17 +113,18 @@ def _refined(scene: Scene) -> tuple[list[VerifiedFrame], float]:
             frames.append(frame)
         if process_time() - started > LONGEST:
             raise TimeoutError("no answer in time")
-    return frames, process_time() - started
+    return frames, process_time() - started, begun.errors_of_frames
 
 
-def _true(scene: Scene) -> list[VerifiedFrame]:
+def _true(scene: Scene) -> tuple[list[VerifiedFrame], Array]:
+    """Its frames and its errors."""
     tolerance, work = scene.numerics.tolerance or 0.0, plan.MOST_WORK
     plan.MOST_WORK = WORK * work
     try:
-        frames, _ = _refined(replace(scene, numerics=replace(scene.numerics, tolerance=TRUTH * tolerance)))
+        frames, _, told = _refined(replace(scene, numerics=replace(scene.numerics, tolerance=TRUTH * tolerance)))
     finally:
         plan.MOST_WORK = work
-    return frames
+    return frames, told
 
 
 def _fixed(scene: Scene, intervals: int, tolerated: float, most: float) -> tuple[list[Frame], float]:
@@ -150,13 +151,6 @@ def _errors(scene: Scene, frames: Sequence[Frame], truth: Sequence[Frame]) -> Ar
     along = answer.along[:, :: strides[0]] - exact.along[:, :: strides[1]]
     apart = Columns(np.abs(along), np.abs(answer.numbers - exact.numbers))
     return excess(scene.numerics.tolerance or 1.0, errors_of(apart, sizes(scene, [exact])))
-
-
-def _told(scene: Scene, truth: Sequence[VerifiedFrame]) -> Array:
-    """Likewise those of the truth, as it tells them."""
-    exact, bars = (columns_of([row_of(frame) for frame in series], judged=True)
-                   for series in (truth, [frame.error for frame in truth]))  # fmt: skip
-    return excess(scene.numerics.tolerance or 1.0, errors_of(bars, sizes(scene, [exact])))
 
 
 def main() -> int:

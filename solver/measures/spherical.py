@@ -7,9 +7,6 @@ from typing import Any
 
 from solver.kernels.kernel import inlined, inner
 
-FLAT = 1e-10
-"""How far out of one plane what lies in it may be by rounding, in its size."""
-
 
 @inner
 def half_area(a: Any, b: Any, c: Any) -> float:
@@ -28,12 +25,10 @@ def half_area(a: Any, b: Any, c: Any) -> float:
     ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     bc = b[0] * c[0] + b[1] * c[1] + b[2] * c[2]
     ca = c[0] * a[0] + c[1] * a[1] + c[2] * a[2]
-    size = la * lb * lc
-    return angle(size + ab * lc + bc * la + ca * lb, volume, size)
+    return angle(la * lb * lc + ab * lc + bc * la + ca * lb, volume)
 
 
 @inlined
-def angle(x: float, y: float, size: float) -> float:
-    """arg(x + i y), each at the most about `size`, but 0 for what lies in one plane, to rounding: its area is none
-    wherever its corners lie, and where two of its parts cross the mean of those to either side is none too."""
-    return 0.0 if abs(y) <= FLAT * size and x <= FLAT * size else atan2(y, x)
+def angle(x: float, y: float) -> float:
+    """arg(x + i y), but 0 for what lies in one plane, whose area is none wherever its corners lie."""
+    return 0.0 if y == 0.0 else atan2(y, x)

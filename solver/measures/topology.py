@@ -35,8 +35,7 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
 
     `r` (n >= 2, 3): the vertices, lab frame, m. The rays leave r[0] along -`start_tangent` and r[-1]
     along `end_tangent` (3,), of any length > 0. Right-handed crossings count positive. Where two
-    parts of the curve touch exactly the writhe jumps by 2 and the value there is the mean of both: a plane curve has
-    none.
+    parts of the curve touch exactly the writhe jumps by 2 and the value there means nothing.
 
     Raises ValueError for another shape or a zero tangent; NaN in gives NaN out.
     """
@@ -189,7 +188,7 @@ def _near_pairs(r: Array, i: int, last: int, squares: Array, from_i: Array, from
         p, q = _pair(start, end, (r[0, j], r[1, j], r[2, j]), (r[0, j + 1], r[1, j + 1], r[2, j + 1]),
                      squares[j], from_i[j], from_i[j + 1], from_next[j + 1], from_next[j])  # fmt: skip
         if not abs(q) < SMALL_TANGENT * p:
-            total += angle(p, q, 4.0 * (from_i[j] * from_next[j + 1]) ** 2 * from_i[j + 1] * from_next[j])
+            total += angle(p, q)
     return total
 
 

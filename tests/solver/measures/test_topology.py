@@ -109,19 +109,6 @@ def test_rays_closed_in_a_far_plane_are_a_closed_curve():
     assert writhe_closed(np.vstack([r, around])) == pytest.approx(writhe(r, E3, E3), abs=1e-5)
 
 
-@pytest.mark.parametrize("x", [1.0, 0.5, 1.5, -0.45], ids=["parallel", "rays cross", "apart", "legs cross"])
-@pytest.mark.parametrize("noise", [0.0, 1e-15, 1e-13])
-def test_a_plane_fork_does_not_writhe(x: float, noise: float):
-    """Its legs go from +-1 to +-x."""
-    bow, down = np.linspace(0.0, np.pi, 61), np.linspace(0.0, 1.0, 31)[1:, None]
-    tip = np.array([[x, -2.0, 0.0], [-x, -2.0, 0.0]])
-    r = np.column_stack([np.cos(bow), np.sin(bow), np.zeros(61)])
-    r = np.vstack([(r[0] + (tip[0] - r[0]) * down)[::-1], r, r[-1] + (tip[1] - r[-1]) * down])
-    random = np.random.default_rng(5)
-    r = (r + random.normal(scale=noise, size=r.shape)) @ np.linalg.qr(random.normal(size=(3, 3)))[0]
-    assert writhe(r, r[1] - r[0], r[-1] - r[-2]) == pytest.approx(0.0, abs=1e-9)
-
-
 def test_a_straight_rod_and_a_plane_curve_do_not_writhe():
     s = np.linspace(0.0, 1.0, 101)
     along = np.array([0.3, -0.5, 0.8])

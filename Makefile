@@ -16,8 +16,8 @@ demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 serve: .venv/.runtime  ## API, worker and broker, until Ctrl-C
 	$(BIN)/hockle serve
 
-test: .venv/.dev .venv/.docs  ## the whole test suite, three files at a time: many wait
-	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder
+test: .venv/.dev .venv/.docs  ## the whole test suite, two files at a time
+	$(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 
 lint: .venv/.dev .venv/.docs  ## style, types, and who may import whom
 	$(BIN)/ruff check .

@@ -1,0 +1,165 @@
+"""Stability of equilibria: in how many directions the energy falls or stays, and what a run says of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solver import (
+    FREE,
+    Condition,
+    Curve,
+    DistributedLoad,
+    End,
+    Initial,
+    Numerics,
+    PointLoad,
+    Scene,
+    constant_vector,
+    simulate,
+)
+from solver.arrays import Array
+from solver.physics.loads.solids import Floor
+from solver.run.equilibria import Equilibria
+from solver.scene.layout import nodes_at_rest, sampled
+from solver.statics.equations import Equations
+from tests.solver.scenes import (
+    ARC,
+    DENSITY,
+    DIAMETER,
+    EJ,
+    GJ,
+    LENGTH,
+    ROD,
+    arc,
+    last,
+    moved_clamp,
+)
+from tests.solver.statics.resting import PRESSED, ZERO, ramp, static
+
+
+@pytest.mark.parametrize(("loads", "turning"), [
+    (PRESSED["weight"], False), (PRESSED["lab"], False), (PRESSED["tip, lab"], False),
+    (PRESSED["pin and clamp"], False),
+    (PRESSED["following"], True), (PRESSED["current"], True),
+    ({"end": End((FREE, FREE, (Condition("load", ramp(-15.0 * EJ)),)), (FREE, FREE, FREE))}, True),
+])  # fmt: skip
+def test_of_forces_that_turn_with_the_rod_the_run_says_that_modes_prove_nothing(
+    loads: dict[str, object], turning: bool
+) -> None:
+    run = Equilibria(static(numerics=Numerics(intervals=4), **loads))
+    while not run.finished:
+        run.advance()
+    assert any("turn with the rod" in sentence for sentence in run.remarks.sentences()) == turning
+
+
+def twisted(moment: float, intervals: int) -> int:
+    """Falling directions of a straight rod between clamps twisted by a moment (in EJ/L), without thrust."""
+    twist = Curve.table([0.0, LENGTH], [0.0, moment * EJ / GJ])
+    scene = static(initial=Initial.straight(twist=twist), end=End.slider(), numerics=Numerics(intervals=intervals))
+    return next(iter(simulate(scene))).negative_modes
+
+
+def test_stability_is_lost_at_greenhills_torque_in_two_directions() -> None:
+    # second order in ds: the error is some (M ds / EJ)^2 / 24 of the torque
+    assert [twisted(m, 40) for m in (5.0, 8.98, 8.99, 15.0)] == [0, 0, 2, 2]
+
+
+def test_stability_is_lost_at_eulers_load_and_a_seed_leads_to_the_stable_branch() -> None:
+    load = PointLoad(LENGTH, (ZERO, ZERO, ramp(-4.0 * EJ)))
+    straight = list(simulate(static(points=(load,), output_interval=0.05)))
+    lost = [frame.negative_modes for frame in straight]
+    assert lost == [0 if 4.0 * frame.t < pi**2 / 4.0 else 2 for frame in straight]
+    seeded = last(static(points=(load,), distributed=(DistributedLoad(constant_vector((1e-4 * EJ, 0.0, 0.0))),)))
+    assert seeded.r[-1, 0] > 0.5 * LENGTH
+    assert seeded.negative_modes == 0
+
+
+@pytest.mark.parametrize("thrust", [0.5, 5.0, 30.0, 70.0])
+def test_both_counts_of_falling_directions_agree(thrust: float) -> None:
+    """Where next to no load depends on the place, the count from segment to segment is that of all together."""
+    from solver.statics import stability
+
+    push = Curve.constant(-thrust * EJ / LENGTH**2)
+    end = End((FREE, FREE, (Condition("load", push),)), (FREE, FREE, FREE))
+    scene = Scene(rod=ROD, initial=Initial.straight(), start=End.clamp(), end=end, t_end=1.0, output_interval=1.0,
+                  numerics=Numerics(intervals=16), analysis="static")  # fmt: skip
+    equations = Equations(scene)
+    equations.let_go()
+    point = equations.start
+    point.F[:, 2] = -thrust * EJ / LENGTH**2
+    equations.linearise(point)
+    counts = [stability._count(equations, softest) for softest in (stability.NEUTRAL, -stability.NEUTRAL)]
+    equations.tangents.K[:] = 1e-30 * np.eye(3)
+    assert counts == [stability._count(equations, softest) for softest in (stability.NEUTRAL, -stability.NEUTRAL)]
+    equations.tangents.K[:] = 0.0
+    # pi^2/4, 9 pi^2/4, 25 pi^2/4, each in two planes
+    assert stability.negative_modes(equations) == 2 * sum(thrust > (k * np.pi / 2.0) ** 2 for k in (1, 3, 5))
+
+
+@pytest.mark.parametrize(("weight", "modes"), [(0.0, (0, 2)), (1.0, (0, 1)), (-0.1, (1, 1))])
+def test_free_spin_and_free_swing_are_neutral_and_not_unstable(weight: float, modes: tuple[int, int]) -> None:
+    """A rod bent between two pins may spin about its axis; it swings about the line of its pins, with its weight in
+    the plane of its bow stably if it hangs and unstably if it stands."""
+    start, middle, end = arc(np.array([0.0, 0.5 * LENGTH, LENGTH]))
+    down = middle - 0.5 * (start + end)
+    mass = DENSITY * pi / 4.0 * DIAMETER**2
+    gravity = weight * EJ / LENGTH**3 / mass * down / np.linalg.norm(down)
+    rest = last(static(initial=ARC, start=End.pin(), end=End.pin(), gravity=tuple(gravity)))
+    assert (rest.negative_modes, rest.neutral_modes) == modes
+
+
+def test_a_small_load_leads_a_rod_that_is_pressed_by_its_clamps_to_the_stable_branch() -> None:
+    """As the guide advises where a symmetric rod buckles. The deflection of the elastica: see `validation.euler`."""
+    seed = DistributedLoad((Curve.constant(1e-6 * EJ / LENGTH**3), ZERO, ZERO), (ZERO, ZERO, ZERO))
+    rest = last(static(end=moved_clamp(ZERO, ZERO, ramp(-0.4 * LENGTH)), distributed=(seed,),
+                       numerics=Numerics("staggered", intervals=64)))  # fmt: skip
+    assert (rest.negative_modes, rest.neutral_modes) == (0, 0)
+    assert_allclose(np.abs(rest.r[32, 0]), 0.348713 * LENGTH, rtol=1e-3)
+
+
+def test_a_clamped_coil_that_is_free_of_stress_has_no_neutral_direction() -> None:
+    """However many turns: it is curved by nature, so that even a spin about its own axis costs energy."""
+    radius, angle, nodes = 0.02 * LENGTH, 12 * pi / LENGTH, np.linspace(0.0, LENGTH, sampled(64) + 1)
+
+    def coil(s: Array) -> Array:
+        return np.column_stack([radius * np.cos(angle * s), radius * np.sin(angle * s),
+                                s * np.sqrt(1.0 - (radius * angle) ** 2)])  # fmt: skip
+
+    initial = Initial(coil)
+    kappa1, kappa2, kappa3 = (Curve.table(nodes, column, "cubic") for column in nodes_at_rest(initial, nodes)[2].T)
+    rest = last(static(rod=replace(ROD, kappa0=(kappa1, kappa2, kappa3)), initial=initial,
+                       numerics=Numerics("staggered", intervals=64)))  # fmt: skip
+    assert (rest.negative_modes, rest.neutral_modes) == (0, 0)
+
+
+@pytest.mark.parametrize("a1", [None, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.6, 0.8, 0.0)])
+@pytest.mark.parametrize(("solid", "across"), [(Floor(1000.0, -0.99), 0.0),  # below its tip, and beside it
+                                               (Floor(1e4, -0.05, (-1.0, 0.0, 0.0)), 0.6)])  # fmt: skip
+def test_a_rod_that_hangs_onto_a_solid_is_stable_however_its_section_is_turned(
+    solid: Floor, across: float, a1: tuple[float, float, float] | None
+) -> None:
+    hanging = static(
+        initial=Initial.straight(direction=(0.0, 0.0, -1.0), a1=a1), gravity=(0.0, 0.0, -3.0), loads=(solid,),
+        points=(PointLoad(LENGTH, (ramp(across), ZERO, ZERO)),), numerics=Numerics(intervals=100),
+    )  # fmt: skip
+    frames = list(simulate(hanging))
+    assert [(frame.negative_modes, frame.neutral_modes) for frame in frames] == [(0, 0)] * len(frames)
+
+
+def test_a_thin_strip_that_is_seeded_buckles_sideways_at_prandtls_load() -> None:
+    """Its stiffnesses are as 1 to 1e4; a step ended 1e-9 before a frame, and none was as short as that."""
+    wide, thin, GJ = 500.0, 0.05, 0.04
+    rod = replace(ROD, stiffness=tuple(Curve.constant(x) for x in (wide, thin, GJ)))
+    prandtl = 4.0126 * np.sqrt(thin * GJ) / LENGTH**2
+    load = PointLoad(LENGTH, (ZERO, ZERO, ramp(-1.2 * prandtl)))
+    seed = DistributedLoad(constant_vector((0.0, 1e-5 * thin, 0.0)), constant_vector((0.0, 0.0, 0.0)))
+    initial = Initial.straight(direction=(1.0, 0.0, 0.0), a1=(0.0, 1.0, 0.0))
+    frames = list(simulate(static(rod=rod, initial=initial, points=(load,), distributed=(seed,), output_interval=0.05)))
+    before, behind = (next(frame for frame in frames if frame.parameter > part / 1.2) for part in (0.9, 1.1))
+    assert abs(before.r[-1, 1]) < 1e-3 * LENGTH < 0.1 * LENGTH < abs(behind.r[-1, 1])
+    assert not any(frame.negative_modes for frame in frames)

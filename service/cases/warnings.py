@@ -42,12 +42,17 @@ def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
-    widest = float(np.max(scene.rod.diameter(np.linspace(0.0, spec.rod.length, 201))))
+    widest = _widest(scene)
     if widest > THICKEST * spec.rod.length:
         rule = f"is more than a fifth of the rod's length of {spec.rod.length:g} m: the rod is not thin"
         yield FieldError("/rod/diameter", widest, rule)
     if widest > WIDEST:
         yield FieldError("/rod/diameter", widest, f"is more than {WIDEST:g} m: is it given in m?")
+
+
+def _widest(scene: Scene) -> float:
+    """The largest diameter (m)."""
+    return float(np.max(scene.rod.diameter(np.linspace(0.0, scene.rod.length, 201))))
 
 
 def _materials(spec: CaseSpec) -> Iterator[FieldError]:
@@ -84,9 +89,8 @@ def _contact(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
 
 def _sheared(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     """Ends that wring the rod, as where turns were meant for rad, or rad/s last too long."""
-    D = float(np.max(scene.rod.diameter(np.linspace(0.0, spec.rod.length, 201))))
     turned = _turned(scene)
-    strain = 0.5 * D * turned / spec.rod.length
+    strain = 0.5 * _widest(scene) * turned / spec.rod.length
     if strain > SHEARED:
         rule = (f"turn against each other by {turned / (2 * pi):.3g} turns: what is left as twist shears the rod's "
                 f"surface by up to {strain:.2g}")

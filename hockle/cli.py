@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import errno
+import os
 import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from importlib.metadata import version
 
 from hockle.failure import Failure
+from hockle.parts import SINGLE_THREADED
 
 COMMANDS = ("local", "plots", "film", "serving", "parts", "keys", "store", "remote", "jobs", "operating", "sweep",
             "again", "completion", "demo")
@@ -21,6 +23,7 @@ UNIX_ONLY = ("fcntl", "resource")
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command that the arguments name; the process ends with the status that this returns."""
+    os.environ.update(SINGLE_THREADED | os.environ)  # before numpy is imported
     parsed = parser().parse_args(arguments)
     command: Callable[[argparse.Namespace], int] = parsed.run
     try:

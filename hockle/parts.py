@@ -80,7 +80,6 @@ def listening_on(settings: Settings, host: str, port: int, many: int = 1) -> lis
 
 def worker(arguments: argparse.Namespace) -> int:
     """Run jobs until a signal."""
-    os.environ.update(SINGLE_THREADED | os.environ)
     settings_of(arguments)
     from worker.app import app
 

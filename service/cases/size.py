@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 from service.cases.errors import refusal
 from service.cases.quantities import ProfileTable, ScheduleTable
-from solver.physics.contact.automatic import REACH
-from solver.physics.contact.recipe import SPACING
+from solver.physics.contact.recipe import IN_MOTION
 from solver.run.plan import FIRST_INTERVALS
 
 if TYPE_CHECKING:
@@ -95,13 +94,13 @@ def _refuse_tables(case: CaseSpec) -> None:
 def _spacing(case: CaseSpec) -> float:
     if case.contact is None:
         return 0.0
-    return case.contact.spacing or SPACING * min(_diameters(case))
+    return case.contact.spacing or IN_MOTION.spacing * min(_diameters(case))
 
 
 def _cutoff(case: CaseSpec) -> float:
     if case.contact is None:
         return 0.0
-    return case.contact.cutoff or REACH * max(_diameters(case))
+    return case.contact.cutoff or (2.0 - IN_MOTION.pole) * max(_diameters(case))
 
 
 def _diameters(case: CaseSpec) -> tuple[float, ...]:

@@ -1,27 +1,29 @@
 """Self-contact at rest: forces on the nodes, their tangent, and whether a step along a branch let strands through.
 
-The law is that of motion, without its damping. Where no constants are given it is as strong as the pressure that is
-foreseen, so that strands rest at d = D, with no margin for those that come flying. Where no spacing is given either,
-points lie closer: nothing shakes a strand that crosses another out of the hollows between that one's points.
+The law is that of motion, without its damping. Where no constants are given it is twice as steep, as no step in time
+is the shorter for it, and so strong that strands stand for hard ones of diameter D: under the pressure p that is
+foreseen they rest at the d at which D - d = U / p, with U the energy per length that they store. Hard strands would
+have to be pushed apart by as much work. Where no spacing is given either, points lie closer, as a steeper law asks, and
+as nothing shakes a strand that crosses another out of the hollows between that one's points.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import inf
 
 import numpy as np
-from scipy.sparse import bsr_array, csr_array, kron
 
 from solver.arrays import Array
-from solver.physics.contact.forces import allowed_fraction, move_points, press
+from solver.kernels.kernel import kernel
+from solver.physics.contact.forces import Touch, allowed_fraction, move_points, press
 from solver.physics.contact.points import REACH
-from solver.physics.contact.recipe import MARGIN, foreseen
+from solver.physics.contact.recipe import Hardness, foreseen
 from solver.physics.contact.self_contact import SelfContact
 from solver.scene.scene import Scene
 
-SPACING = 0.2
-"""In D: of the points along the rod."""
+AT_REST = Hardness(pole=0.75, spacing=0.2, margin=0.371)
+"""D - d is 3 % of D: with u = (d - p D) / (2 (1 - p) D), where 1/2 - u is the integral of (1/x - 1)^4 from u to 1 over
+(1/u - 1)^4, whatever the pole p; the margin is 1 / (1/u - 1)^4."""
 
 
 class StaticContact:
@@ -29,12 +31,7 @@ class StaticContact:
 
     def __init__(self, scene: Scene, s: Array, r: Array) -> None:
         """`r`: where the nodes begin."""
-        contact = scene.contact
-        if contact is not None and contact.automatic and contact.spacing is None:
-            contact = replace(contact, spacing=SPACING * float(np.min(scene.rod.diameter(s))))
-        self._contact = SelfContact(contact, scene.rod, s, 1, foreseen(scene))
-        if contact is not None and contact.automatic:
-            self._contact.touch.points.mass[:] /= MARGIN
+        self._contact = SelfContact(scene.contact, scene.rod, s, 1, foreseen(scene), AT_REST)
         self._still = np.zeros((1, len(s), 3))
         self._kept = r.copy(), self._still[0]
         self.energy = 0.0
@@ -78,21 +75,12 @@ class StaticContact:
         move_points(touch, touch.pairs.members, moved, self._still[0])
         return float(allowed_fraction(touch, touch.pressing, 0))
 
-    def stiffness(self) -> csr_array:
-        """How the forces on the nodes change with their places (3 (N + 1), 3 (N + 1)), with the sign of a stiffness."""
-        pressing, points = self._contact.touch.pressing, self._contact.touch.points
-        many = self.pressing
-        first, second = pressing.first[0, :many], pressing.second[0, :many]
-        n, g = pressing.n[0, :many], pressing.g[0, :many]
-        nodes = len(self._still[0])
-        place, along = (_shares(points.first, shares, nodes) for shares in (points.weights, points.slopes))
-        apart = place[first] - place[second]
-        own = n[:, :, None] * g[:, None, :] + pressing.pull[0, :many, None, None] * np.eye(3)
-        normal = n[:, :, None] * n[:, None, :]
-        force = _blocks(own) @ kron(apart, np.eye(3))
-        for k, side in ((0, first), (1, second)):
-            force = force + _blocks(pressing.k[0, :many, k, None, None] * normal) @ kron(along[side], np.eye(3))
-        return csr_array(-kron(apart, np.eye(3)).T @ force)
+    def stiffness(self) -> Array:
+        """How the forces on the nodes change with their places (n, 3, n, 3), with the sign of a stiffness, N/m."""
+        n = len(self._still[0])
+        S = np.zeros((n, 3, n, 3))
+        _stiffen(self._contact.touch, S)
+        return S
 
     def compile(self) -> None:
         """Have every kernel compiled that contact needs."""
@@ -101,6 +89,7 @@ class StaticContact:
         press(touch, touch.pressing, self._still, self._still)
         move_points(touch, touch.pairs.members, r, r)
         allowed_fraction(touch, touch.pressing, 0)
+        self.stiffness()
         self._contact.prepare(inf, r, r, 1.0, anew=True)
         self._contact.refusal(inf, lambda: (r, r))
 
@@ -113,13 +102,24 @@ class StaticContact:
         self._kept = r.copy(), push.copy()
 
 
-def _shares(first: Array, shares: Array, nodes: int) -> csr_array:
-    """Shares (M, 4) of four nodes each, from the `first` on, as a matrix (M, nodes)."""
-    rows = np.repeat(np.arange(len(first)), REACH)
-    columns = (first[:, None] + np.arange(REACH)).ravel()
-    return csr_array((shares.ravel(), (rows, columns)), shape=(len(first), nodes))
-
-
-def _blocks(blocks: Array) -> csr_array:
-    """Blocks (K, 3, 3) along the diagonal."""
-    return csr_array(bsr_array((blocks, np.arange(len(blocks)), np.arange(len(blocks) + 1))))
+@kernel
+def _stiffen(touch: Touch, S: Array) -> None:
+    """Add the stiffness of the pairs that press: as one's place and tangent change from the other's by dp, dt_a and
+    dt_b, the force on it changes by n (g . dp + k0 n . dt_a + k1 n . dt_b) + pull dp (see `pair_force`)."""
+    points, pressing = touch.points, touch.pressing
+    for pair in range(pressing.many[0]):
+        ends = pressing.first[0, pair], pressing.second[0, pair]
+        n, g, k, pull = pressing.n[0, pair], pressing.g[0, pair], pressing.k[0, pair], pressing.pull[0, pair]
+        for other in range(2 * REACH):
+            b, e = ends[other // REACH], other % REACH
+            share, along = points.weights[b, e], k[other // REACH] * points.slopes[b, e]
+            share = share if other < REACH else -share
+            column = points.first[b] + e
+            for own in range(2 * REACH):
+                a, e = ends[own // REACH], own % REACH
+                weight = points.weights[a, e] if own < REACH else -points.weights[a, e]
+                row = points.first[a] + e
+                for p in range(3):
+                    S[row, p, column, p] -= weight * share * pull
+                    for q in range(3):
+                        S[row, p, column, q] -= weight * n[p] * (share * g[q] + along * n[q])

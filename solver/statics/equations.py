@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgbtrf, dgbtrs
-from scipy.sparse import bsr_array, csc_array, csr_array, diags_array
+from scipy.sparse import bsr_array, csc_array, csr_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from solver.arrays import Array
@@ -245,15 +245,15 @@ class Equations:
 
     def moved_nodes(self, z: Array) -> Array:
         """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point evaluated last."""
-        return np.asarray((self._moves() @ z.ravel()).reshape(-1, 3))
+        return np.asarray((self._moves() @ (z / self.units).ravel()).reshape(-1, 3))
 
     def _moves(self) -> csr_array:
-        """What takes a displacement to that of the nodes (3 (N + 1), 9 (N + 2)): that of either segment beside them,
-        as they bear the forces there."""
+        """What takes a dimensionless displacement to that of the nodes (3 (N + 1), 9 (N + 2)), m: to that of either
+        segment beside them, as they bear the forces there."""
         lever, N = levers(self.stages.R[0], self.chain.h), len(self.s) - 1
         moves = np.zeros((2, N, 3, BLOCK))  # of the nodes before and behind each segment
         for side, sign in ((0, 1.0), (1, -1.0)):
-            moves[side, :, :, X] = np.eye(3)
+            moves[side, :, :, X] = self.units[X] * np.eye(3)
             moves[side, :, :, PSI] = sign * lever[1:-1].transpose(0, 2, 1)
         moves[:, 1:], moves[1, 0] = 0.5 * moves[:, 1:], 0.5 * moves[1, 0]
         moves[1, -1] *= 2.0
@@ -267,9 +267,9 @@ class Equations:
 
     def _contact_tangent(self) -> csr_array:
         """What contact adds to the tangent (9 (N + 2), 9 (N + 2)), dimensionless."""
-        moves, n = self._moves(), len(self.start.quaternion)
-        rows, columns = diags_array(np.tile(self._rows, n)), diags_array(np.tile(self.units, n))
-        return csr_array(rows @ moves.T @ self.contact.stiffness() @ moves @ columns)
+        many = 3 * len(self.s)
+        moves, S = self._moves(), csr_array(self.contact.stiffness().reshape(many, many) * self._rows[PSI.start])
+        return csr_array(moves.T @ (S @ moves))
 
     def blocks(self) -> tuple[Array, Array, Array]:
         """Diagonal (N + 2, 9, 9) of the tangent, and the blocks before and behind it, dimensionless."""

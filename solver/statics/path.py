@@ -35,10 +35,11 @@ MOST_STEPS = 5000
 """Steps from one frame to the next after which a branch is given up."""
 AHEAD = 3e-6
 """How far ahead of a corner of a schedule the branch's direction is taken."""
-FIRST_CROSSING, CROSSING = 1e-6, 1e-3
+FIRST_CROSSING, CROSSING, PRESSED_CROSSING = 1e-6, 1e-3, 0.1
 """Longest step across which stability may change but at a fold, the first time and later: a longer one may have left
 the branch for another. The first time, as where a rod buckles, it may also have passed the bend by which a small load
-leads to the stable branch; but not where strands press, whose points change stability whenever they come or go."""
+leads to the stable branch; and where strands press: what is wound may slide along the rod for next to no energy, which
+rises and falls with every node that it passes."""
 REACHED = 1e-10
 STEEP = 0.02
 """Least dq at which a step may end at a given q."""
@@ -50,6 +51,9 @@ class Direction:
 
     z: Array
     dq: float
+
+    def __rmul__(self, x: float) -> Direction:
+        return Direction(x * self.z, x * self.dq)
 
     def dot(self, z: Array, dq: float) -> float:
         """The inner product with a displacement."""
@@ -85,6 +89,7 @@ class Path:
         if not self._begun:
             self.direction = self._direction(self.point, 1.0)
             self.modes = negative_modes(self._equations)
+            self._bend = 0.0 * self.direction
             self._begun = True
         if self._left(stop) > REACHED:
             if self._idle == MOST_STEPS:
@@ -110,12 +115,15 @@ class Path:
                         default=np.inf)  # fmt: skip
         room, wanted = min(remaining, to_corner), self._length
         limit, beyond = room / max(abs(dq), REACHED), False
-        crossing = CROSSING if self._crossed or self._equations.contact.pressing else FIRST_CROSSING
+        crossing = CROSSING if self._crossed else FIRST_CROSSING
+        if self._equations.contact.pressing:
+            crossing = PRESSED_CROSSING
         shortest = min(SHORTEST, 0.5 * limit)  # the last step may have ended right before a stop
         while min(wanted, limit) > shortest:
             length = min(wanted, limit)
             lands = abs(dq) > STEEP and (beyond or length * abs(dq) > room * (1.0 - 1e-9))
-            guess = point.moved(length * self.direction.z, forward * room if lands else length * dq)
+            bend = 0.5 * length**2 * self._bend
+            guess = point.moved(length * self.direction.z + bend.z, forward * room if lands else length * dq + bend.dq)
             self._equations.look_ahead(point, guess)
             end, kinked = self._correct(guess, None if lands else self.direction), False
             if end is None and length < KINK:
@@ -131,7 +139,7 @@ class Path:
                     # past where it is to stop, but not by a fold: from now on to be found there
                     beyond = part < 1.0 and abs(dq) > STEEP and direction.dq * dq > 0.0
                     if part > 0.99 and not beyond:
-                        self._accept(end, direction, modes, swept)
+                        self._accept(end, direction, modes, swept, 0.0 if cornered or kinked else length)
                         # a step that a stop cut short says nothing of how long the next may be
                         grown = 2.0 * wanted if self._easy and length == wanted else wanted
                         self._length = min(LONGEST, grown)
@@ -145,7 +153,9 @@ class Path:
             raise self._failure(Outcome.SINGULAR_SYSTEM, "a pivot vanished")
         raise self._failure(Outcome.EQUILIBRIUM_LOST, "no step was short enough")
 
-    def _accept(self, end: Point, direction: Direction, modes: int, swept: float) -> None:
+    def _accept(self, end: Point, direction: Direction, modes: int, swept: float, length: float) -> None:
+        bent = 1.0 / length if length > 0.0 else 0.0
+        self._bend = Direction(bent * (direction.z - self.direction.z), bent * (direction.dq - self.direction.dq))
         self.last_dq = end.q - self.point.q
         self._crossed = self._crossed or modes != self.modes
         self.point, self.direction, self.modes = end, direction, modes

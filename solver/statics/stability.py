@@ -9,8 +9,8 @@ pivots of its factorisation, and those of W - G H^-1 G^t; each condition account
 from __future__ import annotations
 
 import numpy as np
-from scipy.linalg import eigvalsh, ldl
-from scipy.linalg.lapack import dgbsv
+from scipy.linalg import eigvalsh
+from scipy.linalg.lapack import dgbsv, dsytrf
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
@@ -92,18 +92,15 @@ def _all_together(equations: Equations, bands: Array, G: Array, W: Array) -> int
     G[turned, :3] += unit * length * np.einsum("iap,ipq->iaq", steps, together[1:, :, 0]).reshape(-1, 3)
     W[:3, :3] += unit * length**2 * together[0, :, 0]
     variation = np.block([[H, G], [G.T, W]])
-    _, D, _ = ldl(0.5 * (variation + variation.T), overwrite_a=True, check_finite=False)
-    pairs = np.flatnonzero(np.diag(D, 1))  # blocks of two, each of which has one of either sign
-    alone = np.delete(np.diag(D), np.concatenate([pairs, pairs + 1]))
-    return int(np.sum(alone < 0.0)) + len(pairs)
+    factors, pivots, _ = dsytrf(0.5 * (variation + variation.T), lower=1, lwork=64 * len(variation), overwrite_a=1)
+    paired = pivots < 0  # in blocks of two, each of which has one of either sign
+    return int(np.sum(np.diag(factors)[~paired] < 0.0)) + int(np.sum(paired)) // 2
 
 
 def _by_place(equations: Equations) -> Array:
     """The stiffness of contact and loads by the places of the nodes (N + 1, 3, N + 1, 3)."""
     n = len(equations.s)
-    S = np.zeros((n, 3, n, 3))
-    if equations.contact.pressing:
-        S += equations.contact.stiffness().toarray().reshape(n, 3, n, 3)
+    S = equations.contact.stiffness() if equations.contact.pressing else np.zeros((n, 3, n, 3))
     segments = np.arange(n - 1)
     for one in (0, 1):  # a segment's centre lies between its nodes
         for other in (0, 1):
@@ -113,10 +110,11 @@ def _by_place(equations: Equations) -> Array:
 
 def _from_bands(bands: Array) -> Array:
     """The symmetric matrix with these lower bands."""
-    lower = np.zeros((bands.shape[1], bands.shape[1]))
+    full = np.zeros((bands.shape[1], bands.shape[1]))
     for k, band in enumerate(bands):
-        np.fill_diagonal(lower[k:], band[: len(band) - k])
-    return lower + np.tril(lower, -1).T
+        np.fill_diagonal(full[k:], band[: len(band) - k])
+        np.fill_diagonal(full[:, k:], band[: len(band) - k])
+    return full
 
 
 def _second_variation(stiff: Array, behind: Array, equations: Equations, softest: float) -> Array:

@@ -1,11 +1,11 @@
 """The contact force of a pair where no constants are given: central, smooth, and the same at every scale.
 
-    F = P h^2 (f(d) + tau f'(d) d_t),  f = ((3D/2 - d) / (d - D/2))^4 for D/2 < d < 3D/2, and 0 beyond
+    F = P h^2 (f(d) + tau f'(d) d_t),  f = (((2 - p) D - d) / (d - p D))^4 for p D < d < (2 - p) D, and 0 beyond
 
 along the separation, with h the spacing of the points and P a force per length of each strand (N/m^2). f is 1 at d = D,
-where the surfaces touch, has its pole where that of eq. (6) is, and falls by 16/D there. It depends on the distance
-alone, so that it has a potential: sampled with h of .4 D or less, its sum along two strands is their line integral to
-about a part in a thousand, wherever the points of the one lie beside those of the other. Damping goes with its slope.
+where the surfaces touch, and falls by 8 / ((1 - p) D) there. It depends on the distance alone, so that it has a
+potential: sampled with h of .8 (1 - p) D or less, its sum along two strands is their line integral to about a part in a
+thousand, wherever the points of the one lie beside those of the other. Damping goes with its slope.
 """
 
 from __future__ import annotations
@@ -16,19 +16,17 @@ from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.physics.contact.points import Points
 
-POLE, REACH = 0.5, 1.5
-"""In D: distances between which the force goes from infinite to none."""
 POWER = 4
 FLOOR = 0.02
 """In D: distance from the pole below which the force goes on linearly."""
 
 
 @inner
-def repulsion(d: float, D: float) -> tuple[float, float, float]:
+def repulsion(d: float, D: float, pole: float) -> tuple[float, float, float]:
     """f, f' (1/m) and f'' (1/m^2)."""
-    gap = d - POLE * D
+    gap = d - pole * D
     at = max(gap, FLOOR * D)
-    x = (REACH - POLE) * D / at - 1.0
+    x = 2.0 * (1.0 - pole) * D / at - 1.0
     if x <= 0.0:
         return 0.0, 0.0, 0.0
     slope_of_x = -(x + 1.0) / at
@@ -39,13 +37,14 @@ def repulsion(d: float, D: float) -> tuple[float, float, float]:
 
 
 @inner
-def automatic_force(weight: float, relaxation: float, points: Points, a: int, b: int, n: Array, g: Array,
+def automatic_force(weight: float, relaxation: float, pole: float, points: Points, a: int, b: int, n: Array, g: Array,
                     k: Array) -> tuple[float, float, float]:  # fmt: skip
-    """What `pair_force` says, by this law: `weight` is h^2 (m^2), `relaxation` tau (s), `points.mass` P (N/m^2)."""
+    """What `pair_force` says, by this law: `weight` is h^2 (m^2), `relaxation` tau (s), `pole` p, `points.mass` P
+    (N/m^2)."""
     x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
     d = np.sqrt(x * x + y * y + z * z)
     D = 0.5 * (points.diameter[a] + points.diameter[b])
-    f, slope, bend = repulsion(d, D)
+    f, slope, bend = repulsion(d, D, pole)
     if f == 0.0:
         return 0.0, 0.0, 0.0
     n[0], n[1], n[2] = x / d, y / d, z / d
@@ -58,4 +57,4 @@ def automatic_force(weight: float, relaxation: float, points: Points, a: int, b:
     k[0], k[1], k[2] = 0.0, 0.0, scale * relaxation * slope
     for j in range(3):
         g[j] = (by_d - (elastic + damping) / d) * n[j] + k[2] / d * (points.w[a, j] - points.w[b, j] - closing * n[j])
-    return elastic, damping, d - POLE * D
+    return elastic, damping, d - pole * D

@@ -16,7 +16,7 @@ from solver.physics.contact.search import Pairs
 LARGEST_APPROACH = 0.6
 """Part of a pair's distance that one Newton update may use."""
 LARGEST_CLOSING = 0.8
-"""Part of the gap d - D/2 of a pressing pair that one Newton update may close: the force has a pole where it ends."""
+"""Part of the gap of a pressing pair that one Newton update may close: the force has a pole where it ends."""
 
 
 LARGEST_FORESEEN = 0.5
@@ -27,7 +27,8 @@ class Pressing(NamedTuple):
     """The pairs that press on each other at the current iterate, at each stage of a step.
 
     `many` (stages,): their numbers; `first`, `second` (stages, capacity) their points; `n`, `g`, `k`
-    (stages, capacity, 3): see `pair_force`; `pull` (stages, capacity): force/d (N/m); `gap` likewise: d - D/2 (m);
+    (stages, capacity, 3): see `pair_force`; `pull` (stages, capacity): force/d (N/m); `gap` likewise: by how much d is
+    more than where the force has its pole (m);
     `power` (stages, 2): into the elastic part and taken by damping, W. `members` that take part at some stage.
     """
 
@@ -108,7 +109,8 @@ def _press_at(touch: Touch, pressing: Pressing, r: Array, velocity: Array, stage
         if elastic == 0.0:
             continue
         pressing.first[stage, many], pressing.second[stage, many], pressing.gap[stage, many] = a, b, gap
-        pressing.pull[stage, many] = (elastic + damping) / (gap + 0.25 * (points.diameter[a] + points.diameter[b]))
+        pole = touch.law.pole * (0.5 * (points.diameter[a] + points.diameter[b]))
+        pressing.pull[stage, many] = (elastic + damping) / (gap + pole)
         many += 1
         opening = 0.0
         for k in range(3):

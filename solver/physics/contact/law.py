@@ -28,7 +28,8 @@ LINEAR_BELOW = 0.02
 
 
 class Law(NamedTuple):
-    """Constants of the law: k1 ... k4 of eq. (6), sine of the half aperture, cutoff and skip (m), weight (m).
+    """Constants of the law: k1 ... k4 of eq. (6), sine of the half aperture, cutoff and skip (m), weight (m); and in D
+    the distance at which it has its `pole`.
 
     Where it is `automatic`, there is no aperture, the weight is in m^2 and the damping by `relaxation` (s).
     """
@@ -43,6 +44,7 @@ class Law(NamedTuple):
     weight: float
     automatic: bool = False
     relaxation: float = 0.0
+    pole: float = 0.5
 
     @classmethod
     def of(cls, contact: Contact, spacing: float) -> Law:
@@ -52,11 +54,11 @@ class Law(NamedTuple):
         return cls(*(float(x) for x in (*constants, contact.cutoff, contact.skip, weight)))  # type: ignore[arg-type]
 
     @classmethod
-    def by_itself(cls, contact: Contact, spacing: float, relaxation: float) -> Law:
+    def by_itself(cls, contact: Contact, spacing: float, relaxation: float, pole: float) -> Law:
         """The law without constants, between points `spacing` apart: see `automatic`."""
         everywhere = 2.0  # more than any sine
         return cls.of(contact, spacing)._replace(
-            sine=everywhere, weight=spacing * spacing, automatic=True, relaxation=relaxation
+            sine=everywhere, weight=spacing * spacing, automatic=True, relaxation=relaxation, pole=pole
         )
 
 
@@ -103,7 +105,7 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, g: Array, k: 
     if not sees(law, points, a, b):
         return 0.0, 0.0, 0.0
     if law.automatic:
-        return automatic_force(law.weight, law.relaxation, points, a, b, n, g, k)
+        return automatic_force(law.weight, law.relaxation, law.pole, points, a, b, n, g, k)
     x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
     d = np.sqrt(x * x + y * y + z * z)
     n[0], n[1], n[2] = x / d, y / d, z / d

@@ -8,9 +8,9 @@ pull F,
     M = (2 / sin 2x) (B sin^4 x / (2 R) + R F),    2 pi n = M L / GJ + l sin 2x / D,
 
 p the force of one on the other per length. A pull tells x; where the ends are held instead, the turns n do that they
-put in, of which the length l that the ends give way by takes up what the twist does not. With MARGIN p they rest a few
-per cent of D from touching. As d goes with the log of the pressure, divided by 16 / D, a pressure that is wrong by a
-factor of 3 moves it by 7 % of D.
+put in, of which the length l that the ends give way by takes up what the twist does not. In motion they rest a few per
+cent of D from touching, as the pressure is taken with a margin. As d goes with the log of the pressure, divided by
+16 / D, a pressure that is wrong by a factor of 3 moves it by 7 % of D, half as much at rest.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
-from solver.physics.contact.automatic import POLE, POWER, REACH
+from solver.physics.contact.automatic import POWER
 from solver.physics.elasticity import elasticity_of, principal
 from solver.scene.contact import Contact
 from solver.scene.curve import Curve
@@ -32,9 +32,8 @@ from solver.scene.layout import nodes_at_rest
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 
-SPACING, SKIP = 0.4, 4.0
-"""In D: of the points along the rod; arc below which two of them are neighbours."""
-MARGIN = 3.0
+SKIP = 4.0
+"""In D: arc below which two points are neighbours."""
 ANGLES = np.linspace(1e-3, np.radians(40.0), 2000)
 """Superhelical angles (rad); towards 45 degrees both F and p grow beyond all bounds."""
 SLACK = (0.1, 0.8)
@@ -44,6 +43,18 @@ SMALL_PULL = 4.0
 SAMPLES = 201
 ALIGNED = 0.9
 """Cosine of the angle at which the two ends of a ring may meet, at the least."""
+
+
+class Hardness(NamedTuple):
+    """How hard the surfaces are: in D where the law has its `pole` and the `spacing` of points, and by what `margin` it
+    is stronger than the pressure that is foreseen."""
+
+    pole: float
+    spacing: float
+    margin: float
+
+
+IN_MOTION = Hardness(0.5, 0.4, 3.0)
 
 
 class Foreseen(NamedTuple):
@@ -66,14 +77,15 @@ class Held(NamedTuple):
     relaxation: float
 
 
-def spaced(contact: Contact, rod: Rod) -> Contact:
+def spaced(contact: Contact, rod: Rod, hardness: Hardness = IN_MOTION) -> Contact:
     """The contact with its `skip`, `spacing` and `cutoff`, and no forces of eq. (6)."""
     D = np.asarray(rod.diameter(np.linspace(0.0, rod.length, SAMPLES)))
     skip = contact.skip or min(SKIP * float(D.max()), rod.length)
-    return Contact(0.0, 0.0, 0.0, 0.0, pi, REACH * float(D.max()), skip, contact.spacing or SPACING * float(D.min()))
+    reach, spacing = (2.0 - hardness.pole) * float(D.max()), hardness.spacing * float(D.min())
+    return Contact(0.0, 0.0, 0.0, 0.0, pi, reach, skip, contact.spacing or spacing)
 
 
-def held(rod: Rod, foreseen: Foreseen, at: Array) -> Held:
+def held(rod: Rod, foreseen: Foreseen, at: Array, hardness: Hardness = IN_MOTION) -> Held:
     """The law for points at arclengths `at` (M,)."""
     D, mass = np.asarray(rod.diameter(at)), np.asarray(rod.mass(at))
     stiffness = principal(elasticity_of(rod, at))
@@ -83,10 +95,10 @@ def held(rod: Rod, foreseen: Foreseen, at: Array) -> Held:
     turns = float(np.mean(B / GJ)) * _moment(ANGLES) + foreseen.slack * np.sin(2 * ANGLES)
     wound = np.interp(2 * pi * D * foreseen.turns / rod.length, turns, ANGLES)
     x = np.where(foreseen.pull <= SMALL_PULL * euler, np.maximum(x, wound), x)
-    pressure = MARGIN * 8.0 * B / D**3 * np.sin(x) ** 4 / np.cos(2 * x)
-    steepness = 4 * POWER * pressure / D  # by which a strand's pressure falls as it goes
+    pressure = hardness.margin * 8.0 * B / D**3 * np.sin(x) ** 4 / np.cos(2 * x)
+    steepness = 2 * POWER / (1 - hardness.pole) * pressure / D  # by which a strand's pressure falls as it goes
     half_critical = float(np.sqrt(0.5 * mass / steepness).min())
-    return Held(pressure / (_width() * D), half_critical)
+    return Held(pressure / (_width(hardness.pole) * D), half_critical)
 
 
 def foreseen(scene: Scene) -> Foreseen:
@@ -122,11 +134,12 @@ def _moment(x: Array) -> Array:
     return np.asarray(2.0 / np.sin(2 * x) * (np.sin(x) ** 4 + 2.0 * _pull(x)))
 
 
-def _width() -> float:
+def _width(pole: float) -> float:
     """The force of a straight strand on a point of another, D apart, over P D: the integral of f cos along it."""
-    s = np.linspace(-REACH, REACH, 4001)
+    reach = 2.0 - pole
+    s = np.linspace(-reach, reach, 4001)
     d = np.sqrt(1.0 + s * s)
-    f = np.where(d < REACH, ((REACH - d) / (d - POLE)) ** POWER, 0.0)
+    f = np.where(d < reach, ((reach - d) / (d - pole)) ** POWER, 0.0)
     return float(np.trapezoid(f / d, s))
 
 

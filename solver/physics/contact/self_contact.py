@@ -13,7 +13,7 @@ from solver.physics.contact.forces import Pressing, Touch
 from solver.physics.contact.law import Law
 from solver.physics.contact.links import links_meet, links_reach
 from solver.physics.contact.points import Points, contact_points, place_points
-from solver.physics.contact.recipe import NOTHING, Foreseen, held, spaced
+from solver.physics.contact.recipe import IN_MOTION, NOTHING, Foreseen, Hardness, held, spaced
 from solver.physics.contact.search import (
     Pairs,
     find_pairs,
@@ -43,15 +43,17 @@ class SelfContact:
     """The contact of one rod through its run; without `contact` it proves itself absent and costs nothing.
 
     It is told the rod's total bending int |kappa_bending| ds (rad), and the nodes' positions `r` and velocities (n, 3),
-    lab. `stages`: at how many times within a step a method evaluates the forces; `ends`: for contact without constants.
+    lab. `stages`: at how many times within a step a method evaluates the forces; `ends` and `hardness`: for contact
+    without constants.
     """
 
-    def __init__(self, contact: Contact | None, rod: Rod, s: Array, stages: int, ends: Foreseen = NOTHING) -> None:
+    def __init__(self, contact: Contact | None, rod: Rod, s: Array, stages: int, ends: Foreseen = NOTHING,
+                 hardness: Hardness = IN_MOTION) -> None:  # fmt: skip
         self.present = contact is not None
         """Whether the scene has contact at all."""
         self._nodes, self._stages = len(s), stages
         settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
-        points, self._law = _points_and_law(settings, rod, s, ends)
+        points, self._law = _points_and_law(settings, rod, s, ends, hardness)
         # pairs that press, and those whose links may meet
         self._reach = max(self._law.cutoff, links_reach(points))
         self._farthest = (1.0 + SKIN[1]) * self._reach
@@ -157,14 +159,15 @@ class SelfContact:
         self.touch = Touch(self.present, self._law, points, pairs, pressing, tangents, *changes)
 
 
-def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen) -> tuple[Points, Law]:
+def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen,
+                    hardness: Hardness) -> tuple[Points, Law]:  # fmt: skip
     if not contact.automatic:
         points = contact_points(contact, rod, s, ends.closing)
         return points, Law.of(contact, points.spacing)
-    contact = spaced(contact, rod)
+    contact = spaced(contact, rod, hardness)
     points = contact_points(contact, rod, s, ends.closing)
-    law = held(rod, ends, np.linspace(0.0, float(s[-1]), len(points.p)))
-    return points._replace(mass=law.strength), Law.by_itself(contact, points.spacing, law.relaxation)
+    law = held(rod, ends, np.linspace(0.0, float(s[-1]), len(points.p)), hardness)
+    return points._replace(mass=law.strength), Law.by_itself(contact, points.spacing, law.relaxation, hardness.pole)
 
 
 @kernel

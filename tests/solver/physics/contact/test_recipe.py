@@ -11,15 +11,14 @@ from numpy.testing import assert_allclose
 
 from solver import Condition, Contact, Curve, End, Initial, Rod
 from solver.arrays import Array
-from solver.physics.contact.automatic import POLE, REACH
 from solver.physics.contact.law import Law, pair_force
 from solver.physics.contact.points import Points
-from solver.physics.contact.recipe import Foreseen, foreseen, held, spaced
+from solver.physics.contact.recipe import IN_MOTION, Foreseen, foreseen, held, spaced
 from solver.scene.ends import FIXED
 from tests.solver.physics.contact.test_law import AXIS, MASS, D, two_points
 from tests.solver.physics.contact.test_self_contact import looped
 
-LAW = Law.by_itself(spaced(Contact(), Rod.circular(1.0, D, 1e7, 5e6, 1500.0)), 0.4 * D, 0.02)
+LAW = Law.by_itself(spaced(Contact(), Rod.circular(1.0, D, 1e7, 5e6, 1500.0)), 0.4 * D, 0.02, IN_MOTION.pole)
 
 
 def force(points: Points) -> Array:
@@ -31,8 +30,8 @@ def force(points: Points) -> Array:
 def test_the_force_is_1_where_surfaces_touch_and_none_beyond_its_reach() -> None:
     """In P h^2: the test's points have MASS for P."""
     assert_allclose(force(two_points(D)), MASS * (0.4 * D) ** 2 * AXIS, rtol=1e-12)
-    assert not force(two_points(1.001 * REACH * D)).any()
-    assert np.linalg.norm(force(two_points(1.001 * POLE * D))) > 1e6 * MASS * (0.4 * D) ** 2
+    assert not force(two_points(1.001 * (2.0 - IN_MOTION.pole) * D)).any()
+    assert np.linalg.norm(force(two_points(1.001 * IN_MOTION.pole * D))) > 1e6 * MASS * (0.4 * D) ** 2
 
 
 @pytest.mark.parametrize("d", [0.8 * D, 1.1 * D, 0.505 * D])
@@ -51,7 +50,7 @@ def test_its_tangents_are_derivatives(d: float) -> None:
         one.w[0] += 1e-6 * moved
         two.w[0] -= 1e-6 * moved
         assert_allclose(n * k[2] * (n @ moved), (force(one) - force(two)) / 2e-6, atol=1e-6 * abs(k[2]))
-    assert gap == pytest.approx(d - POLE * D)
+    assert gap == pytest.approx(d - IN_MOTION.pole * D)
 
 
 def test_the_pressure_has_the_scale_of_the_rod() -> None:

@@ -42,6 +42,9 @@ SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
 BY_STEPS = 1.5
 """How much more work steps of a quarter of the error are expected to be, before it has shown."""
+FASTER = 1.2
+"""How many times more the work of shorter steps grows on a mesh that is finer than that on which it was seen to grow:
+its waves are faster."""
 DEAR, FAR_OFF = 2.5, 10.0
 """How many times the work shorter steps took, and how many times the tolerance their error is, where the second mesh
 has the longer ones."""
@@ -114,6 +117,8 @@ def expected(complete: Sequence[Attempt], trial: Trial) -> float:
         common = min(meshes, steps)
         return float(nearest.work * together**common * mesh_growth ** (meshes - common) * BY_STEPS ** (steps - common))
     step_growth = _growth(complete, Trial(0, 1)) or BY_STEPS
+    seen_on = max((attempt.mesh for attempt in complete if attempt.steps >= trial.steps), default=nearest.mesh)
+    step_growth *= FASTER ** max(nearest.mesh - seen_on, 0)
     return float(nearest.work * (mesh_growth**meshes if meshes > 0 else size) * step_growth**steps)
 
 
@@ -199,6 +204,7 @@ def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Tr
     both = Trial(best.mesh + 1, best.steps + 1)
     alone = [mesh, steps] if excess.mesh >= excess.steps else [steps, mesh]
     alike = chain < 3 and excess.mesh <= FAR * excess.steps
+    diagonal = diagonal and excess.steps > STEP_SHARE
     if diagonal or (alike and excess.mesh > 1.0 - STEP_SHARE and excess.steps > STEP_SHARE):
         return [both, alone[0]]
     return alone[:1]

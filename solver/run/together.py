@@ -32,7 +32,7 @@ from solver.run.recording import (
     number_of,
 )
 from solver.run.richardson import error_of_steps, extrapolate
-from solver.run.series import Attempt, chosen, is_diagonal
+from solver.run.series import Attempt, chosen, is_diagonal, step_series
 from solver.run.verify import OF_WAVES, VerifiedFrame, unseen
 from solver.scene.scene import Scene
 
@@ -127,15 +127,17 @@ class Together:
         if not self.finest.complete:
             return [Excess()] * len(QUANTITIES)
         size, target = self._sizes(), self._scene.numerics.tolerance or 1.0
+        series = step_series(self._attempts) if self._diagonal else self._chosen.series
         mesh, steps = [], []
         for here in self._pieces():
             mesh.append(errors_of(self._of_mesh(here, judged=True)[1], size))
-            steps.append(errors_of(self._of_steps(here, judged=True), size))
+            steps.append(errors_of(self._of_steps(series, here, judged=True), size))
         unknown = np.full(len(QUANTITIES), np.inf)
         of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else unknown
-        of_steps = excess(target, np.concatenate(steps)) if self._chosen.series else unknown
+        of_steps = excess(target, np.concatenate(steps)) if len(series) > 1 else unknown
         if self._diagonal:
-            of_mesh = of_steps = 0.5 * of_mesh
+            of_steps = np.minimum(of_steps, 0.5 * of_mesh)
+            of_mesh = of_mesh - of_steps
         totals = [previous.total for previous in before]
         hopeless = [HOPELESS.get(name, np.inf) for name in QUANTITIES]
         return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, hopeless, strict=True)]
@@ -176,7 +178,7 @@ class Together:
     def _of_frames(self, here: slice, judged: bool = False) -> tuple[Columns, Columns]:
         """The values and their errors; here and below of all columns or of those that are `judged`."""
         value, mesh = self._of_mesh(here, judged)
-        steps = self._of_steps(here, judged)
+        steps = self._of_steps(self._chosen.series, here, judged)
         return value, Columns(mesh.along + steps.along, mesh.numbers + steps.numbers)
 
     def _of_mesh(self, here: slice, judged: bool) -> tuple[Columns, Columns]:
@@ -193,10 +195,10 @@ class Together:
             turned /= np.sqrt(np.sum(turned**2, axis=-1))[..., None]
         return Columns(along, np.where(UNVERIFIED, finest.numbers, numbers)), Columns(*errors)
 
-    def _of_steps(self, here: slice, judged: bool) -> Columns:
-        """The error by the steps, as attempts with different steps tell it; none where nothing tells it."""
-        series, nodes = self._chosen.series, intervals_of(self.finest.mesh) + 1
-        if not series:
+    def _of_steps(self, series: Sequence[int], here: slice, judged: bool) -> Columns:
+        """The error by the steps, as a series of attempts with different ones tells it; none where nothing tells it."""
+        nodes = intervals_of(self.finest.mesh) + 1
+        if len(series) < 2:
             many = min(here.stop, self.frames) - here.start
             return Columns(np.zeros((many, nodes, len(JUDGED) if judged else WIDTH)), np.zeros((many, 1, len(NUMBERS))))
         columns = [self._columns(k, here, judged) for k in series]

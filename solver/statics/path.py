@@ -4,7 +4,8 @@ A point and the direction of its branch: rotations and the parameter q change al
 
     |z|^2 = mean |psi|^2 + q^2.
 
-A step follows the direction and is corrected by Newton's iteration across it, so that q may turn back at a fold.
+A step follows the direction, bent as it was in the step before, and is corrected by Newton's iteration across it, so
+that q may turn back at a fold.
 """
 
 from __future__ import annotations
@@ -71,6 +72,8 @@ class Path:
         self._equations = equations
         self.point = equations.start.moved(np.zeros((len(equations.start.quaternion), 9)), 0.0)
         self.direction = Direction(np.zeros((len(equations.start.quaternion), 9)), 1.0)
+        self._bend = 0.0 * self.direction
+        """How the direction changes along the branch, as its last step had it."""
         self.steps, self.iterations, self.failed, self.last_iterations = 0, 0, 0, 0
         self.travelled, self.last_dq, self.modes = 0.0, 0.0, 0
         self._corners: list[float] = []
@@ -80,6 +83,7 @@ class Path:
         """Go on with q from 0, from where the path is; the schedules bend at `corners`."""
         self.point.q, self.travelled, self.last_dq = 0.0, 0.0, 0.0
         self._corners, self._length, self._begun, self._idle, self._crossed = corners, FIRST, False, 0, False
+        self._bend = 0.0 * self.direction
 
     def advance(self, stop: float) -> bool:
         """Take one step towards where q has travelled as far as `stop`; whether it is there.
@@ -89,7 +93,6 @@ class Path:
         if not self._begun:
             self.direction = self._direction(self.point, 1.0)
             self.modes = negative_modes(self._equations)
-            self._bend = 0.0 * self.direction
             self._begun = True
         if self._left(stop) > REACHED:
             if self._idle == MOST_STEPS:
@@ -139,7 +142,7 @@ class Path:
                     # past where it is to stop, but not by a fold: from now on to be found there
                     beyond = part < 1.0 and abs(dq) > STEEP and direction.dq * dq > 0.0
                     if part > 0.99 and not beyond:
-                        self._accept(end, direction, modes, swept, 0.0 if cornered or kinked else length)
+                        self._accept(end, direction, modes, swept, length, not (cornered or kinked))
                         # a step that a stop cut short says nothing of how long the next may be
                         grown = 2.0 * wanted if self._easy and length == wanted else wanted
                         self._length = min(LONGEST, grown)
@@ -153,9 +156,9 @@ class Path:
             raise self._failure(Outcome.SINGULAR_SYSTEM, "a pivot vanished")
         raise self._failure(Outcome.EQUILIBRIUM_LOST, "no step was short enough")
 
-    def _accept(self, end: Point, direction: Direction, modes: int, swept: float, length: float) -> None:
-        bent = 1.0 / length if length > 0.0 else 0.0
-        self._bend = Direction(bent * (direction.z - self.direction.z), bent * (direction.dq - self.direction.dq))
+    def _accept(self, end: Point, direction: Direction, modes: int, swept: float, length: float, smooth: bool) -> None:
+        per_length = 1.0 / length if smooth else 0.0
+        self._bend = per_length * Direction(direction.z - self.direction.z, direction.dq - self.direction.dq)
         self.last_dq = end.q - self.point.q
         self._crossed = self._crossed or modes != self.modes
         self.point, self.direction, self.modes = end, direction, modes

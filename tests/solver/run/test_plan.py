@@ -41,6 +41,7 @@ def slow(mesh: int, steps: int) -> Attempt:
         ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.9, 9.0), Trial(1, 1)),
         ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(9.0, 0.9, 50.0), Trial(2, 1)),  # both at once
         ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 2)], Excess(0.6, 0.6, 9.0), Trial(3, 3)),  # a diagonal
+        ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 2)], Excess(5.0, 0.3, 9.0), Trial(3, 2)),  # whose steps are enough
         ([ran(0, 0), ran(0, 1), ran(1, 0, 0.9 * MOST_WORK)], Excess(9.0, 0.1), None),
         ([ran(0, 0), ran(0, 1), ran(1, 0), slow(2, 0)], Excess(9.0, 0.1, 9.0), None),
         ([failed(0, 0.5)], Excess(), Trial(1, 0)),
@@ -91,6 +92,8 @@ def test_the_work_of_an_attempt_is_expected_to_grow_as_it_did() -> None:
     assert expected(there, Trial(1, 2)) == pytest.approx(12e5)
     assert expected(there, Trial(2, 2)) == pytest.approx(36e5)
     assert expected([*there, ran(2, 2, 30e5)], Trial(3, 3)) == pytest.approx(150e5)
+    longer = [ran(0, 0, 1e5), ran(0, 1, 2e5), ran(1, 0, 2e5), ran(2, 0, 4e5)]
+    assert expected(longer, Trial(2, 1)) == pytest.approx(1.44 * 8e5)  # on a finer mesh shorter steps are dearer
 
 
 @pytest.mark.parametrize(

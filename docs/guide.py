@@ -60,7 +60,8 @@ def costs() -> str:
     least = "; ".join(f"{kind}: {seconds:g}" for kind, seconds in outlook.SECONDS.items())
     rows = [
         ("a step", f"{micro(cost.STEP)} + {micro(cost.STEP_NODE)} nodes"),
-        ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes"),
+        ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes, {cost.ON_SOLIDS} times on solids"),
+        ("a step of a static analysis with contact", f"{micro(cost.STATIC_CONTACT_NODE)} nodes"),
         ("a step with contact, besides", f"{micro(cost.POINT)} points + {micro(cost.PAIR)} pairs within the cutoff"),
         ("a frame", f"{micro(cost.FRAME)} + {micro(cost.FRAME_NODE)} nodes"),
         ("a frame with `output.topology`, besides", f"{micro(cost.WRITHE)} nodes²"),

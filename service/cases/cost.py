@@ -4,8 +4,8 @@
               (usual increment_tolerance / increment_tolerance)^(1/order of the error of a step), where that is smaller
     seconds = steps (STEP + STEP_NODE n + POINT p + PAIR q) + frames (FRAME + FRAME_NODE n + WRITHE n^2)
               n nodes, p contact points, q pairs of these that may feel each other
-    of statics: steps = 2 frames + 10, seconds = steps STATIC_NODE n + ...; with contact steps = 10 frames + 10 of
-              STATIC_CONTACT_NODE n each
+    of statics: steps = frames + 15, seconds = steps STATIC_NODE n + ..., where solids are in the way ON_SOLIDS as much;
+              with contact steps = 10 frames + 10 of STATIC_CONTACT_NODE n each
     bytes   = 8 frames n (components of the stored fields), before compression
 
 With `verify` five times the seconds (the second run has twice the intervals and steps) and twice the bytes. With a
@@ -34,8 +34,9 @@ from solver.measures.frame import OUTPUTS
 from solver.methods.registry import METHODS
 
 STEP, STEP_NODE = 330e-6, 2.9e-6
-STATIC_NODE = 26e-6  # four linearisations
-STATIC_CONTACT_NODE = 5e-4  # six, and a count of all rotations together
+STATIC_NODE = 24e-6  # four linearisations
+ON_SOLIDS = 2.5
+STATIC_CONTACT_NODE = 2.5e-4  # six, and a count of all rotations together
 FRAME, FRAME_NODE = 100e-6, 4e-6
 WRITHE = 1.5e-9
 POINT, PAIR = 1e-7, 5e-9
@@ -73,7 +74,9 @@ def by_size(spec: CaseSpec) -> Cost:
     nodes, frames = numerics.expected_intervals + 1, spec.frames
     points, pairs = contact_points(spec)
     if spec.analysis == "static":
-        steps, step = 2 * frames + 10, STATIC_NODE * nodes
+        steps, step = frames + 15, STATIC_NODE * nodes
+        if spec.loads.floor is not None or spec.loads.obstacles:
+            step *= ON_SOLIDS
         if spec.contact is not None:
             steps, step = 10 * frames + 10, STATIC_CONTACT_NODE * nodes
     else:

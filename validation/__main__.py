@@ -11,7 +11,7 @@ from validation.kept import keep
 from validation.provenance import provenance
 from validation.row import Row
 
-SCENES = ("greenhill", "elastica", "statics", "post_buckling", "plectoneme", "euler", "ring", "cantilever",
+SCENES = ("greenhill", "elastica", "statics", "post_buckling", "plectoneme", "knot", "euler", "ring", "cantilever",
           "convergence", "error_bars", "energy", "free_flight", "writhe", "linear_solve", "goyal", "staggered",
           "thick_cable")  # fmt: skip
 RESULTS = Path(__file__).parent / "results"

@@ -7,7 +7,7 @@ from math import pi
 import numpy as np
 from numpy.random import Generator
 
-from stress.plausible.parts import GRAVITY, Drawn, Part, arc, case, curve, helix, log, ramp, straight, water
+from stress.plausible.parts import GRAVITY, Drawn, Part, arc, case, curve, helix, log, ramp, straight, trefoil, water
 
 ANY = ("steel", "aluminium", "carbon", "glass fibre", "nylon", "polypropylene", "rubber")
 
@@ -129,4 +129,15 @@ def loop(rng: Generator) -> Part:
                        "damping": 1.0 / d.period})  # fmt: skip
 
 
-KINDS = (riser, cantilever, column, sagging, coil, tape, slack_twist, plectoneme, dna, bent_and_pushed, loop)
+def knot(rng: Generator) -> Part:
+    """A rod with an overhand knot that is pulled tight by a force, or by its end."""
+    d = Drawn(rng, ("steel", "nylon", "polypropylene", "rubber"), (0.1, 5.0), (2e-3, 1e-2))
+    t_end = 20.0 * d.period
+    force = {"f3": ramp(0.0, 0.7 * t_end, log(rng, 40.0, 400.0) * d.EJ / d.L**2)}
+    moved = {"x3": ramp(0.0, 0.7 * t_end, log(rng, 0.05, 0.2) * d.L)}
+    pulled = force if rng.random() < 0.5 else moved
+    return case("knot", d.rod, curve(trefoil(d.L, log(rng, 0.5, 0.7))), ("clamp", {"preset": "slider"} | pulled), t_end,
+                contact={}, loads={"damping": 2.0 / d.period})  # fmt: skip
+
+
+KINDS = (riser, cantilever, column, sagging, coil, tape, slack_twist, plectoneme, knot, dna, bent_and_pushed, loop)

@@ -137,7 +137,7 @@ def knot(rng: Generator) -> Part:
     moved = {"x3": ramp(0.0, 0.7 * t_end, log(rng, 0.05, 0.2) * d.L)}
     pulled = force if rng.random() < 0.5 else moved
     return case("knot", d.rod, curve(trefoil(d.L, log(rng, 0.5, 0.7))), ("clamp", {"preset": "slider"} | pulled), t_end,
-                contact={}, loads={"damping": 2.0 / d.period})  # fmt: skip
+                contact={}, loads={"damping": log(rng, 5.0, 50.0) / d.period})  # fmt: skip
 
 
 KINDS = (riser, cantilever, column, sagging, coil, tape, slack_twist, plectoneme, knot, dna, bent_and_pushed, loop)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from math import cos, sin
 from pathlib import Path
 
 import pytest
@@ -90,6 +91,14 @@ def moved(preset="clamp", to=20.0, **conditions):
 
 
 SEA = {"fluid__density": 1000.0}
+def arc(angle):
+    """A circular arc of 1 m, as long as the case's rod, that turns by an angle (rad)."""
+    at, R = [angle * i / 200 for i in range(201)], 1.0 / angle
+    points = [[R * (1 - cos(a)), 0.0, R * sin(a)] for a in at]
+    return {"shape": "centreline", "points": points, "a1": [0.0, 1.0, 0.0]}
+
+
+RING, ARC = arc(6.1), arc(0.5)
 LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
 
 
@@ -111,6 +120,8 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"loads__floor": {"stiffness": 1.0}}, "on a floor"),
     ({"loads__obstacles": [{"start": [0, 0, -9], "radius": 1.0, "stiffness": 1.0}]}, "on a floor"),
     ({"ends__end": moved(theta3=True)}, "wound up"),
+    ({"contact": {}, "initial": RING}, "lies on itself"),
+    ({"ends__start": "pin", "ends__end": "pin", "initial": ARC, "rod__kappa0": "initial"}, "bent between its ends"),
     ({"ends__start": moved("pin", theta3=True), "ends__end": "free"}, "slow in space"),  # it turns with its end
     (SEA, "in water"),
     (SEA | {"ends__start": moved(x1=True)}, "towed through water"),

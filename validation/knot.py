@@ -13,8 +13,8 @@ from math import pi, sqrt
 import numpy as np
 
 from solver import Condition, Contact, Curve, End, Initial, Numerics, Rod, Scene, simulate
-from solver.arrays import Array
 from solver.scene.ends import FIXED
+from validation.rods import trefoil
 from validation.row import Row, at_most, relative
 
 LENGTH, B, MASS = 1.0, 1.0, 1.0
@@ -26,25 +26,13 @@ MESHES = {0.0056: 200, 0.0028: 300, 0.0014: 450}
 AIM = 0.01
 
 
-def trefoil() -> Array:
-    """Points (n, 3) of a straight rod along e3 with a trefoil, cut where it is farthest out, its ends drawn apart."""
-    t = np.linspace(pi, 3.0 * pi, 1201)
-    x, y, z = np.sin(t) + 2.0 * np.sin(2.0 * t), np.cos(t) - 2.0 * np.cos(2.0 * t), -np.sin(3.0 * t)
-    knot = np.stack([y, (z - x) / sqrt(2.0) + np.sin(0.5 * (t - 2.0 * pi)), (z + x) / sqrt(2.0)], axis=1)
-    steps = np.diff(knot, axis=0)
-    knot *= KNOTTED * LENGTH / np.linalg.norm(steps, axis=1).sum()
-    tail = np.linspace(0.5 * (1.0 - KNOTTED) * LENGTH, 0.0, 200, endpoint=False)[:, None]
-    before, behind = (step / np.linalg.norm(step) for step in (steps[0], steps[-1]))
-    return np.vstack([knot[0] - tail * before, knot, knot[-1] + tail[::-1] * behind])
-
-
 def scene(diameter: float) -> Scene:
     """Damped until it rests; its end slides along the pull and may spin."""
     pull, free = ((Condition("load", Curve.constant(value)),) for value in (PULL, 0.0))
     E = 64.0 * B / (pi * diameter**4)
     rod = Rod.circular(LENGTH, diameter, E, E / 2.6, 4.0 * MASS / (pi * diameter**2))
     return Scene(
-        rod=rod, initial=Initial.through(trefoil(), LENGTH), start=End.clamp(),
+        rod=rod, initial=Initial.through(trefoil(LENGTH, KNOTTED), LENGTH), start=End.clamp(),
         end=End((FIXED, FIXED, pull), (FIXED, FIXED, free), frame="lab"), t_end=T_END, output_interval=T_END,
         damping=DAMPING, contact=Contact(),
         numerics=Numerics("staggered", intervals=MESHES[diameter], dt_max=T_END / 15),

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, sqrt
+
+import numpy as np
 
 from solver import FIXED, Condition, Curve, End, Numerics, Rod
+from solver.arrays import Array
 
 LENGTH = 1.0
 DIAMETER = 0.01
@@ -36,3 +39,15 @@ def driven_clamp(axial: Curve, turn: Curve) -> End:
         frame="lab",
     )
 
+
+def trefoil(length: float, knotted: float) -> Array:
+    """Points (n, 3) of a straight rod of a length along e3 with a loose overhand knot in its middle, which takes up a
+    part of it: a trefoil, cut where it is farthest out, its ends drawn apart."""
+    t = np.linspace(pi, 3.0 * pi, 1201)
+    x, y, z = np.sin(t) + 2.0 * np.sin(2.0 * t), np.cos(t) - 2.0 * np.cos(2.0 * t), -np.sin(3.0 * t)
+    knot = np.stack([y, (z - x) / sqrt(2.0) + np.sin(0.5 * (t - 2.0 * pi)), (z + x) / sqrt(2.0)], axis=1)
+    steps = np.diff(knot, axis=0)
+    knot *= knotted * length / np.linalg.norm(steps, axis=1).sum()
+    tail = np.linspace(0.5 * (1.0 - knotted) * length, 0.0, 200, endpoint=False)[:, None]
+    before, behind = (step / np.linalg.norm(step) for step in (steps[0], steps[-1]))
+    return np.vstack([knot[0] - tail * before, knot, knot[-1] + tail[::-1] * behind])

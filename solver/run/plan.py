@@ -43,8 +43,8 @@ SAME_TIME = 0.02
 BY_STEPS = 1.5
 """How much more work steps of a quarter of the error are expected to be, before it has shown."""
 FASTER = 1.2
-"""How many times more the work of shorter steps grows on a mesh that is finer than that on which it was seen to grow:
-its waves are faster."""
+"""How many times more the work of shorter steps grows for every doubling of the mesh on which it was seen to grow:
+waves are faster there."""
 DEAR, FAR_OFF = 2.5, 10.0
 """How many times the work shorter steps took, and how many times the tolerance their error is, where the second mesh
 has the longer ones."""

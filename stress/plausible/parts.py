@@ -88,19 +88,6 @@ def arc(L: float, angle: float, nodes: int = 101) -> Any:
     return L / angle * np.stack([1.0 - np.cos(a), 0.0 * a, np.sin(a)], axis=1)
 
 
-def trefoil(L: float, knotted: float) -> Any:
-    """Points (n, 3) of a straight rod of length L along e3 with a loose overhand knot in its middle, which takes up a
-    part of it: a trefoil, cut where it is farthest out, its ends drawn apart."""
-    t = np.linspace(pi, 3.0 * pi, 601)
-    x, y, z = np.sin(t) + 2.0 * np.sin(2.0 * t), np.cos(t) - 2.0 * np.cos(2.0 * t), -np.sin(3.0 * t)
-    knot = np.stack([y, (z - x) / sqrt(2.0) + np.sin(0.5 * (t - 2.0 * pi)), (z + x) / sqrt(2.0)], axis=1)
-    steps = np.diff(knot, axis=0)
-    knot *= knotted * L / np.linalg.norm(steps, axis=1).sum()
-    tail = np.linspace(0.5 * (1.0 - knotted) * L, 0.0, 100, endpoint=False)[:, None]
-    before, behind = (step / np.linalg.norm(step) for step in (steps[0], steps[-1]))
-    return np.vstack([knot[0] - tail * before, knot, knot[-1] + tail[::-1] * behind])
-
-
 def helix(radius: float, pitch: float, turns: float) -> tuple[Any, float]:
     """Points (n, 3) of a helix about e3, and its length (m)."""
     a, rise = np.linspace(0.0, 2.0 * pi * turns, int(80 * turns) + 1), pitch / (2.0 * pi)

@@ -7,7 +7,8 @@ from math import pi
 import numpy as np
 from numpy.random import Generator
 
-from stress.plausible.parts import GRAVITY, Drawn, Part, arc, case, curve, helix, log, ramp, straight, trefoil, water
+from stress.plausible.parts import GRAVITY, Drawn, Part, arc, case, curve, helix, log, ramp, straight, water
+from validation.rods import trefoil
 
 ANY = ("steel", "aluminium", "carbon", "glass fibre", "nylon", "polypropylene", "rubber")
 

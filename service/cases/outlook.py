@@ -26,6 +26,7 @@ from solver.physics.elasticity import elasticity_of, moments, principal
 from solver.physics.loads import solids
 from solver.physics.section import sample
 from solver.run.first_mesh import first_mesh
+from solver.scene.curve import Vector
 from solver.scene.ends import End
 from solver.scene.layout import nodes_at_rest
 
@@ -35,8 +36,8 @@ SECONDS = {
     "held straight and moved": 0.9, "held straight": 0.25, "on a floor": 3.5, "overdamped": 0.1,
     "in space and moved or let go": 2.2, "flying freely": 0.15, "settling in space": 0.12, SLOWLY: 0.2,
     "long and heavy in water": 0.48, "shaken in water": 0.6, "towed through water": 0.13, "in water": 0.22,
-    "let go or loaded at once": 1.6, "let go and settling": 0.57, "let go gently": 0.3, "bent between its ends": 1.6,
-    "undamped": 0.7, "followed by the frames": 0.16,
+    "let go or loaded at once": 1.6, "let go and settling": 0.57, "let go gently": 0.3, "let go between pins": 2.2,
+    "snapping through": 2.0, "undamped": 0.7, "followed by the frames": 0.16,
 }  # fmt: skip
 """CPU seconds at a tolerance of 1e-3, by what moves the rod; what is slow in space with a first mesh of 16 intervals: a
 finer one costs the more."""
@@ -51,6 +52,8 @@ SETTLING, IN_SPACE = 0.1, 0.3
 """Damping, in the first angular frequency, with which waves soon do not matter any more; and in space."""
 UNDAMPED = 1e-3
 """Damping, in the first angular frequency, with which all waves stay."""
+SNAPS = 16.0
+"""Force, in EJ/L^2, for every radian by which an arch between its ends is bent, that pushes it through."""
 TIED = 6.0
 """Rotation (rad) by which the shape of a rod that touches itself bends, in all, at the least."""
 FARTHER = 1e-6
@@ -104,9 +107,11 @@ def kind_of(scene: Scene) -> str:
         gentle = max(urged.stress, urged.force) < SMALL and urged.weight < GENTLE and scene.damping > DAMPED * frequency
         if gentle:
             return "let go gently"
+        if distances(scene) is not None and not (_is_turned(scene.start) or _is_turned(scene.end)):
+            return "let go between pins"
         return "let go and settling" if scene.damping > SETTLING * frequency else "let go or loaded at once"
-    if distances(scene) is not None:
-        return "bent between its ends"
+    if distances(scene) is not None and urged.pushed > SNAPS * urged.bent:
+        return "snapping through"
     return "undamped" if scene.damping < UNDAMPED * frequency else "followed by the frames"
 
 
@@ -114,7 +119,8 @@ def kind_of(scene: Scene) -> str:
 class Urged:
     """What moves a rod, as moments in EJ/L: of its weight, of the part of that across the rod, and across a rod that is
     `held` somewhere; of its stress at t = 0, of forces that are there at once, of its inertia where its ends are
-    driven; by what rotation (rad) it is `bent` at t = 0 in all, and whether it is `thrown`."""
+    driven; as a force in EJ/L^2 how hard it is `pushed` in a point, at the most; by what rotation (rad) it is `bent` at
+    t = 0 in all; and whether it is `thrown`."""
 
     weight: float
     weight_across: float
@@ -122,6 +128,7 @@ class Urged:
     stress: float
     force: float
     inertia: float
+    pushed: float
     bent: float
     thrown: bool
 
@@ -142,6 +149,7 @@ class Urged:
             held_weight=weight_across if _is_held(scene.start) or _is_held(scene.end) else 0.0,
             stress=float(np.abs(moments(elasticity_of(scene.rod, s), kappa)).max()) * length / stiffness,
             force=max(across) * length**2 / stiffness, inertia=driven.acceleration * unit,
+            pushed=max([0.0, *(_largest(load.force, scene.t_end) for load in scene.points)]) * length**2 / stiffness,
             bent=float(np.linalg.norm(kappa[:, :2], axis=1).mean()) * length,
             thrown=any((*scene.initial.velocity, *scene.initial.angular_velocity)),
         )  # fmt: skip
@@ -158,8 +166,19 @@ def _come_apart(scene: Scene) -> bool:
     return apart is not None and bool(apart.max() > apart[0] * (1.0 + FARTHER))
 
 
+def _largest(force: Vector, t_end: float) -> float:
+    """The largest force (N) of a schedule until t_end."""
+    times = np.linspace(0.0, t_end, INTERVALS + 1)
+    return float(np.linalg.norm([curve(times) + 0.0 * times for curve in force], axis=0).max())
+
+
 def _is_held(end: End) -> bool:
-    return any(component[0].kind != "load" for component in (*end.translation, *end.rotation))
+    return _is_turned(end) or any(component[0].kind != "load" for component in end.translation)
+
+
+def _is_turned(end: End) -> bool:
+    """Whether an end has a direction, or a rotation, of its own."""
+    return any(component[0].kind != "load" for component in end.rotation)
 
 
 def _frequency(scene: Scene) -> float:

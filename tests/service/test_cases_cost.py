@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from math import cos, sin
+from math import cos, pi, sin
 from pathlib import Path
 
 import pytest
@@ -98,7 +98,16 @@ def arc(angle):
     return {"shape": "centreline", "points": points, "a1": [0.0, 1.0, 0.0]}
 
 
-RING, ARC = arc(6.1), arc(0.5)
+def pushed(force):
+    """A force in the middle of an arc of 1 rad, in EJ/L^2, that grows."""
+    load = {"t": [0.0, 1.0], "value": [0.0, force * STIFFNESS], "interpolation": "smoothstep"}
+    return [{"s": 0.5, "force": [load, 0, 0]}]
+
+
+STIFFNESS = 1.25e7 * pi * 0.01**4 / 64
+RING = arc(6.1)
+PINNED = {"ends__start": "pin", "ends__end": "pin", "initial": arc(1.0), "rod__kappa0": "initial",
+          "loads__damping": 1.0}  # fmt: skip
 LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
 
 
@@ -121,7 +130,9 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"loads__obstacles": [{"start": [0, 0, -9], "radius": 1.0, "stiffness": 1.0}]}, "on a floor"),
     ({"ends__end": moved(theta3=True)}, "wound up"),
     ({"contact": {}, "initial": RING}, "lies on itself"),
-    ({"ends__start": "pin", "ends__end": "pin", "initial": ARC, "rod__kappa0": "initial"}, "bent between its ends"),
+    (PINNED | {"loads__gravity": LYING}, "let go between pins"),
+    (PINNED | {"loads__point": pushed(15.0)}, "followed by the frames"),
+    (PINNED | {"loads__point": pushed(17.0)}, "snapping through"),
     ({"ends__start": moved("pin", theta3=True), "ends__end": "free"}, "slow in space"),  # it turns with its end
     (SEA, "in water"),
     (SEA | {"ends__start": moved(x1=True)}, "towed through water"),

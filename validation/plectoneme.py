@@ -20,7 +20,7 @@ from solver.scene.ends import FIXED
 from validation.row import Row, at_most, relative
 
 LENGTH, E, G, DENSITY = 1.0, 1e7, 5e6, 1500.0
-PLECTONEMES = {15.0: (80, 96), 20.0: (60, 96), 25.0: (50, 92)}
+PLECTONEMES = {15.0: (80, 96), 20.0: (60, 96), 25.0: (40, 75)}
 """Of superhelical angles (degrees) the rod's length over its diameter and the intervals: the steeper it is wound, the
 shorter are its end loop and its turns."""
 GROWN = (0.5, 0.65)

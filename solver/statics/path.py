@@ -168,7 +168,7 @@ class Path:
 
     def _correct(self, guess: Point, across: Direction | None) -> Point | None:
         """The equilibrium across a direction from a guess, or at the guess's own q; None if there is none near."""
-        before, slope = np.inf, None
+        before = np.inf
         for iteration in range(1, MOST_ITERATIONS + 1):
             self.iterations += 1
             left, solver = self._equations.linearise(guess)
@@ -176,9 +176,7 @@ class Path:
                 return None
             z, dq = -solver.solve(left), 0.0
             if across is not None:
-                if slope is None:  # which hardly changes on the way
-                    slope = self._equations.slope(guess, 0.0)
-                w = -solver.solve(slope)
+                w = -solver.solve(self._equations.slope(guess, 0.0))
                 dq = -across.dot(z, 0.0) / across.dot(w, 1.0)
                 z += dq * w
             size = self._size(z, guess)

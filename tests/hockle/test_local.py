@@ -18,6 +18,7 @@ import pytest
 import service.cases
 import solver
 from hockle.cli import main
+from hockle.parts import SINGLE_THREADED
 from service.cases import apply_settings, estimate, load_case, parse_case
 from service.results import durable, open_dataset
 from solver import Frame, Outcome, RunFailed, Scene, Simulation
@@ -155,6 +156,14 @@ def test_cases_lists_every_shipped_case(capsys: pytest.CaptureFixture[str]):
 def test_a_local_command_does_not_load_the_registry():
     told = "import hockle.cli, sys; hockle.cli.main(['cases']); sys.exit('sqlalchemy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", told], stdout=subprocess.DEVNULL).returncode == 0
+
+
+def test_a_command_computes_on_one_core():
+    """Small matrices take twice the CPU time on two; numpy looks once, as it is imported."""
+    unset = {name: value for name, value in os.environ.items() if name not in SINGLE_THREADED}
+    program = ("import sys, hockle.cli; early = 'numpy' in sys.modules; hockle.cli.main(['cases']); import os; "
+               "sys.exit(early or os.environ['OPENBLAS_NUM_THREADS'] != '1')")  # fmt: skip
+    assert subprocess.run([sys.executable, "-c", program], env=unset, capture_output=True).returncode == 0
 
 
 def test_validate_warns_of_a_slip_and_refuses_nothing(capsys: pytest.CaptureFixture[str]):

@@ -15,15 +15,19 @@ from solver.physics.contact.law import Law, pair_force
 from solver.physics.contact.points import Points
 from solver.physics.contact.recipe import IN_MOTION, Foreseen, foreseen, held, spaced
 from solver.scene.ends import FIXED
+from solver.statics.contact import AT_REST
 from tests.solver.physics.contact.test_law import AXIS, MASS, D, two_points
 from tests.solver.physics.contact.test_self_contact import looped
 
 LAW = Law.by_itself(spaced(Contact(), Rod.circular(1.0, D, 1e7, 5e6, 1500.0)), 0.4 * D, 0.02, IN_MOTION.pole)
 
 
-def force(points: Points) -> Array:
+STEEP = LAW._replace(pole=AT_REST.pole)
+
+
+def force(points: Points, law: Law = LAW) -> Array:
     n = np.zeros(3)
-    elastic, damping, _ = pair_force(LAW, points, 0, 1, n, np.zeros(3), np.zeros(3))
+    elastic, damping, _ = pair_force(law, points, 0, 1, n, np.zeros(3), np.zeros(3))
     return np.asarray((elastic + damping) * n)
 
 
@@ -34,23 +38,33 @@ def test_the_force_is_1_where_surfaces_touch_and_none_beyond_its_reach() -> None
     assert np.linalg.norm(force(two_points(1.001 * IN_MOTION.pole * D))) > 1e6 * MASS * (0.4 * D) ** 2
 
 
-@pytest.mark.parametrize("d", [0.8 * D, 1.1 * D, 0.505 * D])
-def test_its_tangents_are_derivatives(d: float) -> None:
+@pytest.mark.parametrize(("d", "law"), [(0.8 * D, LAW), (1.1 * D, LAW), (0.505 * D, LAW), (0.97 * D, STEEP)])
+def test_its_tangents_are_derivatives(d: float, law: Law) -> None:
     """By the separation along and across it, and by the relative velocity."""
     n, g, k = np.zeros(3), np.zeros(3), np.zeros(3)
-    elastic, damping, gap = pair_force(LAW, two_points(d, closing=0.1), 0, 1, n, g, k)
+    elastic, damping, gap = pair_force(law, two_points(d, closing=0.1), 0, 1, n, g, k)
     tangent = np.outer(n, g) + (elastic + damping) / d * np.eye(3)
     for moved in np.eye(3):
         one, two = two_points(d, closing=0.1), two_points(d, closing=0.1)
         one.p[0] += 1e-9 * moved
         two.p[0] -= 1e-9 * moved
-        expected = (force(one) - force(two)) / 2e-9
+        expected = (force(one, law) - force(two, law)) / 2e-9
         assert_allclose(tangent @ moved, expected, atol=1e-6 * float(np.abs(tangent).max()))
         one, two = two_points(d, closing=0.1), two_points(d, closing=0.1)
         one.w[0] += 1e-6 * moved
         two.w[0] -= 1e-6 * moved
-        assert_allclose(n * k[2] * (n @ moved), (force(one) - force(two)) / 2e-6, atol=1e-6 * abs(k[2]))
-    assert gap == pytest.approx(d - IN_MOTION.pole * D)
+        assert_allclose(n * k[2] * (n @ moved), (force(one, law) - force(two, law)) / 2e-6, atol=1e-6 * abs(k[2]))
+    assert gap == pytest.approx(d - law.pole * D)
+
+
+def test_at_rest_strands_cost_what_hard_ones_cost() -> None:
+    """Under the pressure that is foreseen they rest at d, with D - d = U / p of the energy U that they store."""
+    d = np.linspace(AT_REST.pole, 2.0 - AT_REST.pole, 20001)[1:-1] * D
+    f = np.array([np.linalg.norm(force(two_points(x), STEEP)) for x in d])
+    f *= AT_REST.margin / np.linalg.norm(force(two_points(D), STEEP))  # of the pressure
+    at = float(np.interp(-1.0, -f, d))
+    beyond = d >= at
+    assert D - at == pytest.approx(float(np.trapezoid(f[beyond], d[beyond])), rel=2e-3)
 
 
 def test_the_pressure_has_the_scale_of_the_rod() -> None:

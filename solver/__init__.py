@@ -3,7 +3,7 @@
 from solver.measures.frame import Frame, Statistics
 from solver.outcome import REMEDY, Outcome, RunFailed
 from solver.run.checkpoint import code_digest
-from solver.run.plan import Trial
+from solver.run.plan import Trial, strides_of
 from solver.run.refined import Refined
 from solver.run.run import Run
 from solver.run.simulate import simulate
@@ -27,5 +27,5 @@ __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
     "Initial", "Numerics", "Outcome", "PointLoad", "Refined", "Rod", "Run", "RunFailed", "Scene", "Simulation",
     "Statistics", "Trial", "UnderWay", "UserLoad", "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest",
-    "constant_vector", "simulate", "warm",
+    "constant_vector", "simulate", "strides_of", "warm",
 ]

@@ -47,12 +47,14 @@ class Begun:
 class Beginnings:
     """The states of a run in a directory of theirs, by the numbers of their frames."""
 
-    def __init__(self, directory: Path, key: str, frames: int, followed: Collection[int] = ()) -> None:
-        """`key`: the code by which it runs; `followed`: frames from which others will begin."""
+    def __init__(self, directory: Path, key: str, frames: int, followed: Collection[int] = (), every: int = 1) -> None:
+        """`key`: the code by which it runs; `followed`: frames from which others will begin; `every`: how many frames
+        apart those are at which steps end."""
         self._directory, self._key = directory, key
-        parts = {int(part * (frames - 1)) for part in PARTS} | {frames - 2} | set(followed)
-        self._wanted = {frame for frame in parts if 0 < frame < frames - 1}
-        self._followed = set(followed)
+        self._followed = {frame - frame % every for frame in followed}
+        parts = {int(part * (frames - 1)) for part in PARTS} | {frames - 2}
+        wanted = {frame - frame % every for frame in parts} | self._followed
+        self._wanted = {frame for frame in wanted if 0 < frame < frames - 1}
 
     def keep(self, frame: int, run: Run | UnderWay, worth: float) -> None:
         """Keep the state at this frame, if it is one of those, and waited for or `worth` it (s of computing). A run

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from service.cases import CaseSpec, build_scene
 from service.jobs.held import HeldJob
 from service.results import Datasets
-from solver import Frame, Refined, Run, Scene, Trial, UnderWay, code_digest
+from solver import Frame, Refined, Run, Scene, Trial, UnderWay, code_digest, strides_of
 from worker.beginnings import NOTHING_TO_TAKE, Beginnings, Common, begins_by_itself
 from worker.merging import AnotherBeginning, begun
 
@@ -35,9 +35,10 @@ class Trials:
     """The states of the attempts of one job's run, those of each in a directory of theirs with the rows of its frames,
     which are written once: of all states, when it ends."""
 
-    def __init__(self, directory: Path, frames: int, followed: Collection[int] = ()) -> None:
+    def __init__(self, directory: Path, spec: CaseSpec, followed: Collection[int] = ()) -> None:
         """`followed`: frames from which others will begin."""
-        self._directory, self._frames, self._followed = directory, frames, followed
+        self._directory, self._frames, self._followed = directory, spec.frames, followed
+        self._strides = strides_of(spec.numerics.tolerance or 1.0)
         self._attempts: dict[Trial, Beginnings] = {}
 
     def keep(self, attempt: UnderWay, frame: int) -> None:
@@ -67,7 +68,7 @@ class Trials:
     def _of(self, trial: Trial) -> Beginnings:
         if trial not in self._attempts:
             directory = self._directory / f"{trial.mesh}.{trial.steps}"
-            self._attempts[trial] = Beginnings(directory, code_digest(), self._frames, self._followed)
+            self._attempts[trial] = Beginnings(directory, code_digest(), self._frames, self._followed, self._strides)
         return self._attempts[trial]
 
 
@@ -83,7 +84,7 @@ class Another:
     def of(cls, held: HeldJob, other_id: str, spec: CaseSpec, datasets: Datasets) -> Another:
         """Raises what `NOTHING_TO_TAKE` lists."""
         common = Common.of(held, other_id, spec)
-        trials = Trials(datasets.states(other_id), common.first.frames)
+        trials = Trials(datasets.states(other_id), common.first)
         if not trials.any:
             raise LookupError("no state of it is kept")
         return cls(trials, build_scene(common.first), common.most)
@@ -103,7 +104,7 @@ class Steps:
 
     def __init__(self, held: HeldJob, spec: CaseSpec, datasets: Datasets, run: Run) -> None:
         self._held = held
-        self._trials = Trials(datasets.states(held.job.id), spec.frames, held.followers())
+        self._trials = Trials(datasets.states(held.job.id), spec, held.followers())
         self._another: Another | None = None
         if held.job.begins_with is not None:
             try:

@@ -125,7 +125,7 @@ class OutputSpec(Spec):
     """What is stored, and how often."""
 
     interval: Annotated[
-        Positive, means("time between frames; steps end exactly on frames, and the last frame is at `t_end`", "s")
+        Positive, means("time between frames, the last of which is at `t_end`; steps end exactly on frames, and with a tolerance on every fifth at least, between which frames lie on the steps' own polynomials", "s")
     ]
     fields: Annotated[
         tuple[FieldName, ...], Field(min_length=1), means("which variables along the rod are stored")

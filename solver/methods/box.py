@@ -14,6 +14,7 @@ from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape
 from solver.methods.linear.registry import linear_solver_of
+from solver.methods.method import NOTHING_AHEAD, Ahead
 from solver.methods.schemes import BACKWARD_EULER, Scheme, c0_of
 from solver.methods.space.box.energies import energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, State, V
@@ -165,6 +166,10 @@ class BoxMethod:
     def step_limit(self) -> float:
         """The longest next step (s) that contact and loads allow."""
         return min(self.contact.step_limit, self.applied.longest_step(self.state.r, self.state.Y[:, V : V + 3]))
+
+    def look_back(self, ago: float) -> Ahead:
+        """Its steps end at every frame: `Numerics` sees to that."""
+        return NOTHING_AHEAD
 
     def fields(self) -> Fields:
         """The state along the rod."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
+
+import numpy as np
 
 from solver.arrays import Array
 from solver.measures.energies import Energies
@@ -11,6 +13,17 @@ from solver.measures.passages import Shape
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.scene.scene import Scene
+
+
+class Ahead(NamedTuple):
+    """What is yet to come, from what is shown to the end of the last step: the `energy` (4,) that flows, see
+    `Method.take_step`, and by how much the start and the end are `twisted` (2,), rad about a3."""
+
+    energy: Array
+    twisted: tuple[float, float]
+
+
+NOTHING_AHEAD = Ahead(np.zeros(4), (0.0, 0.0))
 
 
 class Method(Protocol):
@@ -65,6 +78,10 @@ class Method(Protocol):
 
     def step_limit(self) -> float:
         """The longest next step (s) that contact allows."""
+
+    def look_back(self, ago: float) -> Ahead:
+        """Show the rod as it was `ago` (s) before the end of the last step, until the next one is tried: as `fields`,
+        `energies`, `twist`, `centreline` and `smallest_gap` see it. Say what came afterwards."""
 
     def fields(self) -> Fields:
         """The state along the rod."""

@@ -69,12 +69,12 @@ class OneAxisMethod(RadauMethod):
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
-        axis, (r, V) = self._axis, self._nodes()
-        phi, omega = at_nodes(self.state.phi), at_nodes(self.state.omega)
+        axis, (r, V), (state, _) = self._axis, self._nodes(), self._shown
+        phi, omega = at_nodes(state.phi), at_nodes(state.omega)
         back = directions(-self.chain.swing * phi)
-        bend, elastic = np.diff(self.state.phi) / self.chain.span, self.chain.elastic
+        bend, elastic = np.diff(state.phi) / self.chain.span, self.chain.elastic
         return Fields(
-            v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(self.state.F * back),
+            v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(state.F * back),
             kappa=axis.about(bend - self._offset), q=axis.about(elastic.K * (bend - elastic.kappa0)),
             r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
         )  # fmt: skip
@@ -85,25 +85,40 @@ class OneAxisMethod(RadauMethod):
 
     def energies(self) -> Energies:
         """The energies of the state."""
-        r, V, A = self._centres
-        motion = Motion(r, V, A, self._tangents(), self.state.omega, self.chain.swing)
-        return energies(self._hand_over(), self.chain, self.state.phi, motion)
+        state, (r, V, A) = self._shown
+        motion = Motion(r, V, A, self._tangents(), state.omega, self.chain.swing)
+        return energies(self._hand_over(), self.chain, state.phi, motion)
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
-        turned = float(self.state.phi[-1] - self.state.phi[0])
+        phi = self._shown[0].phi
+        turned = float(phi[-1] - phi[0])
         return (1.0 - self.chain.swing) * turned / (2 * np.pi)
 
     def _tangents(self) -> Plane:
         """T (N + 2,) of the orientations."""
-        return directions(self.chain.swing * self.state.phi)
+        return directions(self.chain.swing * self._shown[0].phi)
 
     def _nodes(self) -> tuple[Plane, Plane]:
         """Places and velocities (N + 1,) of the nodes."""
-        T, h = self._tangents()[1:-1], self.chain.h
-        swing = 0.5j * h * self.chain.swing * self.state.omega[1:-1] * T
-        r, V = self._centres[0] + 0.5 * h * T, self._centres[1] + swing
-        return np.append(self.state.base[0], r), np.append(self.state.base[1], V)
+        (state, centres), T, h = self._shown, self._tangents()[1:-1], self.chain.h
+        swing = 0.5j * h * self.chain.swing * state.omega[1:-1] * T
+        r, V = centres[0] + 0.5 * h * T, centres[1] + swing
+        return np.append(state.base[0], r), np.append(state.base[1], V)
+
+    def _pass(self, part: float, cubic: Array, parabola: Array) -> None:
+        before, stages, then = self.trial, self.stages, self._then
+        then.phi[:] = before.phi + part * self._step * before.omega + cubic @ stages.theta
+        then.omega[:] = before.omega + cubic @ stages.theta_t
+        then.base[0] = before.base[0] + cubic @ stages.shift
+        then.base[1] = before.base[1] + cubic @ (stages.base[:, 1] - before.base[1])
+        then.F[:] = parabola @ stages.F
+        T = directions(self.chain.swing * then.phi)
+        follow_segments(self.chain, T, then.omega, then.alpha, then.base, *self._centres_then)
+
+    def _twisted(self, weights: Array) -> tuple[float, float]:
+        start, end = (float(self._axis.about(weights @ self.stages.omega[:, frame])[2]) for frame in (0, -1))
+        return start, end
 
     def _follow_ends(self, weights: Array) -> None:
         stages, axis = self.stages, self._axis

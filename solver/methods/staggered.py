@@ -21,7 +21,7 @@ from solver.methods.space.segments.chain import Chain, Residuals, Stages, State
 from solver.methods.space.segments.energies import energies, stage_powers, twist
 from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
-from solver.methods.space.segments.motion import extrapolate, follow_segments
+from solver.methods.space.segments.motion import Passing, extrapolate, follow_segments, look_back
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
 from solver.methods.time.radau.newton import move_guess
@@ -62,6 +62,8 @@ class StaggeredMethod(RadauMethod):
         follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)
         self._nodes = np.zeros((2, N + 1, 3))
         self._place_nodes()
+        self._passing, self._R_then = Passing.empty(N), np.zeros_like(R)
+        self._joints_then, self._nodes_then = np.zeros((N + 1, 3)), np.zeros((2, N + 1, 3))
 
     @classmethod
     def of(cls, scene: Scene) -> StaggeredMethod:
@@ -107,36 +109,39 @@ class StaggeredMethod(RadauMethod):
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
+        (state, _), (R, _, nodes) = self._shown, self._shape
         orientation = np.empty((len(self.s), 4))
-        orientations_at_nodes(self.state.quaternion, orientation)
-        omega = self._R @ self.state.omega[:, :, None]
+        orientations_at_nodes(state.quaternion, orientation)
+        omega = R @ state.omega[:, :, None]
         between = 0.5 * (omega[1:-2] + omega[2:-1])
         omega_lab = np.concatenate([omega[:1], between, omega[-1:]])[:, :, 0]
-        joints = self._bend(self.state.quaternion)
+        joints = self._bend(state.quaternion)
         bending_at_nodes(self.chain, *joints)
         kappa, q, *_ = joints
         return Fields(
-            v=rotate_back(orientation, self._nodes[1]), omega=rotate_back(orientation, omega_lab),
-            f=rotate_back(orientation, self.state.F), kappa=kappa - self._offset, q=q,
-            r=self._nodes[0].copy(), orientation=orientation,
+            v=rotate_back(orientation, nodes[1]), omega=rotate_back(orientation, omega_lab),
+            f=rotate_back(orientation, state.F), kappa=kappa - self._offset, q=q,
+            r=nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
 
     def centreline(self) -> Shape:
         """The state's centreline."""
-        return Shape(self._nodes[0], self._R[[0, -1], :, 2])
+        R, _, nodes = self._shape
+        return Shape(nodes[0], R[[0, -1], :, 2])
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""
-        r, V, A = self._centres
-        return energies(self._hand_over(), self._joints, Motion(r, V, A, self._R, self.state.omega))
+        (state, (r, V, A)), (R, joints, _) = self._shown, self._shape
+        return energies(self._hand_over(), joints, Motion(r, V, A, R, state.omega))
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
-        return float(twist(self.state.quaternion) / (2 * np.pi))
+        return float(twist(self._shown[0].quaternion) / (2 * np.pi))
 
     def smallest_gap(self) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
-        return self.contact.smallest_gap(total_bending(self._joints), self._nodes[0], self._nodes[1])
+        _, joints, nodes = self._shape
+        return self.contact.smallest_gap(total_bending(joints), nodes[0], nodes[1])
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""
@@ -159,6 +164,25 @@ class StaggeredMethod(RadauMethod):
         stages, r, V = self.stages, self.work.coupling.r[2], self.work.coupling.V[2]
         place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
         return r, V
+
+    @property
+    def _shape(self) -> tuple[Array, Array, Array]:
+        """R (N + 2, 3, 3), the joints' rotation vectors (N + 1, 3), and the nodes' places and velocities (2, N + 1, 3)
+        that are shown."""
+        if self._ago > 0.0:
+            return self._R_then, self._joints_then, self._nodes_then
+        return self._R, self._joints, self._nodes
+
+    def _pass(self, part: float, cubic: Array, parabola: Array) -> None:
+        R, then, centres = self._R_then, self._then, self._centres_then
+        look_back(self.chain, self.trial, self.stages, part, self._step, cubic, parabola, self._passing, then, R,
+                  centres)  # fmt: skip
+        self._joints_then[:] = self._bend(then.quaternion)[0]
+        place_nodes(self.chain, R, then.omega, then.base, centres[0], centres[1], *self._nodes_then)
+
+    def _twisted(self, weights: Array) -> tuple[float, float]:
+        start, end = weights @ self.stages.omega[:, [0, -1], 2]
+        return float(start), float(end)
 
     def _place_nodes(self) -> None:
         """Write places and velocities of the nodes of the state."""
@@ -203,10 +227,11 @@ class StaggeredMethod(RadauMethod):
         return float(stretch.sum() / self.s[-1])
 
     def _flowed(self, weights: Array) -> Array:
-        stored, rubbed = self.contact.power().T
-        powers = np.column_stack([self._powers, stored])
-        powers[:, 2] += rubbed
-        return np.asarray(weights @ powers)
+        flowed = super()._flowed(weights)
+        if self.contact.touching:
+            stored, rubbed = weights @ self.contact.power()
+            flowed[2:] += rubbed, stored
+        return flowed
 
     def _guess(self, dt: float) -> None:
         """The motion goes on, or nothing moves where that would close the gap of parts that press on each other."""

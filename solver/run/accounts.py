@@ -7,9 +7,10 @@ from math import nan, pi
 import numpy as np
 
 from solver.arrays import Array
+from solver.measures.energies import Energies
 from solver.measures.frame import Frame
 from solver.measures.topology import writhe_of_rod
-from solver.methods.method import Method
+from solver.methods.method import Ahead, Method
 from solver.physics.elasticity import elasticity_of, principal
 from solver.physics.ends import ABOUT_A3
 from solver.scene.scene import Scene
@@ -29,6 +30,8 @@ class Accounts:
         self._dt, self._iterations = 0.0, 0
         self._energy_at_start: float | None = None
         self._t, self._balance, self._missing, self._entries = 0.0, 0.0, 0.0, np.zeros(9)
+        self._settled = False
+        """Whether the balance is that of the last step's end."""
         thrown = any((*scene.initial.velocity, *scene.initial.angular_velocity))
         self._jolts = [*([0.0] if thrown else []), *method.start.jolts(), *method.end.jolts()]
         s = np.linspace(0.0, scene.rod.length, 11)
@@ -42,12 +45,20 @@ class Accounts:
     def after_step(self, dt: float, iterations: int, flowed: Array) -> None:
         """Enter the step just taken, and the energy (4,) that flowed in it: see `Method.take_step`."""
         self._totals += flowed
+        self._settled = False
         self._dt, self._iterations = dt, iterations
 
-    def frame(self, t: float) -> Frame:
-        """The frame at time t."""
-        fields, energy, Tw = self._method.fields(), self._method.energies(), self._method.twist()
-        work_ends, work_loads, dissipation, contact = (float(total) for total in self._totals)
+    def frame(self, t: float, ago: float = 0.0) -> Frame:
+        """The frame at time t, `ago` (s) before the end of the last step.
+
+        The balance is that of the steps: a polynomial within one makes or loses some energy that the motion does not.
+        """
+        method = self._method
+        if ago > 0.0 and not self._settled:
+            self._settle(t + ago, method.energies())
+        ahead = method.look_back(ago)
+        fields, energy, Tw = method.fields(), method.energies(), method.twist()
+        work_ends, work_loads, dissipation, contact = (self._totals - ahead.energy).tolist()
         total = sum(energy) + contact
         entries = np.array([*energy, contact, work_ends, work_loads, dissipation])
         if self._energy_at_start is None:
@@ -57,15 +68,16 @@ class Accounts:
             self._turnover += float(np.abs(entries - self._entries).sum())
         self._entries = entries
         self._there = max(self._there, total - energy.potential)
-        self._settle(t, total - self._energy_at_start - work_ends - work_loads + dissipation)
+        if not self._settled:
+            self._settle(t, energy)
         Wr = writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
         return Frame(
             t=t, **vars(fields),
             **{f"energy_{name}": value for name, value in energy._asdict().items()}, energy_contact=contact,
             work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
             energy_balance=self._balance,
-            Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr), min_gap=self._method.smallest_gap(),
-            contacts=self._method.pressing(), dt=self._dt, newton_iterations=self._iterations,
+            Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr, ahead), min_gap=method.smallest_gap(),
+            contacts=method.pressing(), dt=self._dt, newton_iterations=self._iterations,
         )  # fmt: skip
 
     @property
@@ -82,21 +94,23 @@ class Accounts:
         """Energy that went nowhere until the last frame, over the largest that motion, strain and contact ever had."""
         return max(-self._missing, 0.0) / (self._there + self._lost_at_rest)
 
-    def _settle(self, t: float, balance: float) -> None:
-        """Enter the balance (J) at time t."""
-        change = balance - self._balance
+    def _settle(self, t: float, energy: Energies) -> None:
+        """Enter the balance (J) at the end t of the last step, where the rod has this energy."""
+        work_ends, work_loads, dissipation, contact = self._totals.tolist()
+        balance = sum(energy) + contact - (self._energy_at_start or 0.0) - work_ends - work_loads + dissipation
+        self._settled, change = True, balance - self._balance
         if change > 0.0 or not any(self._t <= jolt <= t for jolt in self._jolts):
             self._missing += change
         self._t, self._balance = t, balance
 
-    def _linking_number(self, t: float, Tw: float, Wr: float) -> float:
+    def _linking_number(self, t: float, Tw: float, Wr: float, ahead: Ahead) -> float:
         """Relative rotation of the ends in turns, from Tw + Wr at the start on."""
         if not self._scene.topology:
             return nan
         if t == 0.0:
             self._Lk_at_start = Tw + Wr
         turned = []
-        for end in (self._method.start, self._method.end):
+        for end, still in zip((self._method.start, self._method.end), ahead.twisted, strict=True):
             exact = end.prescribed(ABOUT_A3, t)
-            turned.append(float(end.travel[ABOUT_A3]) if exact is None else exact)
+            turned.append(float(end.travel[ABOUT_A3]) - still if exact is None else exact)
         return self._Lk_at_start + (turned[1] - turned[0]) / (2 * pi)

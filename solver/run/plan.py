@@ -20,10 +20,15 @@ from solver.run.series import Attempt, chosen, is_diagonal
 
 FIRST_INTERVALS = 16
 FIRST_STEPS = 0.5
+STRIDES = 5
+"""Frames that a step may pass at the most, see `Numerics`, and does at tolerances from 1e-3 on. Where the motion is
+smooth, which such steps are for, their error is of order 5."""
 STEP_SHARE = 0.4
 """Part of the tolerance that the error of the steps may take."""
 FAR = 64.0
 """How many times larger than that of the steps the error of the mesh is where it is made finer alone first."""
+FAR_FROM_IT = 0.1
+"""Relative error of the next finer mesh from which on a mesh is too coarse to show what shorter steps would change."""
 OVERHEAD = 60
 """Intervals that take as long as all else in a Newton iteration."""
 MOST_WORK = 1.2e7
@@ -89,8 +94,14 @@ def step_tolerance(steps: int, tolerance: float) -> float:
     return FIRST_STEPS * sqrt(tolerance) / 4.0**steps
 
 
+def strides_of(tolerance: float) -> int:
+    """How many frames a step may pass."""
+    return int(max(round(STRIDES * min(tolerance / 1e-3, 1.0) ** 0.2), 1))
+
+
 def longest_step(steps: int, interval: float) -> float:
-    """The longest step (s), where frames are an `interval` apart: waves that two runs damp alike show in neither."""
+    """The longest step (s), in strides, where frames are an `interval` apart: waves that two runs damp alike show in
+    neither."""
     return interval / 2.0 ** max(steps, 0)
 
 
@@ -161,12 +172,27 @@ def _wishes(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals
     if len(meshes) == 1:
         yield from _second_mesh(history, complete, errors, most_intervals)
         return
+    again = _steps_again(complete)
+    if again and _is_for(history, again, most_intervals):
+        yield again
     for excess in sorted(errors, key=lambda excess: -excess.total):
         if excess.total <= 1.0 or not history[-1].complete:
             return
         for trial in _finer(_finest(complete), excess, len(chosen(history).meshes), diagonal=is_diagonal(history)):
             if _may_do(history, excess, trial, most_intervals):
                 yield trial
+
+
+def _steps_again(complete: Sequence[Attempt]) -> Trial | None:
+    """Shorter steps on the coarsest mesh that shows the motion, where that on which they were tried does not: the waves
+    that it lacks need other steps. (Not where they have been tried together with finer meshes, on a diagonal.)"""
+    meshes = [attempt.mesh for attempt in complete]
+    compared = [attempt for attempt in complete if meshes.count(attempt.mesh) > 1]
+    finer = sorted(attempt for attempt in complete if compared and attempt.mesh > max(compared).mesh)
+    near = [attempt for attempt in finer if attempt.apart <= FAR_FROM_IT]
+    if not near or finer[0] in near or max(attempt.steps for attempt in finer) > max(compared).steps:
+        return None
+    return Trial(near[0].mesh, near[0].steps + 1)
 
 
 def _finest(complete: Sequence[Attempt]) -> Attempt:

@@ -26,6 +26,7 @@ from solver.run.plan import (
     intervals_of,
     longest_step,
     step_tolerance,
+    strides_of,
     to_come,
 )
 from solver.run.recording import row_of
@@ -93,10 +94,11 @@ class Refined(Run):
         """A scene whose verified run has the two finest meshes of this one, and steps like these."""
         together = self._together
         steps, mesh = together.finest.steps, together.finest.mesh
-        tolerated = step_tolerance(steps, self._scene.numerics.tolerance or 1.0)
+        tolerance = self._scene.numerics.tolerance or 1.0
         numerics = replace(
             self._scene.numerics, tolerance=None, verify=True, intervals=intervals_of(mesh) // 2,
-            dt_max=longest_step(steps, self._scene.output_interval), increment_tolerance=tolerated,
+            dt_max=longest_step(steps, self._scene.output_interval), strides=strides_of(tolerance),
+            increment_tolerance=step_tolerance(steps, tolerance),
         )  # fmt: skip
         return replace(self._scene, numerics=numerics)
 
@@ -216,6 +218,8 @@ class Refined(Run):
             completed = [attempt.complete for attempt in self._attempts]
             self._recorded = [rows if kept else rows[:0] for rows, kept in zip(self._recorded, completed, strict=True)]
             self._excesses = [tuple(excess) for excess in self._together.excesses(self._errors)]
+            apart = max(excess.mesh for excess in self._errors) * (self._scene.numerics.tolerance or 1.0)
+            self._history[-1] = tuple(self._attempts[-1]._replace(apart=apart))
         then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
         if then is None:
             self._decided, self.errors_of_frames = True, self._together.errors()

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 from typing import NamedTuple
 
 
 class Attempt(NamedTuple):
     """A run that was tried: its `mesh` and `steps` (see `plan`), its `work`, the time `t` (s) that it reached, whether
-    it is `complete`, whether it was `slow`: given up because it would have taken too long, and the number of its
-    `outcome` among all."""
+    it is `complete`, whether it was `slow`: given up because it would have taken too long, the number of its
+    `outcome` among all, and how far it is `apart` from the motion: the largest relative error of its mesh, once told.
+    """
 
     mesh: int
     steps: int
@@ -18,6 +20,7 @@ class Attempt(NamedTuple):
     complete: bool
     slow: bool
     outcome: int = 0
+    apart: float = inf
 
 
 class Chosen(NamedTuple):
@@ -65,12 +68,12 @@ def is_diagonal(attempts: Sequence[Attempt]) -> bool:
 
 
 def step_series(attempts: Sequence[Attempt]) -> list[int]:
-    """The complete attempts on the mesh that has most of them, the finest if there are several, those with the
-    longest steps first."""
+    """The complete attempts on the finest mesh that has several of them, or else on the finest, those with the longest
+    steps first."""
     complete = [i for i, attempt in enumerate(attempts) if attempt.complete]
-    meshes = sorted((attempts[i].mesh for i in complete), reverse=True)
-    most = max(meshes, key=meshes.count, default=0)
-    return sorted((i for i in complete if attempts[i].mesh == most), key=lambda i: attempts[i].steps)
+    meshes = [attempts[i].mesh for i in complete]
+    mesh = max(meshes, key=lambda mesh: (meshes.count(mesh) > 1, mesh), default=0)
+    return sorted((i for i in complete if attempts[i].mesh == mesh), key=lambda i: attempts[i].steps)
 
 
 def _chain(attempts: Sequence[Attempt], end: int, shift: int) -> list[int]:

@@ -38,7 +38,7 @@ class Simulation(Run):
         self._control = StepControl(
             scene.numerics.dt_max, tolerated_increment(scene.numerics), self._method.increment_order,
             self._method.easy_iterations, self._method.shortest_step, ends + self._method.applied.corners(),
-            self._outputs,
+            self._outputs, scene.numerics.strides,
         )  # fmt: skip
         self._switches = sorted({c.since for e in (scene.start, scene.end)
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
@@ -77,7 +77,8 @@ class Simulation(Run):
             self.t = self._advance(self.t, *self._control.step_from(self.t, self._method.step_limit()))
         if not self._control.reached(output, self.t):
             return None
-        frame = self._accounts.frame(output)
+        ago = 0.0 if self._control.reached(self.t, output) else self.t - output
+        frame = self._accounts.frame(output, ago)
         if self.remarks.axial_stiffness:
             self.remarks.stretched(self._method.strain() * float(self._scene.rod.length))
         made = self._accounts.made

@@ -17,19 +17,19 @@ boundary layer has to form within the first interval."""
 
 
 class StepControl:
-    """Chooses steps that end exactly on every corner and output time."""
+    """Chooses steps that end exactly on every corner and on every output time that they may not pass."""
 
     def __init__(self, dt_max: float, tolerance: float, order: float, easy: int, shortest: float,
-                 corners: Iterable[float], outputs: Sequence[float]) -> None:  # fmt: skip
-        """`tolerance`: relative increment aimed at; `order`: power of the step with which it falls; `easy`: iterations
-        of an easy step."""
+                 corners: Iterable[float], outputs: Sequence[float], strides: int = 1) -> None:  # fmt: skip
+        """`strides`: how many dt_max a step may last, and how many outputs it may pass; `tolerance`: relative increment
+        aimed at; `order`: power of the step with which it falls; `easy`: iterations of an easy step."""
         self._exponent, self._easy = 1.0 / order, easy
-        self._dt_max, self._tolerance = dt_max, tolerance
+        self._dt_max, self._longest, self._tolerance = dt_max, strides * dt_max, tolerance
         self._first = max(dt_max * FIRST_STEP, shortest)
         self.smallest = max(dt_max * SMALLEST_STEP, shortest)
         """The step (s) below which the run is given up."""
         self._wanted = self._first
-        self._events = sorted(set(corners) | set(outputs))
+        self._events = sorted({*corners, *outputs[strides - 1 :: strides], *outputs[-1:]})
         self._next = 0
         self._near = max(1e-9 * min([dt_max, *outputs]), 1e-15 * max(outputs, default=0.0))
 
@@ -41,7 +41,7 @@ class StepControl:
         """The next step from t, and where it ends: equal steps up to the next event, each at most `limit`."""
         while self._next < len(self._events) and self.reached(self._events[self._next], t):
             self._next += 1
-        wanted = min(self._wanted, self._dt_max, limit)
+        wanted = min(self._wanted, self._longest, limit)
         if self._next == len(self._events):
             return wanted, t + wanted
         event = self._events[self._next]
@@ -58,7 +58,7 @@ class StepControl:
         if relative_increment > 0.0:
             accurate = 0.9 * dt * (self._tolerance / relative_increment) ** self._exponent
             longest = min(longest, max(0.5 * taken, accurate))
-        self._wanted = min(self._dt_max, longest)
+        self._wanted = min(self._longest, longest)
 
     @property
     def stuck(self) -> bool:

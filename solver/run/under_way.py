@@ -8,7 +8,7 @@ from typing import Any
 
 from solver.measures.frame import Frame, Statistics
 from solver.run.checkpoint import Saved, restore, saved
-from solver.run.plan import IN_CONTACT, OVERHEAD, Trial, intervals_of, longest_step, step_tolerance
+from solver.run.plan import IN_CONTACT, OVERHEAD, Trial, intervals_of, longest_step, step_tolerance, strides_of
 from solver.run.simulation import Simulation
 from solver.scene.scene import Scene
 
@@ -27,10 +27,11 @@ class UnderWay:
         self.trial = trial
         self.statistics = Statistics()
         self.work, self.pressed = 0.0, False
+        tolerance = scene.numerics.tolerance or 1.0
         numerics = replace(
             scene.numerics, tolerance=None, verify=False, intervals=intervals_of(trial.mesh),
-            dt_max=longest_step(trial.steps, scene.output_interval), small_motion=SMALL_MOTION,
-            increment_tolerance=step_tolerance(trial.steps, scene.numerics.tolerance or 1.0),
+            dt_max=longest_step(trial.steps, scene.output_interval), strides=strides_of(tolerance),
+            small_motion=SMALL_MOTION, increment_tolerance=step_tolerance(trial.steps, tolerance),
         )  # fmt: skip
         self.run = Simulation(replace(scene, numerics=numerics), self.statistics, goes_on=True)
 

@@ -17,7 +17,8 @@ class Numerics:
     `dt_max` the largest step (s); `rho_inf` the spectral radius of generalized-alpha at infinite frequency in time,
     `rho_inf_space` the same along s (1 is the box scheme); `increment_tolerance` bounds each step's error relative to
     the step's motion (None: the method's own), or to `small_motion`, rotation (rad) and displacement (rod lengths), if
-    that is more.
+    that is more. With `strides` above 1 (staggered method) steps end at every so manieth frame only, may be so many
+    dt_max long, and give the frames within them by their own polynomials.
 
     With a `tolerance` (staggered method) the scene runs on meshes that are twice as fine each, at most of
     `most_intervals`, until the estimated error of r, kappa, the energies and Tw and Wr is below it, or the work is done
@@ -33,6 +34,7 @@ class Numerics:
     rho_inf_space: float = 1.0
     increment_tolerance: float | None = None
     small_motion: float = 1e-7
+    strides: int = 1
     tolerance: float | None = None
     most_intervals: int = 2000
     verify: bool = False
@@ -58,5 +60,7 @@ class Numerics:
             value = getattr(self, name)
             if value is not None and not value > 0:
                 raise ValueError(f"{name} must be > 0, got {value}")
+        if self.strides < 1 or (self.strides > 1 and self.method != "staggered"):
+            raise ValueError(f"strides must be 1, or more with the method staggered, got {self.strides}")
         if self.tolerance is not None and self.method != "staggered":
             raise ValueError(f"method must be staggered with a tolerance, got {self.method}")

@@ -68,7 +68,7 @@ PAIRS = (
          "fluid.", lambda scene: scene.fluid, lambda scene, part: replace(scene, fluid=part)),
     Pair(Contact, (ContactSpec,), {"aperture": ("aperture_deg",)}, (),
          "contact.", lambda scene: scene.contact, lambda scene, part: replace(scene, contact=part)),
-    Pair(Numerics, (NumericsSpec,), {"most_intervals": (), "small_motion": ()}, (),
+    Pair(Numerics, (NumericsSpec,), {"most_intervals": (), "small_motion": (), "strides": ()}, (),
          "numerics.", lambda scene: scene.numerics, lambda scene, part: replace(scene, numerics=part)),
 )  # fmt: skip
 

@@ -24,7 +24,7 @@ FINE = {"numerics": {"tolerance": 3e-4}}
 
 
 def tolerated(name: str = "cantilever-vibration", **told: Any) -> dict[str, Any]:
-    return case(name, **{"numerics": {"tolerance": 1e-2}, **told})
+    return case(name, **{"numerics": {"tolerance": 1e-2}, "output.interval": 0.02, **told})
 
 
 @pytest.fixture
@@ -68,11 +68,11 @@ def switched(omega3: float) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("first", "then", "frame"), [
-    ({}, {"t_end": 1.5}, 9), ({"t_end": 1.5}, {}, 9), (FINE, {**FINE, "t_end": 1.5}, 9),
-    (load(TABLE), load(OTHER), 4), (switched(1.0), switched(-1.0), 5),
-    (switched(1.0), {"ends.end": {"preset": "free", "switches": [{"at": 0.8, "omega3": 1.0}]}}, 5),
-    ({"output.fields": ["r"]}, {"t_end": 1.3}, 9),  # rows hold all
-    ({"contact": {}}, {"contact": {}, "t_end": 1.4}, 9),
+    ({}, {"t_end": 1.5}, 49), ({"t_end": 1.5}, {}, 49), (FINE, {**FINE, "t_end": 1.5}, 49),
+    (load(TABLE), load(OTHER), 24), (switched(1.0), switched(-1.0), 27),
+    (switched(1.0), {"ends.end": {"preset": "free", "switches": [{"at": 0.8, "omega3": 1.0}]}}, 27),
+    ({"output.fields": ["r"]}, {"t_end": 1.3}, 49),  # rows hold all
+    ({"contact": {}}, {"contact": {}, "t_end": 1.4}, 49),
 ])  # fmt: skip
 def test_it_is_the_same_as_alone_for_fewer_steps(ran, settings, first, then, frame):
     leader, _ = ran(tolerated(**first))
@@ -86,8 +86,8 @@ def test_it_is_the_same_as_alone_for_fewer_steps(ran, settings, first, then, fra
 
 def test_who_begins_with_one_that_began_with_another_takes_over_from_it(ran, settings):
     first, _ = ran(tolerated())
-    second, _ = ran(tolerated(t_end=1.5), begins_with=first.id, begins_at=9)
-    third, computed = ran(tolerated(t_end=2.0), begins_with=second.id, begins_at=14)
+    second, _ = ran(tolerated(t_end=1.5), begins_with=first.id, begins_at=49)
+    third, computed = ran(tolerated(t_end=2.0), begins_with=second.id, begins_at=74)
     alone, whole = ran(tolerated(t_end=2.0))
     assert_same(settings, third, alone)
     assert taken_over(third) > taken_over(second) > 0
@@ -107,7 +107,7 @@ def test_what_ends_its_first_attempt_because_strands_press_is_the_same_too(ran, 
 
 def test_what_another_tolerance_computed_is_not_taken_over(ran):
     leader, _ = ran(tolerated())
-    follower, _ = ran(tolerated(t_end=1.5, **FINE), begins_with=leader.id, begins_at=9)
+    follower, _ = ran(tolerated(t_end=1.5, **FINE), begins_with=leader.id, begins_at=49)
     assert (follower.begins_with, taken_over(follower)) == (None, 0)
 
 
@@ -118,16 +118,16 @@ def test_whatever_is_not_there_any_more_it_gives_the_same(ran, registry, setting
     attempts = sorted(kept.iterdir())
     assert len(attempts) > 2
     assert all([path.name for path in sorted(attempt.iterdir())]
-               == ["00000002", "00000005", "00000007", "00000009", "rows"] for attempt in attempts)  # fmt: skip
+               == ["00000010", "00000025", "00000035", "00000045", "rows"] for attempt in attempts)  # fmt: skip
     for attempt in attempts:
         for path in attempt.iterdir():
             if harm == "emptied":
                 path.unlink()
-            elif path.name == {"rows": "rows", "one state": "00000009"}.get(harm, path.name) and harm != "deleted":
+            elif path.name == {"rows": "rows", "one state": "00000045"}.get(harm, path.name) and harm != "deleted":
                 path.write_bytes(path.read_bytes()[:-9] if path.name == "rows" else b"x" * 100)
     if harm == "deleted":
         registry.delete(leader.id, Actor("local"))
-    follower, computed = ran(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9)
+    follower, computed = ran(tolerated(t_end=1.5), begins_with=leader.id, begins_at=49)
     alone, whole = ran(tolerated(t_end=1.5))
     assert_same(settings, follower, alone)
     if harm == "one state":
@@ -141,7 +141,7 @@ def test_one_attempt_whose_states_are_lost_is_run_whole_and_the_others_begin_lat
     kept = sorted((settings.data / "beginnings" / leader.id).iterdir())
     for path in kept[0].iterdir():
         path.unlink()
-    follower, computed = ran(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9)
+    follower, computed = ran(tolerated(t_end=1.5), begins_with=leader.id, begins_at=49)
     alone, whole = ran(tolerated(t_end=1.5))
     assert_same(settings, follower, alone)
     assert 0 < computed < whole and follower.begins_with == leader.id
@@ -150,15 +150,15 @@ def test_one_attempt_whose_states_are_lost_is_run_whole_and_the_others_begin_lat
 def test_short_attempts_keep_states_for_those_alone_who_wait(ran, registry, settings, monkeypatch):
     monkeypatch.setattr(trials, "WORTH", 1e9)
     leader = registry.submit(NewJob(tolerated()))
-    waiting = registry.submit(NewJob(tolerated(t_end=1.3), begins_with=leader.id, begins_at=4, waits=True))
+    waiting = registry.submit(NewJob(tolerated(t_end=1.3), begins_with=leader.id, begins_at=24, waits=True))
     run_next(registry.database, settings)
     kept = settings.data / "beginnings" / leader.id
-    assert {path.name for path in kept.glob("*/*")} == {"00000004", "rows"}
+    assert {path.name for path in kept.glob("*/*")} == {"00000020", "rows"}
     run_next(registry.database, settings)
     assert taken_over(registry.get(waiting.id)) > 0
     ran(tolerated(t_end=0.9))
     assert [path.name for path in kept.parent.iterdir()] == [leader.id]
-    late, _ = ran(tolerated(t_end=1.4), begins_with=leader.id, begins_at=3)
+    late, _ = ran(tolerated(t_end=1.4), begins_with=leader.id, begins_at=19)
     assert (late.begins_with, taken_over(late)) == (None, 0)
 
 
@@ -174,7 +174,7 @@ def killed(registry: Registry, settings: Settings, steps: int) -> None:
 ])  # fmt: skip
 def test_a_job_that_is_killed_on_its_way_goes_on_and_gives_the_same(ran, registry, settings, whose, steps):
     leader = registry.submit(NewJob(tolerated()))
-    follower = registry.submit(NewJob(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9, waits=True))
+    follower = registry.submit(NewJob(tolerated(t_end=1.5), begins_with=leader.id, begins_at=49, waits=True))
     if whose == "follower":
         run_next(registry.database, settings)
     killed(registry, settings, steps)
@@ -189,7 +189,7 @@ def test_a_job_that_is_killed_on_its_way_goes_on_and_gives_the_same(ran, registr
 
 def test_a_job_goes_on_from_its_checkpoint_though_who_it_began_with_is_gone(ran, registry, settings):
     leader, _ = ran(tolerated())
-    follower = registry.submit(NewJob(tolerated(t_end=1.5), begins_with=leader.id, begins_at=9))
+    follower = registry.submit(NewJob(tolerated(t_end=1.5), begins_with=leader.id, begins_at=49))
     killed(registry, settings, 6)
     registry.delete(leader.id, Actor("local"))
     rmtree(settings.data / "beginnings" / leader.id)

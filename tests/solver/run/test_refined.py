@@ -80,8 +80,10 @@ def test_runs_on_all_meshes_count_in_what_it_costs_and_frames_come_after_them() 
     assert seen == sorted(seen)
     assert 0.0 < seen[-1] < 1.0
     assert run.progress == 1.0
-    steps = run.statistics.steps
-    assert steps > 4 * 16
+    first, steps = UnderWay(tolerated(1e-2), Trial(0, 0)), run.statistics.steps
+    while not first.run.finished:
+        first.advance()
+    assert steps > 3 * first.statistics.steps
     assert [frame.t for frame in run] == pytest.approx(np.arange(0.25, 4.1, 0.25))
     assert run.statistics.steps == steps
 

@@ -15,7 +15,7 @@ Positions follow from the tangents: each segment begins where the last one ends.
 
 from __future__ import annotations
 
-from typing import no_type_check
+from typing import NamedTuple, no_type_check
 
 import numpy as np
 
@@ -153,6 +153,51 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
         follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], chain.h,
                         stages.r[i], stages.V[i], stages.A[i])  # fmt: skip
     return float(np.sqrt(largest))
+
+
+class Passing(NamedTuple):
+    """What a state within a step is made from, of all orientations (N + 2, ...): see `Stages`."""
+
+    theta: Array
+    theta_t: Array
+    theta_tt: Array
+    steady: Array
+    S: Array
+
+    @classmethod
+    def empty(cls, intervals: int) -> Passing:
+        """Zeros for N = `intervals`."""
+        n = intervals + 2
+        return cls(*(np.zeros((n, *shape)) for shape in ((3,), (3,), (3,), (4,), (3, 3))))
+
+
+@kernel
+def look_back(chain: Chain, before: State, stages: Stages, part: float, dt: float, cubic: Array, parabola: Array,
+              passing: Passing, then: State, R: Array, centres: Array) -> None:  # fmt: skip
+    """Write state, R (N + 2, 3, 3) and centres (3, N, 3) after a part of the step of dt that began with `before`.
+
+    `cubic` and `parabola` (3,): see `tableau.within`. Accelerations are not known there, and 0.
+    """
+    a, b, c = cubic[0], cubic[1], cubic[2]
+    for i in range(len(then.omega)):
+        for k in range(3):
+            passing.theta[i, k] = a * stages.theta[0, i, k] + b * stages.theta[1, i, k] + c * stages.theta[2, i, k]
+            passing.theta_t[i, k] = (a * stages.theta_t[0, i, k] + b * stages.theta_t[1, i, k]
+                                     + c * stages.theta_t[2, i, k])  # fmt: skip
+    _spin(before.omega, part, dt, passing.steady, passing.S)
+    _turn(passing.theta, passing.theta_t, passing.theta_tt, before.omega, before.quaternion, passing.steady, passing.S,
+          then.quaternion, R, then.omega, then.alpha)  # fmt: skip
+    then.alpha[:] = 0.0
+    for k in range(3):
+        speed = before.base[1, k]
+        then.base[0, k] = (before.base[0, k] + a * stages.shift[0, k] + b * stages.shift[1, k]
+                           + c * stages.shift[2, k])  # fmt: skip
+        then.base[1, k] = (speed + a * (stages.base[0, 1, k] - speed) + b * (stages.base[1, 1, k] - speed)
+                           + c * (stages.base[2, 1, k] - speed))  # fmt: skip
+        for i in range(len(then.F)):
+            then.F[i, k] = (parabola[0] * stages.F[0, i, k] + parabola[1] * stages.F[1, i, k]
+                            + parabola[2] * stages.F[2, i, k])  # fmt: skip
+    follow_segments(R, then.omega, then.alpha, then.base, chain.h, centres[0], centres[1], centres[2])
 
 
 @inlined

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.kernels.handed import Handed, Reference
 from solver.methods.linear.stages import Scheme
+from solver.methods.method import NOTHING_AHEAD, Ahead
 from solver.methods.space.segments.chain import STAGES, Chain, State
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.stages import Record
@@ -53,7 +54,7 @@ class RadauMethod(ABC):
         self._newton_part = NEWTON_PART * min(tolerance, 1.0) if tolerance < inf else 0.0
         # no shorter step has an error below what Newton's iteration leaves
         self._small_motion = max(scene.numerics.small_motion, TOLERANCE / tolerance)
-        self._last_dt = 0.0
+        self._last_dt = self._step = self._ago = 0.0
         self._powers = np.zeros((STAGES, 3))
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
@@ -94,8 +95,20 @@ class RadauMethod(ABC):
             mine[:] = series[-1]
         for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
             kept[:] = now
-        self._last_dt = dt
+        self._last_dt, self._step, self._ago = dt, dt, 0.0
         return self._flowed(weights)
+
+    def look_back(self, ago: float) -> Ahead:
+        """Show the rod within the last step: see `Method`. By the polynomials that are collocated, of order 3 as the
+        estimate of the step's error is."""
+        self._ago = ago
+        if ago == 0.0:
+            return NOTHING_AHEAD
+        part = 1.0 - ago / self._step
+        cubic, parabola, gained = tableau.within(part)
+        self._pass(part, cubic, parabola)
+        weights = self._step * gained
+        return Ahead(self._flowed(weights), self._twisted(weights))
 
     def strain(self) -> float:
         """None: segments are rigid."""
@@ -121,6 +134,8 @@ class RadauMethod(ABC):
         """Have every kernel compiled that a run may need, after its first step."""
         self._guess(1.0)
         self.relative_increment(1.0)
+        self.look_back(0.5 * self._step)
+        self.look_back(0.0)
 
     @abstractmethod
     def _drive_end(self, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
@@ -135,9 +150,25 @@ class RadauMethod(ABC):
         """Tell the ends how they moved in a step; write the power (W) of ends and loads, and what is dissipated,
         at the stages into `_powers`."""
 
+    @abstractmethod
+    def _pass(self, part: float, cubic: Array, parabola: Array) -> None:
+        """Write what the rod was like after a part of the last step into `_then`, by the weights (3,) of the stages: of
+        what begins with the step, and of forces, which may jump there."""
+
+    @abstractmethod
+    def _twisted(self, weights: Array) -> tuple[float, float]:
+        """By how much start and end turn about a3 (rad), by the weights (3,) of the stages' rates."""
+
+    @property
+    def _shown(self) -> tuple[Record, NDArray[Any]]:
+        """The state that is shown, and the places, velocities and accelerations of its segments' centres."""
+        return (self._then, self._centres_then) if self._ago > 0.0 else (self.state, self._centres)
+
     def _flowed(self, weights: Array) -> Array:
         """The energy (4,) that flowed in a step."""
-        return np.append(weights @ self._powers, 0.0)
+        flowed = np.zeros(4)
+        flowed[:3] = weights @ self._powers
+        return flowed
 
     @property
     def _touch(self) -> Record:
@@ -169,6 +200,8 @@ class RadauMethod(ABC):
         self._last: tuple[Array, ...] = tuple(np.zeros_like(series) for series in unknown)
         self._centres: NDArray[Any] = np.zeros_like(self.stages.r)
         """Positions, velocities and accelerations of the segments' centres, of the state."""
+        self._then, self._centres_then = type(state).empty(N), np.zeros_like(self._centres)
+        """The same within the last step, where somebody looks back."""
 
     def _drive(self, t: float, dt: float) -> None:
         """Write what is given at the stages of a step."""

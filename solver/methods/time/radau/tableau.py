@@ -51,6 +51,20 @@ TO_CUBIC, TO_PARABOLA = np.linalg.inv(_cubic(C)), np.linalg.inv(_parabola(C))
 """From values at the stages to the coefficients of the polynomial through (0, 0) and them, and of the parabola."""
 
 
+_IN_CUBIC = np.vstack([np.zeros(3), TO_CUBIC])
+_IN_PARABOLA = np.vstack([TO_PARABOLA, np.zeros(3)])
+_GAINED = np.vstack([np.zeros(3), TO_PARABOLA / np.array([[1.0], [2.0], [3.0]])])
+_WITHIN = np.stack([_IN_CUBIC.T, _IN_PARABOLA.T, -_GAINED.T])
+_WITHIN[2, :, 0] = _GAINED.sum(axis=0)
+
+
+def within(part: float) -> np.ndarray:
+    """(3, 3): weights of the stages after a part of the step: of what begins with 0, in the polynomial through that and
+    them; of what may jump there, in the parabola through them; of rates, in what is gained until the end of the step.
+    """
+    return np.asarray(_WITHIN @ np.array([1.0, part, part * part, part * part * part]))
+
+
 @lru_cache(maxsize=8)
 def extrapolation(ratio: float) -> np.ndarray:
     """(3, 3): values of the polynomial through (0, 0) and the stages at the stages of a next step `ratio` as long."""

@@ -125,8 +125,10 @@ class OutputSpec(Spec):
     """What is stored, and how often."""
 
     interval: Annotated[
-        Positive, means("time between frames, the last of which is at `t_end`; steps end exactly on frames, and with a tolerance on every fifth at least, between which frames lie on the steps' own polynomials", "s")
-    ]
+        Positive,
+        means("time between frames, the last of which is at `t_end`. Steps end exactly on frames; with a tolerance on "
+              "every fifth at least, and the frames between lie on the steps' own polynomials", "s"),
+    ]  # fmt: skip
     fields: Annotated[
         tuple[FieldName, ...], Field(min_length=1), means("which variables along the rod are stored")
     ] = ALL_FIELDS

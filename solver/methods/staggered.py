@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 
 from solver.arrays import Array
@@ -104,8 +106,9 @@ class StaggeredMethod(RadauMethod):
         return self.contact.refusal(total_bending(self.stages.bend[2]), self._trial_nodes)
 
     def step_limit(self) -> float:
-        """The longest next step (s) that contact and loads allow."""
-        return min(self.contact.step_limit, self.applied.longest_step(self._nodes[0], self._nodes[1]))
+        """The longest next step (s) that contact and loads allow: where strands touch, it passes no frames."""
+        by_contact = min(self.contact.step_limit, self._dt_max if self.contact.touching else inf)
+        return min(by_contact, self.applied.longest_step(self._nodes[0], self._nodes[1]))
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""

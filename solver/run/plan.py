@@ -39,8 +39,9 @@ FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 LAST_PART = 4.0
 """MOST_WORK that a run with the longest steps may take, where no other came to its end."""
-PATIENCE = 8.0
-"""How many times the work that is expected of it the first run on a second mesh, or with other steps, may take."""
+PATIENCE, MOST_PATIENCE = 8.0, 2.5
+"""How many times the work that is expected of it the first run on a second mesh, or with other steps, may take; and
+how many times MOST_WORK."""
 LOOSEST = -4
 """The longest steps that are tried: their error hardly counts."""
 SAME_TIME = 0.02
@@ -113,7 +114,8 @@ def allowance(history: Sequence[Attempt], trial: Trial) -> float:
     remaining = MOST_WORK - _work(history)
     meshes = {attempt.mesh for attempt in complete}
     if len(complete) == 1 or (len(meshes) == 1 and trial.mesh not in meshes):
-        return max(remaining, PATIENCE * expected(complete, trial))  # without it nothing is known of the error
+        # without it nothing is known of the error
+        return max(remaining, min(PATIENCE * expected(complete, trial), MOST_PATIENCE * MOST_WORK))
     return max(remaining, 0.0)
 
 

@@ -52,6 +52,7 @@ class RadauMethod(ABC):
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._newton_part = NEWTON_PART * min(tolerance, 1.0) if tolerance < inf else 0.0
+        self._dt_max = scene.numerics.dt_max
         # no shorter step has an error below what Newton's iteration leaves
         self._small_motion = max(scene.numerics.small_motion, TOLERANCE / tolerance)
         self._last_dt = self._step = self._ago = 0.0
@@ -75,10 +76,13 @@ class RadauMethod(ABC):
         return status, iterations
 
     def relative_increment(self, dt: float) -> float:
-        """The embedded estimate of the trial's error relative to its motion, the larger of rotation and place."""
+        """The embedded estimate of the trial's error relative to its motion, the larger of rotation and place.
+
+        What is too small to count in a step of dt_max does count in one that is far longer.
+        """
         errors: tuple[float, ...] = estimate_error(self._handed.reference, dt, self.state, self._centres)
         turn_error, turned, move_error, moved = errors
-        small = self._small_motion
+        small = self._small_motion * min((self._dt_max / dt) ** 2, 1.0)
         return max(turn_error / (turned + small), move_error / (moved + small * float(self.s[-1])))
 
     def take_step(self, t: float, dt: float) -> Array:

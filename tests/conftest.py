@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import shutil
 import subprocess
 import sys
@@ -33,6 +34,17 @@ def pytest_configure(config: pytest.Config) -> None:
     compiling = [subprocess.Popen([sys.executable, "-c", f"{load}; {statement}"]) for statement in COMPILED]
     for process in compiling:
         process.wait()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Iterator[None]:
+    """Look for no garbage while tests are collected: what is loaded stays, and to look takes a quarter of the time."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture

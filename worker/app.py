@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import time
@@ -97,6 +98,8 @@ def prepare(**_: Any) -> None:
         database()  # may fail; then each child tries
     except WrongSchema as error:
         sys.exit(str(error))  # no child could run a job, only take its message from workers that can
+    gc.freeze()  # what the children share would be copied as soon as one of them looked for garbage in it
+    gc.enable()
 
 
 @worker_process_init.connect

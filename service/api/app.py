@@ -112,3 +112,4 @@ def _warm_up() -> None:
         parse_case(load_case(name))
     gc.collect()
     gc.freeze()
+    gc.enable()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import shutil
 import subprocess
 import sys
@@ -27,7 +28,11 @@ COMPILED = (
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Before tests run side by side, compile the kernels, each once: else each side does it."""
+    """Before tests run side by side, compile the kernels, each once: else each side does it.
+
+    Tests start hundreds of processes. They compile no module twice, even where Python is told to write no bytecode.
+    """
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     if hasattr(config, "workerinput") or not config.getoption("numprocesses", None):
         return
     load = "import solver; from solver.run.warming import load"

@@ -20,6 +20,17 @@ CHROMIUM = which("chromium") or which("chromium-browser") or which("google-chrom
 ARGUMENTS = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",
              "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
 
+PLAYWRIGHTS = ("AvoidUnnecessaryBeforeUnloadCheckSync", "DestroyProfileOnBrowserClose", "HttpsUpgrades",
+               "HttpsFirstBalancedModeAutoEnable", "LensOverlay", "MediaRouter", "PaintHolding",
+               "ThirdPartyStoragePartitioning", "AvoidCorsURLLoaderRestartOnRedirect", "TcpPortRandomizationWin",
+               "OptimizationHints", "NetworkTimeServiceQuerying", "AimEnabled", "PreconnectToSearch")  # fmt: skip
+"""What Playwright turns off: of several lists of features Chromium takes the last."""
+WINDOWS = ("WebUIOmniboxPopup", "WebUIOmniboxFullPopup", "WebUIOmniboxAimPopup")
+"""The suggestions below a window's address, a page of its own in each window."""
+SPARING = [f"--disable-features={','.join(PLAYWRIGHTS + WINDOWS)}", "--disable-gpu-compositing"]
+"""More arguments, for who looks at what pages hold and not at how fast they are drawn. Nobody sees the windows, and
+what WebGL does not draw is drawn without the graphics card that is only imitated: a page takes half of the CPU time."""
+
 
 @contextmanager
 def serving(settings: Settings, keyed: bool = False) -> Iterator[SimpleNamespace]:
@@ -41,12 +52,12 @@ def serving(settings: Settings, keyed: bool = False) -> Iterator[SimpleNamespace
 
 
 @contextmanager
-def browsing() -> Iterator[Callable[[], Any]]:
-    """Gives what opens an empty page, with cookies and storage of its own."""
+def browsing(*more: str) -> Iterator[Callable[[], Any]]:
+    """Gives what opens an empty page, with cookies and storage of its own; `more` are arguments of the browser."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=[*ARGUMENTS, *more])
 
         def opened() -> Any:
             page = browser.new_page(viewport={"width": 1200, "height": 800})

@@ -11,7 +11,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from benchmarks.dashboard.accessibility import SCHEMES, axe
-from benchmarks.dashboard.browser import CHROMIUM, browsing, serving
+from benchmarks.dashboard.browser import CHROMIUM, SPARING, browsing, serving
 from service.api import documentation
 from service.api.app import create_app
 from service.settings import Settings
@@ -53,7 +53,7 @@ def test_axe_finds_nothing_on_any_page(site, tmp_path, monkeypatch, scheme):
     pytest.importorskip("playwright.sync_api", reason="Playwright's Python package is not installed")
     monkeypatch.setattr(documentation, "SITE", site)
     found = {}
-    with serving(Settings(tmp_path)) as server, browsing() as opened:
+    with serving(Settings(tmp_path)) as server, browsing(*SPARING) as opened:
         page = opened()
         page.emulate_media(color_scheme=scheme)
         for path in sorted(site.rglob("index.html")):

@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from benchmarks.dashboard.browser import CHROMIUM, browsing, serving
+from benchmarks.dashboard.browser import CHROMIUM, SPARING, browsing, serving
 from service.cases import apply_settings, load_case, parse_case
 from service.jobs import Database, NewJob, Registry
 from service.jobs.registry import insert_jobs
@@ -78,7 +78,7 @@ def opened() -> Iterator[Callable[[], Any]]:
     if CHROMIUM is None:
         pytest.skip("there is no Chromium: apt-get install chromium")
     pytest.importorskip("playwright.sync_api", reason="Playwright's Python package is not installed")
-    with browsing() as opened:
+    with browsing(*SPARING) as opened:
         yield opened
 
 

@@ -26,6 +26,16 @@ COMPILED = (
 )
 """All kernels that tests need, in two parts that take as long as each other."""
 
+LONG = (
+    "service/api/test_fuzz.py", "docs/test_site.py", "docs/test_pages.py", "hockle/test_supervisor.py",
+    "chaos/test_campaign.py", "hockle/test_standing_still.py", "hockle/test_rolling_upgrade.py",
+    "client/test_restarts.py", "hockle/test_two_hosts.py", "service/dashboard/test_loss.py",
+    "service/dashboard/test_cable.py", "hockle/test_strict_host.py", "client/test_ensembles.py",
+    "worker/test_trials.py", "test_warm.py", "chaos/test_attack.py", "client/test_client.py",
+    "hockle/test_worker_alone.py", "service/api/test_again.py", "test_wheel.py", "hockle/test_film.py",
+)  # fmt: skip
+"""The files that take longest, longest first: begun last, one of them would keep the others' processes waiting."""
+
 
 def pytest_configure(config: pytest.Config) -> None:
     """Before tests run side by side, compile the kernels, each once: else each side does it.
@@ -50,6 +60,13 @@ def pytest_collection() -> Iterator[None]:
     finally:
         gc.freeze()
         gc.enable()
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Where files are dealt out to processes, they get those that take longest first."""
+    if hasattr(config, "workerinput"):
+        place = {Path(__file__).parent / name: number for number, name in enumerate(LONG)}
+        items.sort(key=lambda item: place.get(item.path, len(LONG)))
 
 
 @pytest.fixture

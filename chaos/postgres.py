@@ -33,19 +33,24 @@ def binaries() -> Path | None:
 class Postgres:
     """A running server. It refuses to run as root, so then it runs as another user."""
 
-    def __init__(self, binaries: Path, directory: Path) -> None:
-        """Make a new cluster in `directory`, with the programs in `binaries`, and start it."""
+    def __init__(self, binaries: Path, directory: Path, synced: bool = True) -> None:
+        """Make a new cluster in `directory`, with the programs in `binaries`, and start it.
+
+        One that is not `synced` never waits for the disk: only with the machine's power could it lose something.
+        """
         self._bin, self.directory, self._data = binaries, directory, directory / "data"
+        self._options = OPTIONS if synced else {**OPTIONS, "fsync": "off"}
         self._user = "postgres" if os.geteuid() == 0 else None
         if self._user:
             owner = pwd.getpwnam(self._user)
             os.chown(directory, owner.pw_uid, owner.pw_gid)
-        self._run("initdb", "--auth=trust", "--username=hockle", "--encoding=UTF8", "--locale=C", "-D", str(self._data))
+        self._run("initdb", "--auth=trust", "--username=hockle", "--encoding=UTF8", "--locale=C",
+                  *([] if synced else ["--no-sync"]), "-D", str(self._data))  # fmt: skip
         self.start()
 
     def start(self) -> None:
         """Start it, and wait until it answers."""
-        options = [f"-c{name}={value}" for name, value in OPTIONS.items()]
+        options = [f"-c{name}={value}" for name, value in self._options.items()]
         with (self.directory / "log").open("ab") as log:
             self.process = subprocess.Popen(
                 [self._bin / "postgres", "-D", str(self._data), "-k", str(self.directory), *options],
@@ -98,7 +103,9 @@ class Postgres:
 
 
 @contextmanager
-def postgres(disk: Callable[[Path], AbstractContextManager[object]] = nullcontext) -> Iterator[Postgres]:
+def postgres(
+    disk: Callable[[Path], AbstractContextManager[object]] = nullcontext, synced: bool = True
+) -> Iterator[Postgres]:
     """A server while the block runs, in a directory where `disk` is mounted.
 
     Raises FileNotFoundError where none is installed.
@@ -110,7 +117,7 @@ def postgres(disk: Callable[[Path], AbstractContextManager[object]] = nullcontex
     directory = Path(tempfile.mkdtemp(prefix="hockle-pg-", dir="/tmp" if os.geteuid() == 0 else None))
     try:
         with disk(directory):
-            server = Postgres(programs, directory)
+            server = Postgres(programs, directory, synced)
             try:
                 yield server
             finally:

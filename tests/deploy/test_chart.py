@@ -85,7 +85,7 @@ def test_the_query_that_scales_is_the_age_of_the_queue():
     import psycopg
 
     query = one(FULL, "ScaledObject", "worker")["spec"]["triggers"][0]["metadata"]["query"]
-    with postgres() as server:
+    with postgres(synced=False) as server:
         database = Database(server.create("scaling"))
 
         def age() -> float:

@@ -115,7 +115,7 @@ def postgresql() -> Iterator[Postgres]:
     """A PostgreSQL for several hosts."""
     if binaries() is None:
         pytest.skip("no PostgreSQL on this machine")
-    with postgres() as running:
+    with postgres(synced=False) as running:
         yield running
 
 

@@ -24,7 +24,7 @@ ALWAYS = ("/", "/livez", "/readyz", "/v1/openapi.json")
 def server() -> Iterator[Postgres]:
     if binaries() is None:
         pytest.skip("no PostgreSQL on this machine")
-    with postgres() as server:
+    with postgres(synced=False) as server:
         yield server
 
 

@@ -72,7 +72,7 @@ def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
     elif binaries() is None:
         pytest.skip("no PostgreSQL on this machine")
     else:
-        with postgres() as server:
+        with postgres(synced=False) as server:
             yield ran_with(Settings(data=data, database=server.create("fuzz")), server)
 
 

@@ -23,7 +23,7 @@ class Clock:
 def server() -> Iterator[Postgres]:
     if binaries() is None:
         pytest.skip("no PostgreSQL on this machine")
-    with postgres() as server:
+    with postgres(synced=False) as server:
         yield server
 
 

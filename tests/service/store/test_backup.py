@@ -195,7 +195,7 @@ def test_a_registry_on_postgresql_is_saved_and_brought_back(tmp_path):
 
     if binaries() is None:
         pytest.skip("no PostgreSQL on this machine")
-    with postgres() as server:
+    with postgres(synced=False) as server:
         there = Settings(data=tmp_path / "data", database=server.create("one"))
         there.make_directories()
         database = Database(there.database_url)

@@ -307,7 +307,7 @@ class OutputSpec(TypedDict):
     interval: float
     """time between frames; steps end exactly on frames, and the last frame is at `t_end`; in s"""
 
-    fields: NotRequired[Sequence[Literal["v", "omega", "f", "kappa", "q", "r", "orientation"]]]
+    fields: NotRequired[Sequence[Literal["v", "omega", "f", "kappa", "q", "r", "orientation", "strain"]]]
     """which variables along the rod are stored"""
 
     topology: NotRequired[bool]

@@ -23,7 +23,8 @@ from solver.scene.scene import Scene
 class Fields:
     """What a method knows along the rod at one time, at arclengths s (n,), n = intervals + 1.
 
-    Vectors (n, 3); `orientation` (n, 4), unit quaternion (w, x, y, z) that takes material components to lab ones.
+    Vectors (n, 3); `orientation` (n, 4), unit quaternion (w, x, y, z) that takes material components to lab ones;
+    `strain` (n,).
     """
 
     v: Annotated[Array, Output("m/s", "velocity of the centreline", "material", along_rod=True)]
@@ -35,6 +36,7 @@ class Fields:
     orientation: Annotated[
         Array, Output("1", "rotation from material to lab components", "quaternion", along_rod=True)
     ]
+    strain: Annotated[Array, Output("1", "axial strain, 0 of a rod that cannot stretch", along_rod=True)]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +55,7 @@ class Frame(Fields):
     t: float
     energy_bending: Annotated[float, Output("J", "strain energy of bending")]
     energy_torsion: Annotated[float, Output("J", "strain energy of torsion")]
+    energy_stretching: Annotated[float, Output("J", "strain energy of stretching")]
     energy_kinetic: Annotated[float, Output("J", "kinetic energy of the rod")]
     energy_added_mass: Annotated[float, Output("J", "kinetic energy of the added mass of fluid")]
     energy_potential: Annotated[float, Output("J", "potential energy of weight and buoyancy")]

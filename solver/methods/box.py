@@ -27,7 +27,7 @@ from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work
 from solver.physics.contact.forces import Touch
 from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
-from solver.physics.elasticity import mean_bending, moments, principal
+from solver.physics.elasticity import can_stretch, mean_bending, moments, principal
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.loads.registry import Loads
@@ -88,7 +88,9 @@ class BoxMethod:
 
     @classmethod
     def of(cls, scene: Scene) -> BoxMethod:
-        """The method for a scene."""
+        """The method for a scene. Raises ValueError for a rod that can stretch: its intervals keep their lengths."""
+        if can_stretch(scene.rod):
+            raise ValueError('method must be "staggered" for a rod that can stretch, got "box"')
         return cls(scene)
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
@@ -177,7 +179,7 @@ class BoxMethod:
         kappa = Y[:, KAPPA : KAPPA + 3].copy()
         return Fields(
             v=self.velocity(), omega=Y[:, OMEGA : OMEGA + 3].copy(), f=rotate_back(quaternion, Y[:, F:].copy()),
-            kappa=kappa, q=moments(self.section.elastic, kappa), r=self.state.r.copy(),
+            kappa=kappa, q=moments(self.section.elastic, kappa), strain=np.zeros(len(self.s)), r=self.state.r.copy(),
             orientation=quaternion.copy(),
         )  # fmt: skip
 

@@ -76,7 +76,7 @@ class OneAxisMethod(RadauMethod):
         return Fields(
             v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(state.F * back),
             kappa=axis.about(bend - self._offset), q=axis.about(elastic.K * (bend - elastic.kappa0)),
-            r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
+            strain=np.zeros(len(self.s)), r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
         )  # fmt: skip
 
     def centreline(self) -> Shape:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -24,6 +25,8 @@ from solver.methods.space.segments.energies import energies, stage_powers, twist
 from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
 from solver.methods.space.segments.motion import Passing, extrapolate, follow_segments, look_back
+from solver.methods.space.segments.opening import measure_openings, pull_joints, shift_segments
+from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
 from solver.methods.time.radau.newton import move_guess
@@ -31,11 +34,24 @@ from solver.physics.axial import axial_compliance
 from solver.physics.contact.forces import Touch, keeps_apart
 from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
+from solver.physics.elasticity import can_stretch, without_stretch
 from solver.physics.ends import DrivenEnd
+from solver.scene.ends import End
 from solver.scene.scene import Scene
+
+SOON = 2.0**-14
+"""In dt_max: steps that find the forces at the start."""
+NONE = 1e-9
+"""Part of the rod's length by which nothing is moved that is held."""
 
 for asked in (space, linear):
     enter(asked, (Chain, State, Driven, Factors, Touch), motion, stages, tridiagonal, segments_contact)
+
+
+def _held_axes(end: End, R: Array) -> Array:
+    """The directions (n, 3), lab, in which an end with the rotation R is held at the start."""
+    held = [component[0].kind != "load" for component in end.translation]
+    return (np.eye(3) if end.frame == "lab" else R.T)[held]
 
 
 class StaggeredMethod(RadauMethod):
@@ -61,8 +77,11 @@ class StaggeredMethod(RadauMethod):
         for quaternion, matrix in zip(self.state.quaternion, R, strict=True):
             matrix_of(quaternion, matrix)
         self._R = R
+        if can_stretch(scene.rod):
+            self._stretch_at_start(scene)
         follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)
-        self._nodes = np.zeros((2, N + 1, 3))
+        shift_segments(R, self.state.omega, self.state.alpha, self.state.opening, *self._centres)
+        self._nodes, self._strain = np.zeros((2, N + 1, 3)), np.zeros(len(chain.elastic.compliance))
         self._place_nodes()
         self._passing, self._R_then = Passing.empty(N), np.zeros_like(R)
         self._joints_then, self._nodes_then = np.zeros((N + 1, 3)), np.zeros((2, N + 1, 3))
@@ -71,6 +90,33 @@ class StaggeredMethod(RadauMethod):
     def of(cls, scene: Scene) -> StaggeredMethod:
         """The method for a scene."""
         return cls(scene)
+
+    def _stretch_at_start(self, scene: Scene) -> None:
+        """Open the joints by the forces that the rod would bear at t = 0 if it could not stretch.
+
+        Else its sound would ring from the start on, and the steps follow it. The given centreline is that of the rod
+        without stretch: what is held stays there; else the centre of mass does. Where both ends are held so that
+        the rod cannot become longer, it begins without stretch.
+        """
+        rigid = StaggeredMethod(replace(scene, rod=without_stretch(scene.rod)))
+        for t in (0.0, SOON * scene.numerics.dt_max):  # at first an end that is set going at once gives other forces
+            status, _ = rigid.try_step(t, SOON * scene.numerics.dt_max, consistent=True)
+            if status != CONVERGED:
+                return
+            rigid.take_step(t, SOON * scene.numerics.dt_max)
+        state, e = self.state, np.zeros_like(self.state.opening[0])
+        measure_openings(self.chain, self._R, rigid.state.F, self._joints, e)
+        moved, still = np.zeros((3, len(self.s) - 1, 3)), np.zeros_like(state.omega)
+        shift_segments(self._R, still, still, np.stack([e, 0.0 * e, 0.0 * e]), *moved)
+        tip = moved[0, -1] + e[-1] * self._R[-2, :, 2]
+        starts, ends = (_held_axes(end, R) for end, R in ((scene.start, self._R[0]), (scene.end, self._R[-1])))
+        if len(starts) and len(ends) and np.abs(ends @ tip).max() > NONE * self.s[-1]:
+            return
+        if not len(starts):
+            back = -(tip if len(ends) else np.average(moved[0], axis=0, weights=self.chain.mass))
+            spin = np.array(scene.initial.angular_velocity, dtype=float)
+            state.base[:] += np.stack([back, np.cross(spin, back), np.cross(spin, np.cross(spin, back))])
+        state.opening[0], state.F[:] = e, rigid.state.F
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt: see `RadauMethod`. What may come into contact is looked for first."""
@@ -119,11 +165,13 @@ class StaggeredMethod(RadauMethod):
         between = 0.5 * (omega[1:-2] + omega[2:-1])
         omega_lab = np.concatenate([omega[:1], between, omega[-1:]])[:, :, 0]
         joints = self._bend(state.quaternion)
+        pull_joints(self.chain, R, state.F, *joints)
         bending_at_nodes(self.chain, *joints)
         kappa, q, *_ = joints
         return Fields(
             v=rotate_back(orientation, nodes[1]), omega=rotate_back(orientation, omega_lab),
             f=rotate_back(orientation, state.F), kappa=kappa - self._offset, q=q,
+            strain=state.opening[0] / self.chain.span,
             r=nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
 
@@ -135,7 +183,7 @@ class StaggeredMethod(RadauMethod):
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""
         (state, (r, V, A)), (R, joints, _) = self._shown, self._shape
-        return energies(self._hand_over(), joints, Motion(r, V, A, R, state.omega))
+        return energies(self._hand_over(), joints, state.F, Motion(r, V, A, R, state.omega))
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
@@ -154,6 +202,7 @@ class StaggeredMethod(RadauMethod):
         """Have every kernel compiled that a run may need, after its first step."""
         super().compile()
         self.contact.compile()
+        measure_openings(self.chain, self._R, self.state.F, self._joints, np.zeros(0))
         if self.contact.present:
             self._guess_keeps_apart(1.0)
 
@@ -165,7 +214,8 @@ class StaggeredMethod(RadauMethod):
     def _trial_nodes(self) -> tuple[Array, Array]:
         """Places and velocities (N + 1, 3) at the end of the trial, where the solve with contact has its own."""
         stages, r, V = self.stages, self.work.coupling.r[2], self.work.coupling.V[2]
-        place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.r[2], stages.V[2], r, V)
+        place_nodes(self.chain, stages.R[2], stages.omega[2], stages.base[2], stages.opening[2], stages.r[2],
+                    stages.V[2], r, V)  # fmt: skip
         return r, V
 
     @property
@@ -177,11 +227,14 @@ class StaggeredMethod(RadauMethod):
         return self._R, self._joints, self._nodes
 
     def _pass(self, part: float, cubic: Array, parabola: Array) -> None:
-        R, then, centres = self._R_then, self._then, self._centres_then
-        look_back(self.chain, self.trial, self.stages, part, self._step, cubic, parabola, self._passing, then, R,
+        before, R, then, centres = self.trial, self._R_then, self._then, self._centres_then
+        look_back(self.chain, before, self.stages, part, self._step, cubic, parabola, self._passing, then, R,
                   centres)  # fmt: skip
+        if len(self._strain):
+            then.opening[:] = before.opening + np.tensordot(cubic, self.stages.opening - before.opening, 1)
+            shift_segments(R, then.omega, then.alpha, then.opening, *centres)
         self._joints_then[:] = self._bend(then.quaternion)[0]
-        place_nodes(self.chain, R, then.omega, then.base, centres[0], centres[1], *self._nodes_then)
+        place_nodes(self.chain, R, then.omega, then.base, then.opening, centres[0], centres[1], *self._nodes_then)
 
     def _twisted(self, weights: Array) -> tuple[float, float]:
         start, end = weights @ self.stages.omega[:, [0, -1], 2]
@@ -189,7 +242,8 @@ class StaggeredMethod(RadauMethod):
 
     def _place_nodes(self) -> None:
         """Write places and velocities of the nodes of the state."""
-        place_nodes(self.chain, self._R, self.state.omega, self.state.base, *self._centres[:2], *self._nodes)
+        state = self.state
+        place_nodes(self.chain, self._R, state.omega, state.base, state.opening, *self._centres[:2], *self._nodes)
 
     def _bend(self, quaternion: Array) -> list[Array]:
         """What `bend_joints` writes, (N + 1, 3) each."""
@@ -202,7 +256,10 @@ class StaggeredMethod(RadauMethod):
         stages = self.stages
         omega, R = stages.omega[:, -2], stages.R[:, -2]
         swing = R[:, :, 0] * omega[:, 1:2] - R[:, :, 1] * omega[:, 0:1]
-        return np.stack([stages.base[:, 1], stages.V[:, -1] + 0.5 * self.chain.h * swing], axis=1)
+        ends = np.stack([stages.base[:, 1], stages.V[:, -1] + 0.5 * self.chain.h * swing], axis=1)
+        if len(self._strain):
+            ends[:, 1] += stages.opening[:, 0, -1:] * swing + stages.opening[:, 1, -1:] * R[:, :, 2]
+        return ends
 
     def _follow_ends(self, weights: Array) -> None:
         stages, ends = self.stages, self._end_velocities()
@@ -222,7 +279,10 @@ class StaggeredMethod(RadauMethod):
         return np.asarray(stretch[:, None] * tangent)
 
     def strain(self) -> float:
-        """The trial's stretch by the compliance of its ends, in rod lengths."""
+        """The trial's largest strain; or its stretch by the compliance of its ends, in rod lengths."""
+        if len(self._strain):
+            np.divide(self.stages.opening[-1, 0], self.chain.span, out=self._strain)
+            return float(max(self._strain.max(), -self._strain.min()))
         if not self._stretches:
             return 0.0
         forces, tangents = self.stages.F[-1, [0, -1]], self.stages.R[-1, [0, -1], :, 2]

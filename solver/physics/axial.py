@@ -4,7 +4,7 @@ The rod of the equations cannot stretch. Held at both ends and straight between 
 force it bears. There it is given the compliance of a uniform bar, c = int ds / EA (m/N), half at either end, along the
 tangent t there: the end of the rod is c/2 t (t . F) short of where it is held. That is the bar's stiffness between its
 ends, and touches them only; how the stretch is spread along the rod, and axial waves, are left out.
-See docs/decisions/0015-held-at-both-ends.md.
+See docs/decisions/0015-held-at-both-ends.md. A rod with a law of stretch (`physics.elasticity`) needs none of it.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.rotation import matrix_of
+from solver.physics.elasticity import can_stretch
 from solver.physics.ends import travel
 from solver.physics.section import sample
 from solver.scene.ends import Component, End
@@ -28,11 +29,11 @@ LOOKED_AT = 201
 
 
 def axial_compliance(scene: Scene) -> float:
-    """c = int ds / EA (m/N) of a rod that has to stretch, else 0.
+    """c = int ds / EA (m/N) of a rod that has to stretch and has no law for it, else 0.
 
     EA follows from EJ of the softer axis and the diameter of a solid circle, EA = 16 EJ / D^2.
     """
-    if not _has_to_stretch(scene):
+    if can_stretch(scene.rod) or not has_to_stretch(scene):
         return 0.0
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
     section = sample(scene.rod, s)
@@ -46,7 +47,7 @@ def axial_stiffness(scene: Scene) -> float:
     return float(scene.rod.length) / compliance if compliance > 0.0 else 0.0
 
 
-def _has_to_stretch(scene: Scene) -> bool:
+def has_to_stretch(scene: Scene) -> bool:
     """Whether both ends hold their places, and are ever as far apart as the rod is long."""
     apart = distances(scene)
     return apart is not None and bool(apart.max() >= TAUT * scene.rod.length)

@@ -2,18 +2,22 @@
 
 The only place that knows stiffness. K is symmetric, so half of strain . K strain is the energy that the moment
 conserves. About one axis K and kappa0 are numbers.
+
+A rod with a law of stretch lengthens, r_s = (1 + eps) a3, by the tension N = f . a3. Its complementary energy per
+length, U - N eps with the energy U, is a function of kappa and N; eps is minus its derivative by N, and q that by
+kappa. So what N adds to q and what kappa adds to eps go together: dq / dN = - d eps / d kappa.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, inner, kernel
-from solver.kernels.vectors import dot, minus, stiffness, transform, vector_product
+from solver.kernels.vectors import dot, minus, stiffness, times, transform, vector_product
 from solver.kernels.vectors import vector as line
 from solver.scene.curve import Curve
 from solver.scene.rod import Profile, Rod
@@ -31,31 +35,66 @@ class Coupling:
     K12: Profile = field(default_factory=lambda: Curve.constant(0.0))
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """Stretch by the tension, eps = N / EA: the axial stiffness EA (N) along s. The section stays as it is."""
+
+    EA: Profile
+
+
 class Elasticity(NamedTuple):
-    """At n arclengths: `K` (n, 3, 3) in N m^2, stress-free `kappa0` (n, 3) in rad/m; about one axis (n,) each."""
+    """At n arclengths: `K` (n, 3, 3) in N m^2, stress-free `kappa0` (n, 3) in rad/m; about one axis (n,) each.
+
+    `compliance` (n,): 1/EA in 1/N, or (0,) for a rod that cannot stretch.
+    """
 
     K: Array
     kappa0: Array
+    compliance: Array
 
 
 def elasticity_of(rod: Rod, s: Array) -> Elasticity:
     """That of a rod at arclengths s (n,). Raises TypeError for a law that is not known here."""
-    K = np.zeros((len(s), 3, 3))
+    K, compliance = np.zeros((len(s), 3, 3)), np.zeros(0)
     for i, profile in enumerate(rod.stiffness):
         K[:, i, i] = profile(s)
     for law in rod.laws:
-        if not isinstance(law, Coupling):
+        if isinstance(law, Coupling):
+            for (i, j), profile in zip(((1, 2), (0, 2), (0, 1)), (law.K23, law.K13, law.K12), strict=True):
+                K[:, i, j] = K[:, j, i] = K[:, i, j] + profile(s)
+        elif isinstance(law, Stretch):
+            compliance = _inverse("EA", np.array(law.EA(s)))
+        else:
             raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
-        for (i, j), profile in zip(((1, 2), (0, 2), (0, 1)), (law.K23, law.K13, law.K12), strict=True):
-            K[:, i, j] = K[:, j, i] = K[:, i, j] + profile(s)
     if rod.laws and not np.linalg.eigvalsh(K).min() > 0.0:
         raise ValueError("stiffness must be positive definite along the rod: the coupling must be smaller")
-    return Elasticity(K, np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1)))
+    kappa0 = np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1))
+    return Elasticity(K, kappa0, compliance)
+
+
+def _inverse(name: str, values: Array) -> Array:
+    lowest = float(values.min())
+    if not lowest > 0.0:
+        raise ValueError(f"{name} must be > 0 N everywhere along the rod, got {lowest}")
+    return np.asarray(1.0 / values)
+
+
+OF_STRETCH = (Stretch,)
+
+
+def can_stretch(rod: Rod) -> bool:
+    """Whether a rod has a law of stretch."""
+    return any(isinstance(law, OF_STRETCH) for law in rod.laws)
+
+
+def without_stretch(rod: Rod) -> Rod:
+    """The rod that cannot stretch, and else is the same."""
+    return replace(rod, laws=tuple(law for law in rod.laws if not isinstance(law, OF_STRETCH)))
 
 
 def about(elastic: Elasticity, index: int) -> Elasticity:
-    """That of a turn about one principal axis."""
-    return Elasticity(elastic.K[:, index, index].copy(), elastic.kappa0[:, index].copy())
+    """That of a turn about one principal axis, of a rod that cannot stretch."""
+    return Elasticity(elastic.K[:, index, index].copy(), elastic.kappa0[:, index].copy(), np.zeros(0))
 
 
 def principal(elastic: Elasticity) -> Array:
@@ -107,3 +146,36 @@ def strain_energy(K: Any, strain: Any) -> tuple[float, float]:
     """Of bending and of torsion: 1/2 strain . K strain, the torsional share being that of the axial strain."""
     q = transform(K, strain)
     return 0.5 * (strain[0] * q[0] + strain[1] * q[1]), 0.5 * strain[2] * q[2]
+
+
+@inlined
+def stretches(elastic: Elasticity) -> bool:
+    """Whether the rod can stretch. What follows is asked for only where it can."""
+    return len(elastic.compliance) > 0
+
+
+@inner
+def axial_strain(elastic: Elasticity, j: int, kappa: Any, N: float) -> float:
+    """eps, at the curvature kappa and the tension N."""
+    strain: float = elastic.compliance[j] * N
+    return strain
+
+
+@inner
+def axial_tangent(elastic: Elasticity, j: int) -> tuple[float, Any]:
+    """d eps / dN, and dq / dN = - d eps / d kappa."""
+    return elastic.compliance[j], (0.0, 0.0, 0.0)
+
+
+@inner
+def moment_of_tension(elastic: Elasticity, j: int, N: float) -> Any:
+    """What a tension adds to q."""
+    _, by_tension = axial_tangent(elastic, j)
+    return times(N, by_tension)
+
+
+@inner
+def stretch_energy(elastic: Elasticity, j: int, N: float) -> float:
+    """What the tension stores, 1/2 N^2 d eps / dN: all that U is more than the energies of bending and torsion."""
+    energy: float = 0.5 * elastic.compliance[j] * N * N
+    return energy

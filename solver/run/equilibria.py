@@ -100,7 +100,7 @@ class Equilibria(Run):
         self.remarks.stretched(equations.strain() * float(self.s[-1]))
         stages = equations.stages
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
-        energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], motion)
+        energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], stages.F[0], motion)
         energy = energy._replace(kinetic=0.0, added_mass=0.0)
         frame = Frame(
             t=t, **vars(fields),
@@ -140,8 +140,8 @@ class Equilibria(Run):
         kappa, q = stages.bend[0].copy(), stages.moment[0].copy()
         bending_at_nodes(equations.chain, kappa, q, stages.left[0], stages.right[0])
         return Fields(
-            v=rest, omega=rest, f=rotate_back(orientation, point.F),
-            kappa=kappa - equations.offset, q=q, r=equations.nodes(), orientation=orientation,
+            v=rest, omega=rest, f=rotate_back(orientation, point.F), kappa=kappa - equations.offset, q=q,
+            strain=stages.opening[0, 0] / equations.chain.span, r=equations.nodes(), orientation=orientation,
         )  # fmt: skip
 
 

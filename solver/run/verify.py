@@ -11,7 +11,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.measures.frame import OUTPUTS, Frame, Statistics
-from solver.physics.elasticity import principal
+from solver.physics.elasticity import can_stretch, principal
 from solver.physics.section import sample
 from solver.run.resolution import refine
 from solver.run.side_by_side import Kind, SideBySide
@@ -53,7 +53,8 @@ def unseen(rod: Rod, s: Array, lost: float, dt: float) -> dict[str, Array | floa
     show it; but the energy that the finer run has missed so far does. In a field x with the energy 1/2 int K x^2 ds it
     has the rms sqrt(2 lost / (K L)). In bending waves nearly all
     kinetic energy is in v; of those that turn by 1 rad in dt, k^2 = (m / EJ)^(1/2) / dt, omega is k v and f is
-    m v / (k dt), and Tw and Wr differ by what the rod turns, omega dt. How far it moves, v dt, hardly counts.
+    m v / (k dt), and Tw and Wr differ by what the rod turns, omega dt. How far it moves, v dt, hardly counts. Tension
+    is in waves only where the rod can stretch.
     """
     section = sample(rod, s)
     stiffness, mass = principal(section.elastic), section.mass[:, None]
@@ -64,6 +65,8 @@ def unseen(rod: Rod, s: Array, lost: float, dt: float) -> dict[str, Array | floa
     fields["omega"][:, :2] = k * fields["v"]
     f = np.zeros((len(s), 3))
     f[:, :2] = mass * fields["v"] / (k * dt)
+    if can_stretch(rod):
+        f[:, 2] = np.sqrt(2.0 * lost / (section.elastic.compliance * float(rod.length)))
     turned = dt * np.linalg.norm(fields["omega"][:, :2], axis=1)
     turns = float(turned.max() / (2.0 * pi))
     return {**fields, "f": f, "orientation": 0.5 * turned[:, None], "Tw": turns, "Wr": turns}

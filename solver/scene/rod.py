@@ -22,7 +22,8 @@ NO_CURVATURE: Profiles = (Curve.constant(0.0), Curve.constant(0.0), Curve.consta
 
 @dataclass(frozen=True)
 class Rod:
-    """An inextensible, unshearable Kirchhoff rod (Goyal, Perkins & Lee 2003, eq. (1) and tables 1, 2).
+    """An unshearable Kirchhoff rod, inextensible but for a law of stretch (Goyal, Perkins & Lee 2003, eq. (1), tables
+    1, 2).
 
     `stiffness` is (EJ1, EJ2, GJ3) in N m^2, `mass` is rho_c A in kg/m, `inertia` the mass moment of
     inertia per length about (a1, a2, a3) in kg m, `diameter` in m is what the fluid and the contact

@@ -26,8 +26,9 @@ from solver.methods.space.segments.chain import Chain, Residuals, Stages
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.segments.joints import bend_joints, total_bending
 from solver.methods.space.segments.motion import follow_segments
+from solver.methods.space.segments.opening import add_levers, measure_openings, pull_joints, shift_segments
 from solver.physics.axial import axial_compliance
-from solver.physics.elasticity import mean_bending
+from solver.physics.elasticity import can_stretch, mean_bending, stretches
 from solver.scene.scene import Scene
 from solver.statics.contact import StaticContact
 from solver.statics.ends import StaticEnd
@@ -62,8 +63,8 @@ def _turn_all(quaternion: Array, psi: Array, turned: Array) -> None:
 
 
 @kernel
-def _lay_down(chain: Chain, quaternion: Array, base: Array, stages: Stages) -> None:
-    """Write rotations, places and moments of stage 0; velocities and accelerations stay zero."""
+def _lay_down(chain: Chain, quaternion: Array, base: Array, F: Array, stages: Stages) -> None:
+    """Write rotations, forces, places and moments of stage 0; velocities and accelerations stay zero."""
     copy(quaternion, stages.quaternion[0])
     for a in range(len(quaternion)):
         matrix_of(quaternion[a], stages.R[0, a])
@@ -71,6 +72,12 @@ def _lay_down(chain: Chain, quaternion: Array, base: Array, stages: Stages) -> N
     follow_segments(stages.R[0], stages.omega[0], stages.alpha[0], stages.base[0], chain.h,
                     stages.r[0], stages.V[0], stages.A[0])  # fmt: skip
     bend_joints(chain, quaternion, stages.bend[0], stages.moment[0], stages.left[0], stages.right[0])
+    copy(F, stages.F[0])
+    if stretches(chain.elastic):
+        pull_joints(chain, stages.R[0], F, stages.bend[0], stages.moment[0], stages.left[0], stages.right[0])
+        measure_openings(chain, stages.R[0], F, stages.bend[0], stages.opening[0, 0])
+        shift_segments(stages.R[0], stages.omega[0], stages.alpha[0], stages.opening[0],
+                       stages.r[0], stages.V[0], stages.A[0])  # fmt: skip
 
 
 class Equations:
@@ -86,10 +93,10 @@ class Equations:
         self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
         self.stages, self.tangents = Stages.empty(N), Tangents.empty(N)
         self._driven, self._residuals = Driven.empty(N), Residuals.empty(N)
-        _lay_down(self.chain, state.quaternion, self.start.base, self.stages)
+        _lay_down(self.chain, state.quaternion, self.start.base, self.start.F, self.stages)
         R = self.stages.R[0]
         self.ends = (StaticEnd(scene.start, R[0]), StaticEnd(scene.end, R[-1]))
-        self.compliance = 0.5 * axial_compliance(scene)
+        self.compliance, self._stretches = 0.5 * axial_compliance(scene), can_stretch(scene.rod)
         self.contact = StaticContact(scene, self.s, self.nodes())
         self.contact.prepare(self.bending(), self.nodes(), np.zeros((N + 1, 3)))
         self._home = (state.quaternion[[0, -1]].copy(), np.stack([self.start.base, self.tip()]))
@@ -112,11 +119,15 @@ class Equations:
 
     def tip(self) -> Array:
         """Where the end of the rod is (3,), of the point evaluated last."""
-        return np.asarray(self.stages.r[0, -1] + 0.5 * self.chain.h * self.stages.R[0, -2, :, 2])
+        lever = 0.5 * self.chain.h + self.stages.opening[0, 0, -1]
+        return np.asarray(self.stages.r[0, -1] + lever * self.stages.R[0, -2, :, 2])
 
     def nodes(self) -> Array:
         """Where the nodes are (N + 1, 3), of the point evaluated last."""
-        tips = self.stages.r[0] + 0.5 * self.chain.h * self.stages.R[0, 1:-1, :, 2]
+        r, T = self.stages.r[0], self.stages.R[0, 1:-1, :, 2]
+        half = 0.5 * self.stages.opening[0, 0, 1:, None]
+        tips = r + 0.5 * self.chain.h * T + half * 0.5 * (T + np.vstack([T[1:], T[-1:]]))
+        tips[-1] += half[-1] * T[-1]
         return np.vstack([self.stages.base[0, 0], tips])
 
     def bending(self) -> float:
@@ -126,9 +137,9 @@ class Equations:
     def look_ahead(self, point: Point, guess: Point) -> None:
         """Before a step from a point to a guess: see who may come into contact."""
         if self.contact.present:
-            _lay_down(self.chain, guess.quaternion, guess.base, self.stages)
+            _lay_down(self.chain, guess.quaternion, guess.base, guess.F, self.stages)
             there = self.nodes()
-            _lay_down(self.chain, point.quaternion, point.base, self.stages)
+            _lay_down(self.chain, point.quaternion, point.base, point.F, self.stages)
             self.contact.prepare(self.bending(), self.nodes(), there - self.nodes())
 
     def keeps_apart(self, z: Array) -> bool:
@@ -147,12 +158,13 @@ class Equations:
     def residual(self, point: Point) -> Array:
         """What is left of the equations at a point (N + 2, 9), dimensionless."""
         t, stages, driven = self.time(point.q), self.stages, self._driven
-        _lay_down(self.chain, point.quaternion, point.base, stages)
-        stages.F[0] = point.F
+        _lay_down(self.chain, point.quaternion, point.base, point.F, stages)
         if self.contact.present:
             driven.push[0] = self.contact.push(self.nodes())
         self.applied.set_time(t)
         balance_segments(self.chain, self.loads, driven, stages, self._residuals, 0)
+        if self._stretches:
+            add_levers(stages.R[0], point.F, stages.opening[0, 0], self._residuals.rotation[0])
         self.applied.check()
         left = np.zeros((len(point.quaternion), BLOCK))
         left[1:-1, PSI], left[1:-1, X] = self._residuals.rotation[0, 1:-1], self._residuals.translation[0]
@@ -200,7 +212,9 @@ class Equations:
         return np.asarray((2.0 * side - 1.0) * self.compliance * changed)
 
     def strain(self) -> float:
-        """How far the ends are stretched, in rod lengths, of the point evaluated last."""
+        """The largest strain; or how far the ends are stretched, in rod lengths; of the point evaluated last."""
+        if self._stretches:
+            return float((np.abs(self.stages.opening[0, 0]) / self.chain.span).max())
         forces, tangents = self.stages.F[0, [0, -1]], self.stages.R[0, [0, -1], :, 2]
         return float(self.compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
 
@@ -284,6 +298,13 @@ class Equations:
         D[1:, FORCE, PSI], lower[1:, FORCE, PSI] = lever[1:].transpose(0, 2, 1), lever[:-1].transpose(0, 2, 1)
         D[1:, FORCE, X], lower[1:, FORCE, X] = one, -one
         D[0, FORCE, FORCE] = one * self.units[3] / self.units[6]
+        if self._stretches:
+            before, behind, by_force = T.opens[:, 0], T.opens[:, 1], T.opens[:, 2]
+            D[1:, FORCE, FORCE] -= by_force
+            D[1:, FORCE, PSI] -= behind
+            D[1:, PSI, FORCE] -= behind.transpose(0, 2, 1)
+            lower[1:, FORCE, PSI] -= before
+            upper[:-1, PSI, FORCE] -= before.transpose(0, 2, 1)
         for side, end in enumerate(self.ends):
             a, sign = -side, 2.0 * side - 1.0
             D[a, X, PSI] = sign * R[a] @ _cross(self._follower(side))

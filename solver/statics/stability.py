@@ -69,18 +69,24 @@ def _conditions(equations: Equations) -> tuple[Array, Array, int]:
     ties = np.hstack(held)
     many = 3 + ties.shape[1]
     G, W = np.zeros((3 * len(R), many)), np.zeros((many, many))
-    G[:, 3 + held[0].shape[1] :] = (-2.0 / length * levers(R, equations.chain.h) @ held[1]).reshape(3 * len(R), -1)
+    opens, by_rotation = equations.tangents.opens, -2.0 * levers(R, equations.chain.h)
+    by_rotation[:-1] += opens[:, 0].transpose(0, 2, 1)
+    by_rotation[1:] += opens[:, 1].transpose(0, 2, 1)
+    G[:, 3 + held[0].shape[1] :] = (1.0 / length * by_rotation @ held[1]).reshape(3 * len(R), -1)
     W[:3, 3:], W[3:, :3] = ties, ties.T
     give = equations.compliance * equations.stiffness / length**3
     for side, rows in enumerate((slice(3, 3 + held[0].shape[1]), slice(3 + held[0].shape[1], many))):
         along = R[-side, :, 2] @ held[side]
         W[rows, rows] -= give * np.outer(along, along)
+    last = slice(3 + held[0].shape[1], many)
+    W[last, last] -= equations.stiffness / length**3 * held[1].T @ opens[:, 2].sum(axis=0) @ held[1]
     return G, W, int(ties.shape[1])
 
 
 def _all_together(equations: Equations, bands: Array, G: Array, W: Array) -> int:
     """Negative eigenvalues of [H G^t; G W] where strands press on each other or loads depend on the place, which
-    couples rotations far apart. (Eliminated from segment to segment the counts fell below zero.)"""
+    couples rotations far apart. (Eliminated from segment to segment the counts fell below zero.) How these move a rod
+    along itself by stretching it is left out."""
     length = float(equations.s[-1])
     S, steps = _by_place(equations), -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
     n, unit = len(S), length / equations.stiffness

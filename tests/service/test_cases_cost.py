@@ -22,7 +22,7 @@ def cost(**settings):
 def test_steps_frames_and_bytes_are_those_of_the_case():
     told = cost(t_end=10.0, numerics__dt_max=0.05, numerics__intervals=100, output__interval=0.5)
     assert (told.nodes, told.frames, told.steps) == (101, 21, 200)
-    assert told.bytes == 8 * 21 * 101 * 22
+    assert told.bytes == 8 * 21 * 101 * 23
     only_r = cost(t_end=10.0, numerics__intervals=100, output__interval=0.5, output__fields=["r"])
     assert only_r.bytes == 8 * 21 * 101 * 3
 

@@ -147,7 +147,7 @@ def test_the_checksum_and_size_are_those_of_the_file(path: Path):
 def test_many_segments_make_the_same_dataset_as_one(path: Path, monkeypatch: pytest.MonkeyPatch):
     spec = small_spec()
     write(path, spec, 9)
-    monkeypatch.setattr(segments, "SEGMENT_BYTES", 10_000)  # four frames of 11 nodes with 22 numbers each
+    monkeypatch.setattr(segments, "SEGMENT_BYTES", 10_000)  # four frames of 11 nodes with 23 numbers each
     other = path.with_name("other.nc")
     with DatasetWriter(other, spec) as writer:
         for i, frame in enumerate(frames(spec, 9)):

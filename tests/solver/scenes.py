@@ -68,4 +68,5 @@ def tangents(frame: Frame) -> Array:
 def energy(frame: Frame) -> float:
     """All that is stored."""
     moving = frame.energy_kinetic + frame.energy_added_mass
-    return frame.energy_bending + frame.energy_torsion + moving + frame.energy_potential + frame.energy_contact
+    strained = frame.energy_bending + frame.energy_torsion + frame.energy_stretching
+    return strained + moving + frame.energy_potential + frame.energy_contact

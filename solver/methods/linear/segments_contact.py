@@ -18,8 +18,10 @@ from solver.kernels.kernel import inner, kernel
 from solver.methods.linear.krylov import KEPT, Krylov, begin, combine, follow, project, set_out, unsolved
 from solver.methods.linear.stages import solve_stages
 from solver.methods.linear.tridiagonal import Factors, node_moves
-from solver.methods.space.segments.balances import Driven, Tangents, share
+from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
+from solver.methods.space.segments.joints import share
+from solver.methods.space.segments.opening import shift_nodes
 from solver.physics.contact.forces import (
     Touch,
     allowed_fraction,
@@ -57,9 +59,10 @@ class Coupling(NamedTuple):
 
 
 @kernel
-def place_nodes(chain: Chain, R: Array, omega: Array, base: Array, centres: Array, speeds: Array,
+def place_nodes(chain: Chain, R: Array, omega: Array, base: Array, opening: Array, centres: Array, speeds: Array,
                 r: Array, V: Array) -> None:  # fmt: skip
-    """Write places and velocities of the nodes (N + 1, 3) from those of the start and of the segments' centres."""
+    """Write places and velocities of the nodes (N + 1, 3) from those of the start and of the segments' centres, and
+    from the joints' `opening`."""
     half = 0.5 * chain.h
     for k in range(3):
         r[0, k], V[0, k] = base[0, k], base[1, k]
@@ -68,13 +71,14 @@ def place_nodes(chain: Chain, R: Array, omega: Array, base: Array, centres: Arra
         for k in range(3):
             r[j + 1, k] = centres[j, k] + half * Q[k, 2]
             V[j + 1, k] = speeds[j, k] + half * (Q[k, 0] * w[1] - Q[k, 1] * w[0])
+    shift_nodes(chain, R, omega, opening, r, V)
 
 
 @inner
 def press_stages(chain: Chain, stages: Stages, driven: Driven, touch: Touch, coupling: Coupling, fresh: bool) -> None:
     """Write the forces on the nodes of all stages to `driven.push`; if `fresh`, with the tangents that serve on."""
     for i in range(STAGES):
-        place_nodes(chain, stages.R[i], stages.omega[i], stages.base[i], stages.r[i], stages.V[i],
+        place_nodes(chain, stages.R[i], stages.omega[i], stages.base[i], stages.opening[i], stages.r[i], stages.V[i],
                     coupling.r[i], coupling.V[i])  # fmt: skip
     press(touch, touch.tangents if fresh else touch.pressing, coupling.r, coupling.V)
     copy(touch.push, driven.push)

@@ -7,6 +7,7 @@ A segment's displacement is eliminated by its own balance: with P = M lambda^2 +
 
 and what remains of translation is that neighbours stay joined: delta r_j+1 - delta r_j = d(h/2 T_j + h/2 T_j+1). The
 rows of F are minus positive and those of psi positive definite but for loads, so no pivots are searched between blocks.
+Where the rod can stretch, delta (e t) comes to the right, and its transpose to the rows of psi: see `Tangents.opens`.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from solver.kernels.kernel import inlined_late, inner, kernel
 from solver.kernels.scratch import scratch_like
 from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
+from solver.methods.space.segments.joints import share
+from solver.physics.elasticity import stretches
 from solver.physics.ends import LOAD, RATE, RATE_LAB
 
 
@@ -90,6 +93,45 @@ def _translate(chain: Chain, tangents: Tangents, eigenvalue: complex, P: Array, 
 
 
 @kernel
+def _open(tangents: Tangents, a: int, lower: Array, D: Array, upper: Array) -> None:
+    """Add what openings do to the blocks of a row in the middle of the chain."""
+    here, before = tangents.opens[a], tangents.opens[a - 1]
+    for k in range(3):
+        for m in range(3):
+            D[3 + k, m] -= here[0, k, m]
+            D[m, 3 + k] -= here[0, k, m]
+            D[3 + k, 3 + m] -= here[2, k, m]
+            upper[3 + k, m] -= here[1, k, m]
+            lower[m, 3 + k] -= before[1, k, m]
+
+
+@kernel
+def _open_end(driven: Driven, tangents: Tangents, a: int, lower: Array, D: Array, upper: Array) -> None:
+    """Add what openings do to the blocks of rows 0, N and N + 1: to loaded rotations, and to held translations."""
+    last, side = len(tangents.opens) - 1, 0 if a == 0 else 1
+    for m in range(3):
+        if a != last and driven.kinds[side, 3 + m] == RATE:
+            continue
+        for k in range(3):
+            if a <= last:
+                D[m, 3 + k] -= tangents.opens[a, 0, k, m]
+            if a > 0:
+                lower[m, 3 + k] -= tangents.opens[a - 1, 1, k, m]
+    if a > last:
+        return
+    R, here = tangents.R[0] if side == 0 else tangents.R[-1], tangents.opens[a]
+    for k in range(3):
+        kind = driven.kinds[side, k]
+        if kind in (RATE_LAB, RATE):
+            for n in range(3):
+                weight = R[n, k] if kind == RATE else (1.0 if n == k else 0.0)
+                for m in range(3):
+                    D[3 + k, m] -= weight * here[0, n, m]
+                    upper[3 + k, m] -= weight * here[1, n, m]
+                    D[3 + k, 3 + m] -= weight * here[2, n, m]
+
+
+@kernel
 def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factors, a: int,
           lower: Array, D: Array, upper: Array) -> None:  # fmt: skip
     """Write the blocks of row a of a chain that goes on at both sides. The zero blocks of lower and upper stay."""
@@ -116,6 +158,8 @@ def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factor
         D[2, 3 + k], lower[2, 3 + k] = 0.0, 0.0
         upper[3 + k, 0] += half * ahead[k, 1]
         upper[3 + k, 1] -= half * ahead[k, 0]
+    if stretches(chain.elastic):
+        _open(tangents, a, lower, D, upper)
 
 
 @inner
@@ -159,6 +203,8 @@ def _fill_end(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: comp
         _condition(driven, tangents, eigenvalue, 0, D, upper, D, lower)
     elif a == N:
         _condition(driven, tangents, eigenvalue, 1, D, lower, upper, upper)
+    if stretches(chain.elastic):
+        _open_end(driven, tangents, a, lower, D, upper)
 
 
 @inner
@@ -195,6 +241,16 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
                 D[3 + k, 3 + n] = R[n, k] if kind == LOAD else (1.0 if n == k else 0.0)
             for m in range(3):
                 frame[3 + k, m] += tangents.turn[side, k, m]
+
+
+@inner
+def _opened(tangents: Tangents, factors: Factors, a: int, k: int) -> complex:
+    """Component k of delta (e t) of joint a in the solution."""
+    opens, x, y = tangents.opens[a], factors.x[a], factors.x[a + 1]
+    moved: complex = 0.0 * x[0]
+    for m in range(3):
+        moved += opens[0, k, m] * x[m] + opens[1, k, m] * y[m] + opens[2, k, m] * x[3 + m]
+    return moved
 
 
 @inlined_late
@@ -370,6 +426,8 @@ def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k:
     j, side = (node - 1, 1.0) if node > 0 else (0, -1.0)
     R, x = tangents.R[j + 1], factors.x[j + 1]
     moved: complex = factors.moved[j, k] + side * 0.5 * chain.h * (R[k, 0] * x[1] - R[k, 1] * x[0])
+    if stretches(chain.elastic):
+        moved += side * share(node, len(chain.mass)) * _opened(tangents, factors, node, k)
     return moved
 
 

@@ -66,7 +66,7 @@ def test_vtk_of_many_frames_is_read_in_blocks(settings, client, done, monkeypatc
         frames, radius = len(source.time), np.ones(len(source.s))
         whole = vtk_archive(source, radius)
         assert frames > 4 and reads.count("r") == 1
-        monkeypatch.setattr(vtk, "BLOCK", 2 * len(source.s) * 22)  # two frames of all that is stored along the rod
+        monkeypatch.setattr(vtk, "BLOCK", 2 * len(source.s) * 23)  # two frames of all that is stored along the rod
         in_blocks = vtk_archive(source, radius)
         assert reads.count("r") == 1 + math.ceil(frames / 2)
     assert contents(in_blocks) == contents(whole)

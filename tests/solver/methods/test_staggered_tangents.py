@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 
-from solver import End, Fluid, Initial, Numerics, Scene
+from solver import Curve, End, Fluid, Initial, Numerics, Rod, Scene
 from solver.arrays import Array
 from solver.kernels.rotation import matrix_of, turn
 from solver.methods.space.segments.balances import balance_segments, condition_ends, segment_tangents
 from solver.methods.space.segments.joints import bend_joints
+from solver.methods.space.segments.opening import add_levers, measure_openings, pull_joints
 from solver.methods.staggered import StaggeredMethod
+from solver.physics.elasticity import Stretch
 from solver.physics.loads.registry import Loads
+from solver.statics.equations import levers
 from tests.solver.methods.as_in_runs import call
 from tests.solver.scenes import ROD
 
@@ -34,6 +37,9 @@ KINDS = {
 }
 
 
+Parts = tuple[Array, Array, Array, Array]
+
+
 @dataclass
 class Problem:
     """One stage of a chain in an arbitrary state."""
@@ -41,18 +47,25 @@ class Problem:
     method: StaggeredMethod
     loads: Loads
 
-    def residuals(self) -> tuple[Array, Array, Array]:
-        """Of rotation, with the sign of the system's rows, of translation, and of the ends."""
+    def residuals(self) -> Parts:
+        """Of rotation, with the sign of the system's rows, of translation, and of the ends; and e t of the joints."""
         method, stages, residuals = self.method, self.method.stages, self.method.work.residuals
-        call(bend_joints, method.chain, *(a[STAGE] for a in (stages.quaternion, stages.bend, stages.moment, stages.left,
-                                                             stages.right)))  # fmt: skip
+        bent = [a[STAGE] for a in (stages.bend, stages.moment, stages.left, stages.right)]
+        call(bend_joints, method.chain, stages.quaternion[STAGE], *bent)
+        call(pull_joints, method.chain, stages.R[STAGE], stages.F[STAGE], *bent)
+        if method.chain.elastic.compliance.size:
+            call(measure_openings, method.chain, stages.R[STAGE], stages.F[STAGE], bent[0], stages.opening[STAGE, 0])
         call(balance_segments, method.chain, self.loads, method.driven, stages, residuals, STAGE)
         call(condition_ends, method.chain, method.driven, stages, residuals, STAGE)
+        call(add_levers, stages.R[STAGE], stages.F[STAGE], stages.opening[STAGE, 0], residuals.rotation[STAGE])
         rotation = residuals.rotation[STAGE].copy()
         rotation[0] *= -1.0
-        return rotation, residuals.translation[STAGE].copy(), residuals.ends[STAGE].copy()
+        T = stages.R[STAGE, 1:-1, :, 2]
+        t = 0.5 * (np.vstack([T[:1], T]) + np.vstack([T, T[-1:]]))
+        opening = stages.opening[STAGE, 0][:, None] * t
+        return rotation, residuals.translation[STAGE].copy(), residuals.ends[STAGE].copy(), opening
 
-    def turned(self, a: int, axis: int) -> tuple[Array, Array, Array]:
+    def turned(self, a: int, axis: int) -> Parts:
         """Derivatives of the residuals by a rotation of orientation a about its own axis."""
         stages = self.method.stages
         kept, psi = stages.quaternion[STAGE, a].copy(), np.zeros(3)
@@ -64,24 +77,28 @@ class Problem:
             sides.append(self.residuals())
         stages.quaternion[STAGE, a] = kept
         matrix_of(kept, stages.R[STAGE, a])
-        one, two, three = ((up - down) / (2.0 * STEP) for up, down in zip(*sides, strict=True))
-        return one, two, three
+        return derivatives(*sides)
 
-    def changed(self, part: int, *changes: tuple[Array, Array]) -> Array:
-        """Derivative of one part of the residuals along `changes` (array, direction)."""
+    def changed(self, *changes: tuple[Array, Array]) -> Parts:
+        """Derivatives of the residuals along `changes` (array, direction)."""
         sides = []
         for sign in (1.0, -2.0):
             for array, direction in changes:
                 array += sign * STEP * direction
-            sides.append(self.residuals()[part])
+            sides.append(self.residuals())
         for array, direction in changes:
             array += STEP * direction
-        return np.asarray((sides[0] - sides[1]) / (2.0 * STEP))
+        return derivatives(*sides)
 
 
-def problem(term: str, kinds: str, fluid: Fluid | None = None) -> Problem:
+def derivatives(up: Parts, down: Parts) -> Parts:
+    one, two, three, four = ((a - b) / (2.0 * STEP) for a, b in zip(up, down, strict=True))
+    return one, two, three, four
+
+
+def problem(term: str, kinds: str, fluid: Fluid | None = None, rod: Rod = ROD) -> Problem:
     random = np.random.default_rng(7)
-    scene = Scene(ROD, Initial.straight(), End.clamp(), End.free(), 1.0, 1.0, fluid=fluid,
+    scene = Scene(rod, Initial.straight(), End.clamp(), End.free(), 1.0, 1.0, fluid=fluid,
                   damping=0.7 if "damping" in TERMS[term] else 0.0,
                   numerics=Numerics(method="staggered", intervals=N))  # fmt: skip
     method = StaggeredMethod(scene)
@@ -104,6 +121,36 @@ def problem(term: str, kinds: str, fluid: Fluid | None = None) -> Problem:
     return found
 
 
+SOFT = replace(ROD, laws=(Stretch(Curve.table([0.0, 1.0], [2.0 * FORCE, 5.0 * FORCE])),))
+"""A rod of which the forces of a problem make another one."""
+
+
+def test_the_tangents_of_stretch_are_derivatives() -> None:
+    case = problem("all of them", "free", rod=SOFT)
+    stages, tangents = case.method.stages, case.method.work.tangents
+    opens, lever = tangents.opens, levers(stages.R[STAGE], case.method.chain.h)
+    assert np.abs(stages.opening[STAGE, 0]).max() > 0.05 / N
+    for a in range(N + 2):
+        for axis in range(3):
+            rotation, _, _, opening = case.turned(a, axis)
+            for row in range(max(a - 1, 0), min(a + 2, N + 2)):
+                block = (tangents.before, tangents.stiff, tangents.behind)[a - row + 1][row]
+                assert np.abs(rotation[row] - block[:, axis]).max() <= LARGEST_ERROR * np.abs(tangents.stiff).max()
+            for joint, side in ((a - 1, 1), (a, 0)):
+                if 0 <= joint <= N:
+                    found = opening[joint] - opens[joint, side, :, axis]
+                    assert np.abs(found).max() <= LARGEST_ERROR * np.abs(opens[:, :2]).max()
+    for joint in range(N + 1):
+        for axis in range(3):
+            direction = np.zeros((N + 1, 3))
+            direction[joint, axis] = 30.0 * FORCE
+            rotation, _, _, opening = (x / (30.0 * FORCE) for x in case.changed((stages.F[STAGE], direction)))
+            assert np.abs(opening[joint] - opens[joint, 2, :, axis]).max() <= LARGEST_ERROR * np.abs(opens[:, 2]).max()
+            for side in (0, 1):
+                found = rotation[joint + side] - lever[joint + side, :, axis] + opens[joint, side, axis]
+                assert np.abs(found).max() <= LARGEST_ERROR * np.abs(opens[:, :2]).max()
+
+
 CASES = [(term, "mixed", None) for term in TERMS] + [("nothing else", kinds, None) for kinds in KINDS]
 CASES += [("all of them", "mixed", Fluid(1000.0, 1.0, 1.2, 0.3, (0.4, -0.2, 0.1)))]  # type: ignore[list-item]
 
@@ -115,7 +162,7 @@ def test_the_tangents_by_rotation_are_derivatives(term: str, kinds: str, fluid: 
     largest = np.abs(tangents.stiff).max()
     for a in range(N + 2):
         for axis in range(3):
-            rotation, translation, ends = case.turned(a, axis)
+            rotation, translation, ends, _ = case.turned(a, axis)
             rows = [(a, tangents.stiff)] + [(a - 1, tangents.behind)] * (a > 0) + [(a + 1, tangents.before)] * (a <= N)
             for row, blocks in rows:
                 frame = None if 0 < row <= N else (0 if row == 0 else 1)
@@ -138,11 +185,11 @@ def test_the_tangents_by_rates_are_derivatives(fluid: Fluid | None) -> None:
         direction = np.zeros((N, 3))
         direction[:, axis] = 1.0
         for array, blocks in ((stages.V, tangents.C), (stages.A, tangents.M)):
-            found = case.changed(1, (array[STAGE], direction))
+            found = case.changed((array[STAGE], direction))[1]
             assert np.abs(found - blocks[:, :, axis]).max() <= LARGEST_ERROR * np.abs(blocks).max()
         # a rotation at a rate phi_t, in a frame that does not turn
         phi_t = np.zeros((N + 2, 3))
         phi_t[:, axis] = 1.0
         turning = -np.cross(stages.omega[STAGE], phi_t)
-        found = case.changed(0, (stages.omega[STAGE], phi_t), (stages.alpha[STAGE], turning))
+        found = case.changed((stages.omega[STAGE], phi_t), (stages.alpha[STAGE], turning))[0]
         assert np.abs(found[1:-1] - tangents.spin[:, :, axis]).max() <= LARGEST_ERROR * np.abs(tangents.spin).max()

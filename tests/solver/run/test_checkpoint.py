@@ -12,6 +12,7 @@ import pytest
 
 from solver import Condition, Curve, DistributedLoad, End, Fluid, Frame, Numerics, Scene, VerifiedFrame, simulate
 from solver.kernels import kernel
+from solver.physics.elasticity import Stretch
 from solver.run import checkpoint as checkpoints
 from solver.scene.ends import FIXED
 from tests.solver.bent import bent_cantilever
@@ -64,6 +65,12 @@ def staggered_pressed() -> Scene:
     return replace(pressed(), numerics=numerics)
 
 
+def stretched() -> Scene:
+    """The same strands, of a rod that can stretch."""
+    scene = staggered_pressed()
+    return replace(scene, rod=replace(scene.rod, laws=(Stretch(Curve.constant(1e3 * EJ / LENGTH**2)),)))
+
+
 def balanced() -> Scene:
     """A branch of equilibria, past a fold."""
     return arch(Condition("load", ramp(-10.0 * EJ / LENGTH**2, 10.0)), 6.0, 0.5)
@@ -101,8 +108,8 @@ def assert_same(one: list[Frame], other: list[Frame]) -> None:
         assert_same(*errors)
 
 
-@pytest.mark.parametrize("make", [switched, shot, pressed, staggered, about_one_axis, staggered_pressed, balanced,
-                                  verified])  # fmt: skip
+@pytest.mark.parametrize("make", [switched, shot, pressed, staggered, about_one_axis, staggered_pressed, stretched,
+                                  balanced, verified])  # fmt: skip
 @pytest.mark.parametrize("after", [1, 3, 10])
 def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], Scene], after: int) -> None:
     assert_same(list(simulate(make())), interrupted(make(), after))

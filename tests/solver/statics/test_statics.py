@@ -30,6 +30,7 @@ from solver import (
 )
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
+from solver.physics.elasticity import Stretch
 from solver.physics.loads.solids import Floor, Obstacle
 from solver.statics.equations import FORCE, PSI, Equations, X, levers
 from tests.solver.scenes import (
@@ -46,8 +47,12 @@ from tests.solver.scenes import (
 )
 from tests.solver.statics.resting import PRESSED, ZERO, ramp, static
 
+ELASTIC = replace(ROD, laws=(Stretch(Curve.constant(0.02)),))
+SOFT = {f"{name}, of a rod that can stretch": {"rod": ELASTIC, **PRESSED[name]}
+        for name in ("current", "free start", "pin and clamp")}  # fmt: skip
 
-@pytest.mark.parametrize("loads", PRESSED.values(), ids=PRESSED)
+
+@pytest.mark.parametrize("loads", [*PRESSED.values(), *SOFT.values()], ids=[*PRESSED, *SOFT])
 def test_the_tangent_is_the_derivative_of_the_residual(loads: dict[str, object]) -> None:
     random = np.random.default_rng(1)
     equations = Equations(static(numerics=Numerics(intervals=4), initial=Initial.straight(twist=ramp(2.0)), **loads))
@@ -57,7 +62,7 @@ def test_the_tangent_is_the_derivative_of_the_residual(loads: dict[str, object])
         away[-side, PSI][end.held[3:]] = 0.0
     point = equations.start.moved(away, 0.5)
     _, solver = equations.linearise(point)
-    lever = levers(equations.stages.R[0].copy(), equations.chain.h)
+    lever, opens = levers(equations.stages.R[0].copy(), equations.chain.h), equations.tangents.opens.copy()
     for _ in range(5):
         z = random.normal(size=(n, 9)) * equations.units
         for side, end in enumerate(equations.ends):
@@ -67,6 +72,7 @@ def test_the_tangent_is_the_derivative_of_the_residual(loads: dict[str, object])
         z[0, FORCE] = 0.0
         for a in range(1, n):
             z[a, X] = z[a - 1, X] - lever[a].T @ z[a, PSI] - lever[a - 1].T @ z[a - 1, PSI]
+            z[a, X] += opens[a - 1, 0] @ z[a - 1, PSI] + opens[a - 1, 1] @ z[a, PSI] + opens[a - 1, 2] @ z[a, FORCE]
         up, down = (equations.residual(point.moved(step * z, 0.0)) for step in (1e-6, -1e-6))
         assert solver.solve((up - down) / 2e-6) / equations.units == pytest.approx(z / equations.units, abs=1e-4)
 

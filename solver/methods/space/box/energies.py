@@ -48,7 +48,7 @@ def _integrate(reference: Reference, state: State, h: float, R: Array, by_loads:
             kinetic += mass * velocity * velocity
             kinetic += (section.inertia[j, i] + section.inertia[j + 1, i]) * omega * omega
     part = 0.0625 * h  # 1/2, and three means of two
-    return Energies(2.0 * part * bending, 2.0 * part * torsion, part * kinetic, by_loads[1], by_loads[0])
+    return Energies(2.0 * part * bending, 2.0 * part * torsion, 0.0, part * kinetic, by_loads[1], by_loads[0])
 
 
 @inner

@@ -26,6 +26,7 @@ def energies(reference: Reference, chain: Chain, phi: Array, motion: Motion) -> 
     return Energies(
         bending=elastic * chain.swing,
         torsion=elastic * (1.0 - chain.swing),
+        stretching=0.0,
         kinetic=float(0.5 * chain.h * kinetic),
         added_mass=chain.h * float(0.5 * turning + by_loads[1]),
         potential=chain.h * float(by_loads[0]),

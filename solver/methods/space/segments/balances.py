@@ -5,8 +5,9 @@ For segment j with centre r, tangent T = R a3, forces F_j and F_j+1 at its nodes
     h (rho_c A dV/dt - B)                 - (F_j+1 - F_j)                                         = 0   lab
     h (I omega_t + omega x I omega - Q)   - (q_right - q_left) - (h/2) a3 x R^t (F_j+1 + F_j)     = 0   material
 
-with I about the segment's centre. Forces on the nodes (contact) are shared by the segments that meet there. How a
-load's tangents become those of the balances is said in `_take_tangents`, and nowhere else.
+with I about the segment's centre. Of a rod that can stretch, the levers that its joints have besides are added by
+`opening`. Forces on the nodes (contact) are shared by the segments that meet there. How a load's tangents become those
+of the balances is said in `_take_tangents`, and nowhere else.
 """
 
 from __future__ import annotations
@@ -22,7 +23,9 @@ from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch
 from solver.kernels.vectors import add_matrix, add_vector, matrix, tangent_by_rotation, vector
 from solver.methods.space.segments.chain import Chain, Residuals, Stages
-from solver.methods.space.segments.joints import joint_tangents
+from solver.methods.space.segments.joints import joint_tangents, share
+from solver.methods.space.segments.opening import opening_tangents
+from solver.physics.elasticity import stretches
 from solver.physics.ends import LOAD, LOAD_LAB, RATE, RATE_LAB, Kinds
 from solver.physics.loads.load import Point, add_forces, add_tangents, point, take_force, take_tangents
 from solver.physics.loads.load import Tangents as LoadTangent
@@ -52,8 +55,9 @@ class Tangents(NamedTuple):
     Segments (N, 3, 3): translation's `M` by acceleration, `C` by velocity, `K` by place, `E` by rotation (with the sign
     of a load); rotation's `spin` by the rate of rotation. Orientations (N + 2, 3, 3): rotation's `stiff`, `before`,
     `behind` by the rotation of the orientation itself, the one before and the one behind; `R` the rotations. `ahead`,
-    `back` (N + 1, 2, 3, 3) of the joints. Ends (2, 3, 3): `turn`, what a rotation of the end's frame does to the
-    condition on its translation.
+    `back` (N + 1, 2, 3, 3) of the joints, and `opens` (N + 1, 3, 3, 3), what e t is by a rotation of the orientation
+    before and of the one behind, and by F; their transposes, with minus, are what F does to these orientations.
+    Ends (2, 3, 3): `turn`, what a rotation of the end's frame does to the condition on its translation.
     """
 
     M: Array
@@ -67,6 +71,7 @@ class Tangents(NamedTuple):
     R: Array
     ahead: Array
     back: Array
+    opens: Array
     turn: Array
 
     @classmethod
@@ -74,7 +79,7 @@ class Tangents(NamedTuple):
         """Zeros for N = `intervals`."""
         N = intervals
         segments, orientations, joints = (N, 3, 3), (N + 2, 3, 3), (N + 1, 2, 3, 3)
-        shapes = [segments] * 5 + [orientations] * 4 + [joints] * 2 + [(2, 3, 3)]
+        shapes = [segments] * 5 + [orientations] * 4 + [joints] * 2 + [(N + 1, 3, 3, 3), (2, 3, 3)]
         return cls(*(np.zeros(shape) for shape in shapes))
 
 
@@ -140,14 +145,6 @@ def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> No
     add_matrix(-h, by.moment_omega, tangents.spin[j])
 
 
-
-
-@inlined
-def share(j: int, last: int) -> float:
-    """Part of the force on node j that one of the segments beside it takes."""
-    return 1.0 if j == 0 or j == last else 0.5
-
-
 @kernel
 def balance_segments(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residuals: Residuals, i: int) -> None:
     """Write the residuals of all segments at stage i.
@@ -191,9 +188,7 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
         if side == 0:
             copy(stages.base[i, 1], V)
         else:
-            w, Q = stages.omega[i, N], stages.R[i, N]
-            for k in range(3):
-                V[k] = stages.V[i, N - 1, k] + 0.5 * chain.h * (Q[k, 0] * w[1] - Q[k, 1] * w[0])
+            _tip_velocity(chain, stages, i, V)
         kinds, values, dead = driven.kinds[side], driven.values[i, side], driven.dead[i, side]
         if driven.compliance[side] > 0.0:  # the rod's end and what holds it move apart along the tangent
             stretch = 0.0
@@ -218,6 +213,16 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
             else:
                 missed = inner[k] - (R[0, k] * dead[3] + R[1, k] * dead[4] + R[2, k] * dead[5])
             residuals.rotation[i, frame, k] = missed - values[3 + k]
+
+
+@inner
+def _tip_velocity(chain: Chain, stages: Stages, i: int, V: Array) -> None:
+    """Write the velocity (3,) of the end of the rod."""
+    N = len(chain.mass)
+    w, Q, lever = stages.omega[i, N], stages.R[i, N], 0.5 * chain.h + stages.opening[i, 0, N]
+    for k in range(3):
+        swing = Q[k, 0] * w[1] - Q[k, 1] * w[0]
+        V[k] = stages.V[i, N - 1, k] + lever * swing + stages.opening[i, 1, N] * Q[k, 2]
 
 
 @inner
@@ -282,6 +287,8 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     tangents.E[:] = 0.0
     add_tangents(loads, i, motion_at(stages, i), LoadTangents(tangents, h))
     _end_tangents(chain, driven, stages, i, tangents, swing)
+    if stretches(chain.elastic):
+        opening_tangents(chain, stages, i, tangents.stiff, tangents.before, tangents.behind, tangents.opens)
 
 
 @inner
@@ -296,11 +303,10 @@ def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents
             g[k] = R[0, k] * dead[3] + R[1, k] * dead[4] + R[2, k] * dead[5]
         swing[:, :] = 0.0
         _cross_matrix(g, -1.0, swing)
-        w, Q = stages.omega[i, N], stages.R[i, N]
-        for k in range(3):
-            V[k] = stages.base[i, 1, k]
-            if side == 1:
-                V[k] = stages.V[i, N - 1, k] + 0.5 * chain.h * (Q[k, 0] * w[1] - Q[k, 1] * w[0])
+        if side == 0:
+            copy(stages.base[i, 1], V)
+        else:
+            _tip_velocity(chain, stages, i, V)
         tangents.turn[side] = 0.0
         for k in range(3):
             for m in range(3):

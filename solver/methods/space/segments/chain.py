@@ -38,7 +38,8 @@ class State(NamedTuple):
     """The rod at one time: all that a restart needs.
 
     `quaternion` (N + 2, 4), `omega` and its rate `alpha` (N + 2, 3), material; `base` (3, 3): position, velocity and
-    acceleration of the start, lab; `F` (N + 1, 3): forces at the nodes, lab.
+    acceleration of the start, lab; `F` (N + 1, 3): forces at the nodes, lab; `opening` (3, N + 1): by how much (m) the
+    joints are open, and its rates (see `opening`).
     """
 
     quaternion: Array
@@ -46,12 +47,14 @@ class State(NamedTuple):
     alpha: Array
     base: Array
     F: Array
+    opening: Array
 
     @classmethod
     def empty(cls, intervals: int) -> State:
         """Zeros for N = `intervals`."""
         n = intervals + 2
-        return cls(np.zeros((n, 4)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((3, 3)), np.zeros((n - 1, 3)))
+        return cls(np.zeros((n, 4)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((3, 3)), np.zeros((n - 1, 3)),
+                   np.zeros((3, n - 1)))  # fmt: skip
 
 
 class Stages(NamedTuple):
@@ -61,9 +64,9 @@ class Stages(NamedTuple):
     displacement of the start; `F` (3, N + 1, 3). Of the steady rotation: `start` (N + 2, 3, 3) its beginning,
     `steady` (3, N + 2, 4) and `S` (3, N + 2, 3, 3). From these: `theta_t`, `theta_tt`; `quaternion`, `R`, `omega`,
     `alpha` of the orientations; `r`, `V`, `A` (3, N, 3): position, velocity and acceleration of the segments' centres,
-    lab; `base` (3, 3, 3) those of the start; `bend` (3, N + 1, 3): the joints' rotation vectors; `moment` (3, N + 1, 3)
-    q; `left`, `right` (3, N + 1, 3): q turned into the frames before and behind the joint; `F_t` (3, 2, 3): rates
-    of F at the start and at the end.
+    lab; `base` (3, 3, 3) those of the start; `opening` (3, 3, N + 1) of the joints, with its rates; `bend`
+    (3, N + 1, 3): the joints' rotation vectors; `moment` (3, N + 1, 3) q; `left`, `right` (3, N + 1, 3): q turned into
+    the frames before and behind the joint; `F_t` (3, 2, 3): rates of F at the start and at the end.
     """
 
     theta: Array
@@ -82,6 +85,7 @@ class Stages(NamedTuple):
     V: Array
     A: Array
     base: Array
+    opening: Array
     bend: Array
     moment: Array
     left: Array
@@ -95,7 +99,8 @@ class Stages(NamedTuple):
         turned, centres, joints = (STAGES, n, 3), (STAGES, n - 2, 3), (STAGES, n - 1, 3)
         quaternions, matrices = (STAGES, n, 4), (STAGES, n, 3, 3)
         shapes = (turned, (STAGES, 3), joints, (n, 3, 3), quaternions, matrices, turned, turned, quaternions, matrices,
-                  turned, turned, centres, centres, centres, (STAGES, 3, 3), *[joints] * 4, (STAGES, 2, 3))  # fmt: skip
+                  turned, turned, centres, centres, centres, (STAGES, 3, 3), (STAGES, 3, n - 1), *[joints] * 4,
+                  (STAGES, 2, 3))  # fmt: skip
         return cls(*(np.zeros(shape) for shape in shapes))
 
 

@@ -12,25 +12,26 @@ from solver.kernels.vectors import minus, times, vector
 from solver.measures.energies import Energies
 from solver.methods.space.segments.balances import Motion, motion_at
 from solver.methods.space.segments.chain import STAGES, Chain
-from solver.physics.elasticity import strain_energy, tangent
+from solver.methods.space.segments.opening import tension
+from solver.physics.elasticity import strain_energy, stretch_energy, stretches, tangent
 from solver.physics.loads.load import add_energies, add_powers
 from solver.physics.loads.registry import Loads
 
 
 @kernel
-def energies(reference: Reference, bend: Array, motion: Motion) -> Energies:
-    """The energies at the end of a step: joints' `bend` (N + 1, 3), the segments' motion.
+def energies(reference: Reference, bend: Array, F: Array, motion: Motion) -> Energies:
+    """The energies at the end of a step: joints' `bend` and forces `F` (N + 1, 3), the segments' motion.
 
     `reference`: see `newton.step`.
     """
     chain, loads, _, _, _, _, _ = reference.records
-    return energies_at(chain, loads, STAGES - 1, bend, motion)
+    return energies_at(chain, loads, STAGES - 1, bend, F, motion)
 
 
 @kernel
-def energies_at(chain: Chain, loads: Loads, i: int, bend: Array, motion: Motion) -> Energies:
+def energies_at(chain: Chain, loads: Loads, i: int, bend: Array, F: Array, motion: Motion) -> Energies:
     """The energies at a state, by the loads of the i-th time of a step."""
-    bending, torsion, kinetic, turning, by_loads = 0.0, 0.0, 0.0, 0.0, scratch(2)
+    bending, torsion, stretching, kinetic, turning, by_loads = 0.0, 0.0, 0.0, 0.0, 0.0, scratch(2)
     by_loads[0], by_loads[1] = 0.0, 0.0
     add_energies(loads, i, motion, by_loads)
     for joint in range(len(bend)):
@@ -38,13 +39,17 @@ def energies_at(chain: Chain, loads: Loads, i: int, bend: Array, motion: Motion)
         bent, twisted = strain_energy(tangent(chain.elastic, joint), minus(kappa, vector(chain.elastic.kappa0, joint)))
         bending += chain.span[joint] * bent
         torsion += chain.span[joint] * twisted
+    if stretches(chain.elastic):
+        for joint in range(len(bend)):
+            stretching += chain.span[joint] * stretch_energy(chain.elastic, joint, tension(motion.R, F, joint))
     for j in range(len(motion.r)):
         for k in range(3):
             velocity, spin = motion.V[j, k], motion.omega[j + 1, k] * motion.omega[j + 1, k]
             kinetic += chain.mass[j] * velocity * velocity + chain.dry_inertia[j, k] * spin
             turning += (chain.inertia[j, k] - chain.dry_inertia[j, k]) * spin
     h = chain.h
-    return Energies(bending, torsion, 0.5 * h * kinetic, 0.5 * h * turning + h * by_loads[1], h * by_loads[0])
+    moving = 0.5 * h * kinetic, 0.5 * h * turning + h * by_loads[1]
+    return Energies(bending, torsion, stretching, moving[0], moving[1], h * by_loads[0])
 
 
 @kernel

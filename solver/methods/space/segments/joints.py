@@ -28,13 +28,19 @@ SMALL = 0.25
 
 
 @inlined
+def share(j: int, last: int) -> float:
+    """Part of what is at node j that one of the segments beside it takes."""
+    return 1.0 if j == 0 or j == last else 0.5
+
+
+@inlined
 def _series(square: float) -> float:
     """b by its series."""
     return 1 / 12 + square * (1 / 720 + square * (1 / 30240 + square * (1 / 1209600 + square * (1 / 47900160))))
 
 
 @inlined
-def _coefficient(square: float) -> tuple[float, float]:
+def coefficient(square: float) -> tuple[float, float]:
     """b and its derivative by x^2."""
     if square < SMALL:
         return _series(square), 1 / 720 + square * (1 / 15120 + square * (1 / 403200 + square * (1 / 11975040)))
@@ -54,7 +60,7 @@ def _beyond_series(square: float) -> bool:
 @kernel
 def _any_series(square: float) -> float:
     """b of any joint but a straight one."""
-    b, _ = _coefficient(square)
+    b, _ = coefficient(square)
     return b
 
 
@@ -112,7 +118,7 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
     B, G = scratch((3, 3)), scratch((3, 3))
     for i in range(len(bend)):
         x, y, z = bend[i, 0], bend[i, 1], bend[i, 2]
-        b, slope = _coefficient(x * x + y * y + z * z)
+        b, slope = coefficient(x * x + y * y + z * z)
         theta, q, per = bend[i], moment[i], 1.0 / chain.span[i]
         spring = scale(per, tangent(chain.elastic, i))
         q0, q1, q2 = q[0], q[1], q[2]

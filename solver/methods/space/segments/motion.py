@@ -10,7 +10,7 @@ exp([omega_n tau]), J = I - a [theta] + b [theta]^2, a = (1 - cos x)/x^2, b = (x
 
     omega = omega_n + S^t J theta_t,   alpha = S^t (J theta_tt + J_t theta_t) - omega_n x (omega - omega_n).
 
-Positions follow from the tangents: each segment begins where the last one ends.
+Positions follow from the tangents: each segment begins where the last one ends, but for joints that open.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import angle_by_sine, cosine_and_sinc, cross, dot, entries, product, turned_back, unit
 from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
+from solver.methods.space.segments.opening import open_joints
+from solver.physics.elasticity import stretches
 
 LARGEST_TURN = 2.0
 """Rotation (rad) in one step beyond which the series are not exact to rounding."""
@@ -152,6 +154,8 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
         largest = max(largest, turn_segments(state, stages, i))
         follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], chain.h,
                         stages.r[i], stages.V[i], stages.A[i])  # fmt: skip
+    if stretches(chain.elastic):
+        open_joints(chain, state, stages, inverse, dt)
     return float(np.sqrt(largest))
 
 

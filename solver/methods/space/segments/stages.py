@@ -10,7 +10,9 @@ from solver.methods.space.segments.balances import Driven, Tangents, balance_seg
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.methods.space.segments.joints import bend_joints
 from solver.methods.space.segments.motion import spin_steadily
+from solver.methods.space.segments.opening import add_levers, pull_joints
 from solver.physics.contact.forces import touching
+from solver.physics.elasticity import stretches
 from solver.physics.ends import LOAD, RATE
 from solver.physics.loads.registry import Loads
 
@@ -22,6 +24,10 @@ def join_stages(chain: Chain, stages: Stages) -> None:
     """Write the moments of all stages, whose motion is known."""
     for i in range(STAGES):
         bend_joints(chain, stages.quaternion[i], stages.bend[i], stages.moment[i], stages.left[i], stages.right[i])
+    if stretches(chain.elastic):
+        for i in range(STAGES):
+            pull_joints(chain, stages.R[i], stages.F[i], stages.bend[i], stages.moment[i], stages.left[i],
+                        stages.right[i])  # fmt: skip
 
 
 @kernel
@@ -31,6 +37,9 @@ def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residua
     for i in range(STAGES):
         balance_segments(chain, loads, driven, stages, residuals, i)
         condition_ends(chain, driven, stages, residuals, i)
+    if stretches(chain.elastic):
+        for i in range(STAGES):
+            add_levers(stages.R[i], stages.F[i], stages.opening[i, 0], residuals.rotation[i])
 
 
 @inner

@@ -346,8 +346,9 @@ class ProfileTable(TypedDict):
 
 
 class RodSpec(TypedDict):
-    """An inextensible rod of solid circular section, or with section properties given directly.  A property
-    given directly takes the place of the modulus or density that it would follow from.
+    """A rod of solid circular section, or with section properties given directly. It stretches where that is
+    asked for.  A property given directly takes the place of the modulus or density that it would follow
+    from.
     """
 
     length: float
@@ -375,6 +376,9 @@ class RodSpec(TypedDict):
     """K23, K13, K12: three profiles, what couples torsion with bending about a2 and about a1, and these two;
     in N m²; default [0.0, 0.0, 0.0]
     """
+
+    axial_stiffness: NotRequired[Union[Union[float, ProfileTable], None]]
+    """EA: profile; without it the rod cannot stretch. For `staggered` and static analyses; in N"""
 
     mass_per_length: NotRequired[Union[Union[float, ProfileTable], None]]
     """profile; in kg/m"""
@@ -756,6 +760,10 @@ Setting = Literal[
     "output.interval",
     "output.topology",
     "rod",
+    "rod.axial_stiffness",
+    "rod.axial_stiffness.interpolation",
+    "rod.axial_stiffness.s",
+    "rod.axial_stiffness.value",
     "rod.bending_stiffness",
     "rod.bending_stiffness.interpolation",
     "rod.bending_stiffness.s",

@@ -205,6 +205,13 @@ class CaseSpec(Spec):
         return self
 
     @model_validator(mode="after")
+    def _check_stretch(self) -> Self:
+        if self.analysis == "dynamic" and self.rod.axial_stiffness is not None and self.numerics.method == "box":
+            rule = "must be staggered for a rod that can stretch: leave out rod.axial_stiffness, or give this method"
+            raise refusal("numerics/method", self.numerics.method, rule)
+        return self
+
+    @model_validator(mode="after")
     def _check_size(self) -> Self:
         refuse_large(self)
         return self

@@ -21,7 +21,7 @@ from solver import Scene
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.methods.space.one_axis.axis import axis_of
-from solver.physics.axial import axial_compliance, distances
+from solver.physics.axial import distances, has_to_stretch
 from solver.physics.elasticity import elasticity_of, moments, principal
 from solver.physics.loads import solids
 from solver.physics.section import sample
@@ -82,7 +82,7 @@ def kind_of(scene: Scene) -> str:
         return "wound up"
     if scene.contact is not None and urged.bent > TIED and not overdamped:
         return "lies on itself"
-    if axial_compliance(scene) > 0.0:
+    if has_to_stretch(scene):
         if _come_apart(scene):
             return "pulled taut"
         if driven.turned:

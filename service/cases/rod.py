@@ -12,7 +12,7 @@ from service.cases.errors import refusal
 from service.cases.quantities import Positive, PositiveProfile, ProfileTriple, Spec, curve, curves
 from service.meaning import means
 from solver import Rod
-from solver.physics.elasticity import Coupling, elasticity_of
+from solver.physics.elasticity import Coupling, Stretch, elasticity_of
 from solver.scene.rod import Profiles
 
 
@@ -39,7 +39,7 @@ NO_COUPLING = (0.0, 0.0, 0.0)
 
 
 class RodSpec(Spec):
-    """An inextensible rod of solid circular section, or with section properties given directly.
+    """A rod of solid circular section, or with section properties given directly. It stretches where that is asked for.
 
     A property given directly takes the place of the modulus or density that it would follow from.
     """
@@ -59,6 +59,10 @@ class RodSpec(Spec):
         means("K23, K13, K12: three profiles, what couples torsion with bending about a2 and about a1, and these two",
               "N m²"),
     ] = NO_COUPLING  # fmt: skip
+    axial_stiffness: Annotated[
+        PositiveProfile | None,
+        means("EA: profile; without it the rod cannot stretch. For `staggered` and static analyses", "N"),
+    ] = None
     mass_per_length: Annotated[PositiveProfile | None, means("profile", "kg/m")] = None
     inertia_per_length: Annotated[
         tuple[PositiveProfile, PositiveProfile, PositiveProfile] | None,
@@ -111,10 +115,13 @@ class RodSpec(Spec):
 
     def _laws(self) -> tuple[object, ...]:
         """Other laws of elasticity."""
-        if self.coupling == NO_COUPLING:
-            return ()
-        first, second, third = curves(self.coupling)
-        return (Coupling(first, second, third),)
+        laws: list[object] = []
+        if self.coupling != NO_COUPLING:
+            first, second, third = curves(self.coupling)
+            laws.append(Coupling(first, second, third))
+        if self.axial_stiffness is not None:
+            laws.append(Stretch(curve(self.axial_stiffness)))
+        return tuple(laws)
 
     def _stiffness(self, solid: Rod) -> Profiles:
         """EJ1, EJ2, GJ3: those given directly, else those of the solid section."""

@@ -16,7 +16,7 @@ from service.cases.quantities import ScheduleTable
 from service.cases.size import tables_in
 from solver import End, Scene
 from solver.kernels.rotation import matrix_of
-from solver.physics.axial import axial_compliance
+from solver.physics.axial import has_to_stretch
 from solver.physics.ends import travel
 from solver.scene.layout import nodes_at_rest
 from solver.scene.view import View
@@ -99,7 +99,7 @@ def _sheared(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
 
 def _column(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     """A straight rod whose ends press it, and that nothing pushes aside, stays straight for ever."""
-    if not isinstance(spec.initial, Straight) or axial_compliance(scene) == 0.0:
+    if not isinstance(spec.initial, Straight) or not has_to_stretch(scene):
         return
     s, R = np.linspace(0.0, spec.rod.length, 11), np.zeros((3, 3))
     _, quaternion, kappa = nodes_at_rest(scene.initial, s)

@@ -54,7 +54,8 @@ PAIRS = (
          ("schema_version", "name", "title", "description", "ends", "output", "fields")),
     Pair(Rod, (RodSpec,),
          {"stiffness": ("bending_stiffness", "torsional_stiffness", "youngs_modulus", "shear_modulus"),
-          "mass": ("mass_per_length", "density"), "inertia": ("inertia_per_length", "density"), "laws": ("coupling",)},
+          "mass": ("mass_per_length", "density"), "inertia": ("inertia_per_length", "density"),
+          "laws": ("coupling", "axial_stiffness")},
          (), "rod.", lambda scene: scene.rod, lambda scene, part: replace(scene, rod=part)),
     Pair(Initial, (Straight, Centreline), {"centreline": ("shape", "origin", "direction", "points")},
          (), "initial.", lambda scene: scene.initial, lambda scene, part: replace(scene, initial=part)),
@@ -75,7 +76,6 @@ PAIRS = (
 SCENE_KEYS = {"output_interval": "output.interval", "gravity": "loads.gravity", "damping": "loads.damping"}
 
 OTHER_DEFAULTS = {
-    "Rod.laws",  # the coupling that a case gives is none where it is zero
     "Initial.direction",  # none, but of a straight rod
     "Scene.numerics",  # a case's own are resolved by what else it says
     "Numerics.dt_max",  # 0.05 s, where a case says nothing else about its steps

@@ -12,6 +12,7 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
+from service.cases import CaseError, apply_settings, load_case, parse_case
 from solver import (
     FIXED,
     Condition,
@@ -222,6 +223,16 @@ def test_a_rod_that_can_stretch_is_never_taken_for_another_one() -> None:
 def test_a_stiffness_that_is_none_is_refused() -> None:
     with pytest.raises(ValueError, match=r"EA must be > 0 N everywhere along the rod, got 0\.0"):
         elasticity_of(elastic(0.0), np.array([0.0]))
+
+
+def test_a_case_says_how_stiff_it_is() -> None:
+    raw = apply_settings(load_case("free-flight"), {"rod.axial_stiffness": 30.0})
+    given = {"method": "staggered", "intervals": 20, "dt_max": 0.1}
+    assert parse_case({**raw, "numerics": given}).rod.build().laws[0].EA(np.zeros(1)) == 30.0  # type: ignore[attr-defined]
+    with pytest.raises(CaseError, match=r"/numerics/method must be staggered for a rod that can stretch.*got 'box'"):
+        parse_case({**raw, "numerics": {**given, "method": "box"}})
+    with pytest.raises(CaseError, match=r"/rod/axial_stiffness must be > 0, got 0\.0"):
+        parse_case(apply_settings(raw, {"rod.axial_stiffness": 0.0}))
 
 
 def test_a_rod_that_cannot_stretch_has_no_strain() -> None:

@@ -380,6 +380,9 @@ class RodSpec(TypedDict):
     axial_stiffness: NotRequired[Union[Union[float, ProfileTable], None]]
     """EA: profile; without it the rod cannot stretch. For `staggered` and static analyses; in N"""
 
+    twist_stretch_coupling: NotRequired[Union[float, ProfileTable]]
+    """g: profile, what couples torsion with stretch; beside `axial_stiffness`; in N m; default 0.0"""
+
     mass_per_length: NotRequired[Union[Union[float, ProfileTable], None]]
     """profile; in kg/m"""
 
@@ -786,6 +789,10 @@ Setting = Literal[
     "rod.torsional_stiffness.interpolation",
     "rod.torsional_stiffness.s",
     "rod.torsional_stiffness.value",
+    "rod.twist_stretch_coupling",
+    "rod.twist_stretch_coupling.interpolation",
+    "rod.twist_stretch_coupling.s",
+    "rod.twist_stretch_coupling.value",
     "rod.youngs_modulus",
     "schema_version",
     "t_end",

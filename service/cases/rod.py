@@ -9,10 +9,10 @@ import numpy as np
 from pydantic import Discriminator, Tag, model_validator
 
 from service.cases.errors import refusal
-from service.cases.quantities import Positive, PositiveProfile, ProfileTriple, Spec, curve, curves
+from service.cases.quantities import Positive, PositiveProfile, Profile, ProfileTriple, Spec, curve, curves
 from service.meaning import means
 from solver import Rod
-from solver.physics.elasticity import Coupling, Stretch, elasticity_of
+from solver.physics.elasticity import Coupling, Stretch, TwistStretch, elasticity_of
 from solver.scene.rod import Profiles
 
 
@@ -63,6 +63,9 @@ class RodSpec(Spec):
         PositiveProfile | None,
         means("EA: profile; without it the rod cannot stretch. For `staggered` and static analyses", "N"),
     ] = None
+    twist_stretch_coupling: Annotated[
+        Profile, means("g: profile, what couples torsion with stretch; beside `axial_stiffness`", "N m")
+    ] = 0.0
     mass_per_length: Annotated[PositiveProfile | None, means("profile", "kg/m")] = None
     inertia_per_length: Annotated[
         tuple[PositiveProfile, PositiveProfile, PositiveProfile] | None,
@@ -87,6 +90,9 @@ class RodSpec(Spec):
         if direct_mass == (self.density is not None):
             rule = "must be given, or both mass_per_length and inertia_per_length in its place"
             raise refusal("density", self.density, rule)
+        if self.twist_stretch_coupling != 0.0 and self.axial_stiffness is None:
+            rule = "must be 0 without axial_stiffness: only a rod that can stretch has it"
+            raise refusal("twist_stretch_coupling", self.twist_stretch_coupling, rule)
         return self
 
     def build(self) -> Rod:
@@ -121,6 +127,8 @@ class RodSpec(Spec):
             laws.append(Coupling(first, second, third))
         if self.axial_stiffness is not None:
             laws.append(Stretch(curve(self.axial_stiffness)))
+        if self.twist_stretch_coupling != 0.0:
+            laws.append(TwistStretch(curve(self.twist_stretch_coupling)))
         return tuple(laws)
 
     def _stiffness(self, solid: Rod) -> Profiles:

@@ -42,20 +42,34 @@ class Stretch:
     EA: Profile
 
 
+@dataclass(frozen=True)
+class TwistStretch:
+    """Torsion coupled with stretch, of a rod that has a law of `Stretch`: the coupling g (N m) along s, in the energy
+
+        1/2 EA eps^2 + g eps (kappa3 - kappa0_3) + 1/2 GJ (kappa3 - kappa0_3)^2
+
+    per length. Cables whose wires lie at an angle have it, and DNA: Gore et al., Nature 442 (2006) 836.
+    """
+
+    g: Profile
+
+
 class Elasticity(NamedTuple):
     """At n arclengths: `K` (n, 3, 3) in N m^2, stress-free `kappa0` (n, 3) in rad/m; about one axis (n,) each.
 
-    `compliance` (n,): 1/EA in 1/N, or (0,) for a rod that cannot stretch.
+    Of a rod that can stretch (n,), else (0,): `compliance` 1/EA in 1/N, and what the tension adds to q3, `by_tension`
+    g/EA in m. K is at a given tension, its torsional stiffness GJ - g^2/EA.
     """
 
     K: Array
     kappa0: Array
     compliance: Array
+    by_tension: Array
 
 
 def elasticity_of(rod: Rod, s: Array) -> Elasticity:
     """That of a rod at arclengths s (n,). Raises TypeError for a law that is not known here."""
-    K, compliance = np.zeros((len(s), 3, 3)), np.zeros(0)
+    K, compliance, g = np.zeros((len(s), 3, 3)), np.zeros(0), np.zeros(len(s))
     for i, profile in enumerate(rod.stiffness):
         K[:, i, i] = profile(s)
     for law in rod.laws:
@@ -64,12 +78,31 @@ def elasticity_of(rod: Rod, s: Array) -> Elasticity:
                 K[:, i, j] = K[:, j, i] = K[:, i, j] + profile(s)
         elif isinstance(law, Stretch):
             compliance = _inverse("EA", np.array(law.EA(s)))
+        elif isinstance(law, TwistStretch):
+            g = g + law.g(s)
         else:
             raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
+    by_tension = _coupled(g, compliance, K[:, 2, 2])
     if rod.laws and not np.linalg.eigvalsh(K).min() > 0.0:
         raise ValueError("stiffness must be positive definite along the rod: the coupling must be smaller")
     kappa0 = np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1))
-    return Elasticity(K, kappa0, compliance)
+    return Elasticity(K, kappa0, compliance, by_tension)
+
+
+def _coupled(g: Array, compliance: Array, GJ: Array) -> Array:
+    """g / EA, of a coupling g (n,) of torsion and stretch; GJ (n,) becomes that at a given tension."""
+    if len(compliance) == 0:
+        if g.any():
+            raise ValueError("g, the coupling of torsion and stretch, must be 0 N m for a rod without EA, "
+                             f"got {g[np.argmax(np.abs(g))]}")  # fmt: skip
+        return np.zeros(0)
+    largest = np.sqrt(GJ / compliance)
+    if not (np.abs(g) < largest).all():
+        worst = int(np.argmax(np.abs(g) - largest))
+        raise ValueError("g, the coupling of torsion and stretch, must be between -sqrt(EA GJ) and sqrt(EA GJ) = "
+                         f"{largest[worst]:.6g} N m, got {g[worst]}")  # fmt: skip
+    GJ -= g * g * compliance
+    return np.asarray(g * compliance)
 
 
 def _inverse(name: str, values: Array) -> Array:
@@ -79,12 +112,12 @@ def _inverse(name: str, values: Array) -> Array:
     return np.asarray(1.0 / values)
 
 
-OF_STRETCH = (Stretch,)
+OF_STRETCH = (Stretch, TwistStretch)
 
 
 def can_stretch(rod: Rod) -> bool:
     """Whether a rod has a law of stretch."""
-    return any(isinstance(law, OF_STRETCH) for law in rod.laws)
+    return any(isinstance(law, Stretch) for law in rod.laws)
 
 
 def without_stretch(rod: Rod) -> Rod:
@@ -94,7 +127,8 @@ def without_stretch(rod: Rod) -> Rod:
 
 def about(elastic: Elasticity, index: int) -> Elasticity:
     """That of a turn about one principal axis, of a rod that cannot stretch."""
-    return Elasticity(elastic.K[:, index, index].copy(), elastic.kappa0[:, index].copy(), np.zeros(0))
+    K, kappa0 = elastic.K[:, index, index].copy(), elastic.kappa0[:, index].copy()
+    return Elasticity(K, kappa0, np.zeros(0), np.zeros(0))
 
 
 def principal(elastic: Elasticity) -> Array:
@@ -157,14 +191,14 @@ def stretches(elastic: Elasticity) -> bool:
 @inner
 def axial_strain(elastic: Elasticity, j: int, kappa: Any, N: float) -> float:
     """eps, at the curvature kappa and the tension N."""
-    strain: float = elastic.compliance[j] * N
+    strain: float = elastic.compliance[j] * N - elastic.by_tension[j] * (kappa[2] - elastic.kappa0[j, 2])
     return strain
 
 
 @inner
 def axial_tangent(elastic: Elasticity, j: int) -> tuple[float, Any]:
     """d eps / dN, and dq / dN = - d eps / d kappa."""
-    return elastic.compliance[j], (0.0, 0.0, 0.0)
+    return elastic.compliance[j], (0.0, 0.0, elastic.by_tension[j])
 
 
 @inner

@@ -126,7 +126,12 @@ SOFT = replace(ROD, laws=(Stretch(Curve.table([0.0, 1.0], [2.0 * FORCE, 5.0 * FO
 
 
 def test_the_tangents_of_stretch_are_derivatives() -> None:
-    case = problem("all of them", "free", rod=SOFT)
+    check_stretch(SOFT)
+
+
+def check_stretch(rod: Rod) -> None:
+    """Check what a rod's stretch does to the balances, and what they do to it."""
+    case = problem("all of them", "free", rod=rod)
     stages, tangents = case.method.stages, case.method.work.tangents
     opens, lever = tangents.opens, levers(stages.R[STAGE], case.method.chain.h)
     assert np.abs(stages.opening[STAGE, 0]).max() > 0.05 / N

@@ -33,10 +33,9 @@ from solver.run.recording import (
 )
 from solver.run.richardson import error_of_steps, extrapolate
 from solver.run.series import Attempt, chosen, is_diagonal, step_series
-from solver.run.verify import OF_WAVES, VerifiedFrame, unseen
+from solver.run.verify import VerifiedFrame, of_waves, unseen
 from solver.scene.scene import Scene
 
-IN_WAVES = [i for i, output in enumerate(NUMBERS) if output.name in OF_WAVES]
 UNVERIFIED = np.array([not output.verified for output in NUMBERS])
 BESIDE = 3
 """Frames before and after one whose errors count for it."""
@@ -67,6 +66,7 @@ class Together:
     def __init__(self, scene: Scene, attempts: Sequence[Attempt], recorded: Sequence[Array]) -> None:
         self._scene, self._attempts, self._recorded = scene, attempts, recorded
         self._chosen, self._diagonal = chosen(attempts), is_diagonal(attempts)
+        self._in_waves = [number(name) for name in of_waves(scene.rod)]
         self.finest = attempts[self._chosen.finest]
         self.frames = min(len(recorded[i]) for i in self._chosen.meshes)
         """How many there are."""
@@ -108,7 +108,7 @@ class Together:
         for name, least in self._unseen.items():
             part = numbers[:, number(name)] if isinstance(least, float) else along[:, column(name)]
             np.maximum(part, np.sqrt(lost) * least, out=part)
-        numbers[0, IN_WAVES] = np.maximum(numbers[0, IN_WAVES], lost)
+        numbers[0, self._in_waves] = np.maximum(numbers[0, self._in_waves], lost)
         curvature = float(np.linalg.norm(along[:, KAPPA], axis=-1).max())
         numbers[0, CURVATURE] = max(numbers[0, CURVATURE], curvature)
         numbers[0, BALANCE] = max(numbers[0, BALANCE], abs(value.numbers[0, BALANCE]))  # of the solution it is none

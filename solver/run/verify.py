@@ -18,8 +18,8 @@ from solver.run.side_by_side import Kind, SideBySide
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 
-OF_WAVES = ("energy_bending", "energy_torsion", "energy_kinetic", "dissipation")
-"""Outputs that are wrong by as much energy (J) as waves lose that no run follows."""
+OF_WAVES, OF_SOUND = ("energy_bending", "energy_torsion", "energy_kinetic", "dissipation"), ("energy_stretching",)
+"""Outputs that are wrong by as much energy (J) as waves lose that no run follows; and of rods that can stretch."""
 SHORTEST = 1e-300
 """A step (s) that stands for none, as at t = 0."""
 
@@ -42,7 +42,12 @@ class Verified(SideBySide):
         coarse, fine = frames
         self._lost = float(np.fmax(self._lost, abs(fine.energy_balance)))
         least = unseen(self._scene.rod, self.s, self._lost, fine.dt)
-        return extrapolate(coarse, fine, {**least, **dict.fromkeys(OF_WAVES, self._lost)})
+        return extrapolate(coarse, fine, {**least, **dict.fromkeys(of_waves(self._scene.rod), self._lost)})
+
+
+def of_waves(rod: Rod) -> tuple[str, ...]:
+    """Those of `OF_WAVES` that a rod may have."""
+    return OF_WAVES + OF_SOUND if can_stretch(rod) else OF_WAVES
 
 
 def unseen(rod: Rod, s: Array, lost: float, dt: float) -> dict[str, Array | float]:

@@ -31,6 +31,7 @@ from solver.arrays import Array
 from solver.methods.registry import discretized
 from solver.physics.axial import axial_compliance
 from solver.physics.elasticity import Stretch, elasticity_of
+from solver.run.verify import VerifiedFrame
 from tests.solver.scenes import ARC_ROD, EJ, FIXED_STEPS, LENGTH, MASS, ROD, arc, energy, last
 from tests.solver.statics.resting import ZERO, ramp, static
 
@@ -223,6 +224,17 @@ def test_a_rod_that_can_stretch_is_never_taken_for_another_one() -> None:
 def test_a_stiffness_that_is_none_is_refused() -> None:
     with pytest.raises(ValueError, match=r"EA must be > 0 N everywhere along the rod, got 0\.0"):
         elasticity_of(elastic(0.0), np.array([0.0]))
+
+
+@pytest.mark.parametrize("numerics", [Numerics("staggered", intervals=10, dt_max=0.05, verify=True),
+                                      Numerics("staggered", tolerance=1e-2)])  # fmt: skip
+def test_errors_of_energy_and_tension_are_at_least_those_of_sound_that_nobody_followed(numerics: Numerics) -> None:
+    frame = last(hanging(rod=elastic(1e6 * WEIGHT), gravity=(0.3 * G, 0.0, G), damping=0.5, t_end=1.0,
+                         output_interval=0.5, numerics=numerics))  # fmt: skip
+    assert isinstance(frame, VerifiedFrame)
+    assert frame.error.energy_stretching > 0.0
+    assert frame.error.energy_stretching >= frame.error.energy_torsion  # which there is none of
+    assert (frame.error.f[:, 2] > 0.0).all()
 
 
 def test_a_case_says_how_stiff_it_is() -> None:

@@ -9,11 +9,22 @@ from pathlib import Path
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from benchmarks.work_precision.measure import AS_IT_COMES, BOX, METHODS, PAPER, PYELASTICA, STAGGERED, STATICS, Point
+from benchmarks.work_precision.measure import (
+    AS_IT_COMES,
+    BOX,
+    DEFAULT,
+    METHODS,
+    PAPER,
+    PYELASTICA,
+    STAGGERED,
+    STATICS,
+    Point,
+)
 from benchmarks.work_precision.table import panels
 
 COLUMNS = 3
-STYLE = {BOX: ("C0", "o"), STAGGERED: ("C3", "s"), STATICS: ("C4", "P"), PAPER: ("C9", "x"), PYELASTICA: ("C2", "^")}
+STYLE = {BOX: ("C0", "o"), STAGGERED: ("C3", "s"), STATICS: ("C4", "P"), DEFAULT: ("k", "*"), PAPER: ("C9", "x"),
+         PYELASTICA: ("C2", "^")}  # fmt: skip
 MUJOCO_STYLE = (("C1", "v"), ("C5", "D"))
 
 

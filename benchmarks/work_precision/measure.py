@@ -8,8 +8,9 @@ from math import nan
 from time import process_time
 
 BOX, STAGGERED, STATICS, PAPER = "box", "staggered", "statics", "paper (box, shooting)"
-METHODS = (BOX, STAGGERED, STATICS, PAPER)
-"""hockle's; the last is there to be compared with."""
+DEFAULT = "default mode"
+METHODS = (BOX, STAGGERED, STATICS, DEFAULT, PAPER)
+"""hockle's; the default one chooses its resolution by a tolerance, and the last is there to be compared with."""
 PYELASTICA, MUJOCO = "PyElastica", "MuJoCo cable"
 AS_IT_COMES = ", clamp as it comes"
 """Ending of a peer's name where its clamp is left half an element inside the rod."""

@@ -38,7 +38,7 @@ def test_a_peer_is_compared_at_equal_error_and_the_method_that_did_it_named() ->
 
 
 def test_the_better_method_is_the_cheaper_one_at_an_error_that_both_reach() -> None:
-    told = "| 1.0e-03 | 4 | 3 | not reached | not reached | staggered, 1.3 times |"
+    told = "| 1.0e-03 | 4 | 3 | not reached | not reached | not reached | staggered, 1.3 times |"
     assert any(told in line for line in table.summary(POINTS))
 
 

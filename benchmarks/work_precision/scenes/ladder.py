@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from benchmarks.work_precision.measure import BOX, PAPER, STAGGERED, Measured, Run, Skipped
+from benchmarks.work_precision.measure import BOX, DEFAULT, PAPER, STAGGERED, Measured, Run, Skipped
 from solver import Numerics, RunFailed
 
 
@@ -24,16 +24,24 @@ def staggered(intervals: int, dt: float, tolerance: float) -> Numerics:
     return Numerics("staggered", intervals=intervals, dt_max=dt, increment_tolerance=tolerance)
 
 
+TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5)
+"""Of the default mode."""
+
+
 def hockle_runs(scene: str, boxes: list[Numerics], staggereds: list[Numerics],
                 go: Callable[[Numerics], dict[str, Measured]]) -> list[Run]:  # fmt: skip
-    """Runs of the three methods; the paper's takes the meshes and the steps of the box's."""
-    ladders = {BOX: boxes, STAGGERED: staggereds, PAPER: [paper(numerics) for numerics in boxes]}
+    """Runs of the three methods, of which the paper's takes the meshes and the steps of the box's, and of the default
+    mode."""
+    defaults = [Numerics("staggered", tolerance=tolerance) for tolerance in TOLERANCES]
+    ladders = {BOX: boxes, STAGGERED: staggereds, DEFAULT: defaults, PAPER: [paper(numerics) for numerics in boxes]}
     return [Run(scene, solver, label(numerics), lambda numerics=numerics: or_outcome(go, numerics))  # type: ignore[misc]
             for solver, ladder in ladders.items() for numerics in ladder]  # fmt: skip
 
 
 def label(numerics: Numerics) -> str:
-    """The mesh, and what governs the steps."""
+    """The mesh, and what governs the steps; or the tolerance."""
+    if numerics.tolerance:
+        return f"tolerance {numerics.tolerance:.0e}"
     steps = f"dt {numerics.dt_max:.3g}"
     if numerics.increment_tolerance < 1e6:
         steps += f", tol {numerics.increment_tolerance:.0e}"

@@ -95,8 +95,10 @@ def step_tolerance(steps: int, tolerance: float) -> float:
     return FIRST_STEPS * sqrt(tolerance) / 4.0**steps
 
 
-def strides_of(tolerance: float) -> int:
-    """How many frames a step may pass."""
+def strides_of(tolerance: float, steps: int = 0) -> int:
+    """How many frames a step may pass; none where steps are longer than their error allows, as to get to the end."""
+    if steps < 0:
+        return 1
     return int(max(round(STRIDES * min(tolerance / 1e-3, 1.0) ** 0.2), 1))
 
 
@@ -166,6 +168,8 @@ def _wishes(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals
         yield _until_one_is_complete(history, most_intervals)
         return
     meshes = {attempt.mesh for attempt in complete}
+    if len(meshes) == 1 and history[-1].slow and _work(history) > MOST_WORK:
+        return  # what was to tell the error took far longer than what it is the error of
     if len(complete) == 1:
         mesh, steps = complete[0].mesh, complete[0].steps
         if _is_for(history, Trial(mesh, steps + 1), most_intervals):

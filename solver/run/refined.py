@@ -97,7 +97,7 @@ class Refined(Run):
         tolerance = self._scene.numerics.tolerance or 1.0
         numerics = replace(
             self._scene.numerics, tolerance=None, verify=True, intervals=intervals_of(mesh) // 2,
-            dt_max=longest_step(steps, self._scene.output_interval), strides=strides_of(tolerance),
+            dt_max=longest_step(steps, self._scene.output_interval), strides=strides_of(tolerance, steps),
             increment_tolerance=step_tolerance(steps, tolerance),
         )  # fmt: skip
         return replace(self._scene, numerics=numerics)

@@ -30,7 +30,7 @@ class UnderWay:
         tolerance = scene.numerics.tolerance or 1.0
         numerics = replace(
             scene.numerics, tolerance=None, verify=False, intervals=intervals_of(trial.mesh),
-            dt_max=longest_step(trial.steps, scene.output_interval), strides=strides_of(tolerance),
+            dt_max=longest_step(trial.steps, scene.output_interval), strides=strides_of(tolerance, trial.steps),
             small_motion=SMALL_MOTION, increment_tolerance=step_tolerance(trial.steps, tolerance),
         )  # fmt: skip
         self.run = Simulation(replace(scene, numerics=numerics), self.statistics, goes_on=True)

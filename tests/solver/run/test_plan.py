@@ -7,7 +7,18 @@ from math import inf
 import numpy as np
 import pytest
 
-from solver.run.plan import MOST_WORK, Excess, Trial, expected, following, step_tolerance, to_come
+from solver.run.plan import (
+    FAR_FROM_IT,
+    MOST_PATIENCE,
+    MOST_WORK,
+    Excess,
+    Trial,
+    allowance,
+    expected,
+    following,
+    step_tolerance,
+    to_come,
+)
 from solver.run.series import Attempt, Chosen, chosen
 
 SMALL = 0.01 * MOST_WORK
@@ -138,3 +149,21 @@ def test_an_error_of_exactly_nothing_wants_no_more_work() -> None:
     place, topology = Excess(9.0, 0.1, 36.0), Excess(0.0, 0.0, 0.0)
     assert to_come(history, [place, topology], Trial(2, 0)) == to_come(history, [place], Trial(2, 0)) > 0.0
     assert to_come(history, [topology], Trial(2, 0)) == 0.0
+
+
+def test_where_what_is_to_tell_the_error_takes_far_too_long_nothing_else_is_tried() -> None:
+    first, second = ran(2, -4, 1.5 * MOST_WORK), slow(1, -5)._replace(work=MOST_WORK)
+    assert following([first], [Excess()], 2, 2000) == Trial(1, -5)
+    assert allowance([first], Trial(1, -5)) == MOST_PATIENCE * MOST_WORK
+    assert following([first, second], [Excess()], 2, 2000) is None
+
+
+def test_shorter_steps_are_tried_again_on_the_first_mesh_that_shows_the_motion() -> None:
+    far, near = 2.0 * FAR_FROM_IT, 0.5 * FAR_FROM_IT
+    history = [ran(0, 0), ran(0, 1), ran(1, 0)._replace(apart=far), ran(2, 0)._replace(apart=near)]
+    short_of_it = Excess(mesh=3.0, steps=0.1, before=9.0)
+    assert following(history, [short_of_it], 0, 2000) == Trial(2, 1)
+    shown = [*history[:2], history[2]._replace(apart=near), history[3]]
+    assert following(shown, [short_of_it], 0, 2000) == Trial(3, 0)
+    on_a_diagonal = [*history[:2], ran(1, 1)._replace(apart=far), ran(2, 2)._replace(apart=near)]
+    assert following(on_a_diagonal, [short_of_it], 0, 2000) != Trial(2, 3)

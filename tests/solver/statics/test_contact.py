@@ -24,6 +24,7 @@ from solver import (
     simulate,
 )
 from solver.arrays import Array
+from solver.physics.elasticity import Stretch
 from solver.physics.loads.solids import Floor
 from solver.scene.ends import FIXED
 from solver.scene.layout import nodes_at_rest
@@ -65,9 +66,14 @@ LAWS = {
 }
 
 
+ELASTIC = (Stretch(Curve.constant(1e3 * SPRING_EJ / LENGTH**2)),)
+
+
+@pytest.mark.parametrize("laws", [(), ELASTIC], ids=["", "a rod that can stretch"])
 @pytest.mark.parametrize("law", LAWS)
-def test_the_tangent_is_the_derivative_of_the_balances(law):
-    equations = Equations(coil(spring(1.05 * D), LAWS[law]))
+def test_the_tangent_is_the_derivative_of_the_balances(law, laws):
+    scene = coil(spring(1.05 * D), LAWS[law])
+    equations = Equations(replace(scene, rod=replace(scene.rod, laws=laws)))
     rng, units, n = np.random.default_rng(0), equations.units, len(equations.start.quaternion)
     start = equations.start
     point = Point(start.quaternion, start.base, rng.normal(size=start.F.shape) * units[6], 0.3)
@@ -92,19 +98,22 @@ def test_the_tangent_is_the_derivative_of_the_balances(law):
     assert apart < 1e-5 * np.abs(z[:, FORCE]).max()
 
 
-def pressed(analysis: str) -> Frame:
+def pressed(analysis: str, laws: tuple[object, ...]) -> Frame:
     """A spring of two turns between guides that is pressed until these touch."""
     push = (Condition("load", Curve.table([0.0, 1.0], [0.0, -PRESS])),)
     end = End((FIXED, FIXED, push), (FIXED, FIXED, FIXED), frame="lab")
     scene = coil(spring(2.0 * D), LAWS["eq. (6)"], end=end, analysis=analysis)
+    scene = replace(scene, rod=replace(scene.rod, laws=laws))
     if analysis == "static":
         return last(scene)
     numerics = Numerics("staggered", intervals=40, dt_max=0.05)
     return last(replace(scene, damping=30.0, t_end=12.0, output_interval=12.0, numerics=numerics))
 
 
-def test_a_spring_that_is_pressed_until_its_turns_touch_rests_where_damped_motion_ends():
-    static, moved = pressed("static"), pressed("dynamic")
+@pytest.mark.parametrize("laws", [(), ELASTIC], ids=["", "a rod that can stretch"])
+def test_a_spring_that_is_pressed_until_its_turns_touch_rests_where_damped_motion_ends(laws):
+    static, moved = pressed("static", laws), pressed("dynamic", laws)
+    assert (static.strain.max() > 1e-4) == bool(laws)
     assert static.contacts > 20 and static.energy_contact > 0.0
     assert np.abs(static.r - moved.r).max() < 1e-4 * LENGTH  # what is left of the motion
     assert static.min_gap == pytest.approx(moved.min_gap, abs=0.01 * D)

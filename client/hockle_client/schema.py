@@ -305,7 +305,9 @@ class OutputSpec(TypedDict):
     """What is stored, and how often."""
 
     interval: float
-    """time between frames; steps end exactly on frames, and the last frame is at `t_end`; in s"""
+    """time between frames, the last of which is at `t_end`. Steps end exactly on frames; with a tolerance on
+    every fifth at least, and the frames between lie on the steps' own polynomials; in s
+    """
 
     fields: NotRequired[Sequence[Literal["v", "omega", "f", "kappa", "q", "r", "orientation", "strain"]]]
     """which variables along the rod are stored"""

@@ -115,6 +115,17 @@ def tangents_of(quaternion: Array, T: Array) -> None:
         tangent_of(quaternion[j], T[j])
 
 
+@inner
+def spun_between(R: Array, Q: Array) -> tuple[float, float]:
+    """cos and sin of the angle by which Q (3, 3) is spun about its a3 against R, swung by the shortest way to there."""
+    cosine, sine, swung = 0.0, 0.0, 1.0
+    for k in range(3):
+        cosine += R[k, 0] * Q[k, 0] + R[k, 1] * Q[k, 1]
+        sine += R[k, 1] * Q[k, 0] - R[k, 0] * Q[k, 1]
+        swung += R[k, 2] * Q[k, 2]
+    return cosine / swung, sine / swung
+
+
 @kernel
 def turn(quaternion: Array, theta: Array, turned: Array) -> None:
     """Write quaternion * exp(theta), normalised, into `turned` (4,)."""

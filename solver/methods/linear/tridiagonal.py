@@ -19,6 +19,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.kernel import inlined_late, inner, kernel
+from solver.kernels.rotation import spun_between
 from solver.kernels.scratch import scratch_like
 from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
@@ -444,7 +445,9 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
             c0 = t0 * x[0] + t1 * z[0].real + t2 * z[0].imag
             c1 = t0 * x[1] + t1 * z[1].real + t2 * z[1].imag
             c2 = t0 * x[2] + t1 * z[2].real + t2 * z[2].imag
-            Q, R = frame[a], stages.start[a]
+            Q, R = stages.R[i, a], stages.start[a]
+            cosine, sine = spun_between(frame[a], Q)  # see `turn_residuals`
+            c0, c1 = cosine * c0 + sine * c1, cosine * c1 - sine * c0
             u = Q[0, 0] * c0 + Q[0, 1] * c1 + Q[0, 2] * c2
             v = Q[1, 0] * c0 + Q[1, 1] * c1 + Q[1, 2] * c2
             w = Q[2, 0] * c0 + Q[2, 1] * c1 + Q[2, 2] * c2

@@ -5,6 +5,7 @@ from __future__ import annotations
 from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.kernel import inner, kernel
+from solver.kernels.rotation import spun_between
 from solver.kernels.scratch import scratch
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, condition_ends, segment_tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
@@ -44,37 +45,36 @@ def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residua
 
 @inner
 def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals: Residuals) -> None:
-    """Turn the rows in material components from the stages' own frames into those of the tangents.
+    """Turn the rows in material components from the stages' own frames into those that go with the tangents.
 
-    Where an end's conditions are of two kinds, only among components of one kind: exact for a frame that spins about
-    the axis of the odd one.
+    That is the tangents' frame, swung to the stage's own tangent T but not spun about it: what a force does is then no
+    moment about T, where a thin rod's inertia is next to nothing, however far the segment swings. Where an end's
+    conditions are of two kinds, only components of one kind are turned: exact for a frame that spins about the axis
+    of the odd one.
     """
     R = tangents.R
     n = len(R)
     old, turned = scratch(3), scratch((3, 3))
     for i in range(STAGES):
         for a in range(n):
-            Q, row = stages.R[i, a], residuals.rotation[i, a]
-            x = Q[0, 0] * row[0] + Q[0, 1] * row[1] + Q[0, 2] * row[2]
-            y = Q[1, 0] * row[0] + Q[1, 1] * row[1] + Q[1, 2] * row[2]
-            z = Q[2, 0] * row[0] + Q[2, 1] * row[1] + Q[2, 2] * row[2]
-            if 0 < a < n - 1:
-                for k in range(3):
-                    row[k] = R[a, 0, k] * x + R[a, 1, k] * y + R[a, 2, k] * z
-                continue
-            side = 0 if a == 0 else 1
+            row, (cosine, sine) = residuals.rotation[i, a], spun_between(R[a], stages.R[i, a])
+            kinds = driven.kinds[0 if a == 0 else 1]
+            if 0 < a < n - 1 or kinds[3] == kinds[4]:
+                row[0], row[1] = cosine * row[0] - sine * row[1], sine * row[0] + cosine * row[1]
+        for side in range(2):
+            a, rows = 0 if side == 0 else n - 1, residuals.ends[i, side]
+            Q = stages.R[i, a]
             for k in range(3):
                 for m in range(3):
                     turned[k, m] = R[a, 0, k] * Q[0, m] + R[a, 1, k] * Q[1, m] + R[a, 2, k] * Q[2, m]
-            for first, rows in ((3, row), (0, residuals.ends[i, side])):
-                copy(rows, old)
-                for k in range(3):
-                    kind = driven.kinds[side, first + k]
-                    if kind in (RATE, LOAD):
-                        rows[k] = 0.0
-                        for m in range(3):
-                            if driven.kinds[side, first + m] == kind:
-                                rows[k] += turned[k, m] * old[m]
+            copy(rows, old)
+            for k in range(3):
+                kind = driven.kinds[side, k]
+                if kind in (RATE, LOAD):
+                    rows[k] = 0.0
+                    for m in range(3):
+                        if driven.kinds[side, m] == kind:
+                            rows[k] += turned[k, m] * old[m]
 
 
 @inner

@@ -217,20 +217,35 @@ def in_material_by_rotation(y: Any) -> Any:
 
 
 @by_type
-def tangent_by_rotation(G: Any, R: Any) -> Any:
-    """G dT / d psi, dT = R (d psi x a3): what a derivative G by the tangent says of a rotation; None of None."""
-    if isinstance(G, numba.types.NoneType):
-        return lambda G, R: None
-    if len(G) == 2:
-        return lambda G, R: (R[2] * (G[0][1] * R[0] - G[0][0] * R[1]), R[2] * (G[1][1] * R[0] - G[1][0] * R[1]))
-    return lambda G, R: (_swing(G[0], R), _swing(G[1], R), _swing(G[2], R))
+def lever(a: Any, R: Any) -> Any:
+    """a dT / d psi, dT = R (d psi x a3): the material moment T x a; that about a plane's normal."""
+    if len(a) == 2:
+        return lambda a, R: R[2] * (a[1] * R[0] - a[0] * R[1])
+    return lambda a, R: (-(a[0] * R[0][1] + a[1] * R[1][1] + a[2] * R[2][1]),
+                         a[0] * R[0][0] + a[1] * R[1][0] + a[2] * R[2][0], 0.0)  # fmt: skip
+
+
+@by_type
+def lever_by_rotation(a: Any, R: Any) -> Any:
+    """d(a3 x R^t a) / d psi: a matrix in space, a number in a plane."""
+    if len(a) == 2:
+        return lambda a, R: -(a[0] * R[0] + a[1] * R[1])
+    return lambda a, R: _lever_turned(in_material(R, a))
 
 
 @inner
-def _swing(row: Any, R: Any) -> Any:
-    """A row of G [-R a2, R a1, 0]."""
-    return (-(row[0] * R[0][1] + row[1] * R[1][1] + row[2] * R[2][1]),
-            row[0] * R[0][0] + row[1] * R[1][0] + row[2] * R[2][0], 0.0)  # fmt: skip
+def _lever_turned(g: Any) -> Any:
+    return (-g[2], 0.0, g[0]), (0.0, -g[2], g[1]), (0.0, 0.0, 0.0)
+
+
+@by_type
+def tangent_by_rotation(G: Any, R: Any) -> Any:
+    """G dT / d psi: what a derivative G by the tangent says of a rotation; None of None."""
+    if isinstance(G, numba.types.NoneType):
+        return lambda G, R: None
+    if len(G) == 2:
+        return lambda G, R: (lever(G[0], R), lever(G[1], R))
+    return lambda G, R: (lever(G[0], R), lever(G[1], R), lever(G[2], R))
 
 
 @inner

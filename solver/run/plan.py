@@ -1,13 +1,13 @@
 """Which resolution a run to a tolerance tries next: a pure function of what those before have shown.
 
-A resolution is a mesh of FIRST_INTERVALS 2^mesh intervals and steps whose error relative to their motion, as the
-embedded formula has it, is at most FIRST_STEPS tolerance^(1/2) / 4^steps: where the motion is smooth, the true one
-falls faster. The coarsest mesh runs with two kinds of steps, which tells for next to nothing what shorter ones would
-change. Then the mesh is made finer, or the steps shorter, or both at once: both errors fall to a quarter then, so that
-one difference tells them together. It ends when their sum is below the tolerance, when the work is done that may be, or
-when it shows that this work cannot bring it there. This is asked of each quantity that the tolerance is for: one that
-cannot be brought there, as the curvature where a moment jumps, does not keep the others from it. Of those that can be,
-the one with the largest error says what is made finer.
+A resolution is a mesh of some 16 times 2^mesh intervals (see `first_mesh`) and steps whose error relative to their
+motion, as the embedded formula has it, is at most FIRST_STEPS tolerance^(1/2) / 4^steps: where the motion is smooth,
+the true one falls faster. The coarsest mesh runs with two kinds of steps, which tells for next to nothing what shorter
+ones would change. Then the mesh is made finer, or the steps shorter, or both at once: both errors fall to a quarter
+then, so that one difference tells them together. It ends when their sum is below the tolerance, when the work is done
+that may be, or when it shows that this work cannot bring it there. This is asked of each quantity that the tolerance is
+for: one that cannot be brought there, as the curvature where a moment jumps, does not keep the others from it. Of those
+that can be, the one with the largest error says what is made finer.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import NamedTuple
 from solver.run.series import Attempt, chosen, is_diagonal
 
 FIRST_INTERVALS = 16
+"""Of the coarsest mesh, or somewhat more: see `first_mesh`. The work is counted as if it were as many."""
 FIRST_STEPS = 0.5
 STRIDES = 5
 """Frames that a step may pass at the most, see `Numerics`, and does at tolerances from 1e-3 on. Where the motion is
@@ -85,9 +86,9 @@ class Trial(NamedTuple):
     steps: int
 
 
-def intervals_of(mesh: int) -> int:
-    """Of a mesh."""
-    return int(FIRST_INTERVALS * 2**mesh)
+def intervals_of(mesh: int, first: int = FIRST_INTERVALS) -> int:
+    """Of a mesh; `first`: of the coarsest."""
+    return int(first * 2**mesh)
 
 
 def step_tolerance(steps: int, tolerance: float) -> float:

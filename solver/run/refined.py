@@ -17,13 +17,13 @@ from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics
 from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
-from solver.run.first_mesh import first_mesh
+from solver.run.first_mesh import first_intervals, first_mesh
 from solver.run.plan import (
+    FIRST_INTERVALS,
     Excess,
     Trial,
     allowance,
     following,
-    intervals_of,
     longest_step,
     step_tolerance,
     strides_of,
@@ -74,7 +74,7 @@ class Refined(Run):
     @property
     def phase(self) -> str:
         """Which mesh it is at."""
-        return f"run {len(self._history) + 1}: {intervals_of(self._under_way.trial.mesh)} intervals"
+        return f"run {len(self._history) + 1}: {len(self._under_way.run.s) - 1} intervals"
 
     @property
     def progress(self) -> float:
@@ -93,10 +93,10 @@ class Refined(Run):
     def chosen(self) -> Scene:
         """A scene whose verified run has the two finest meshes of this one, and steps like these."""
         together = self._together
-        steps, mesh = together.finest.steps, together.finest.mesh
+        steps, intervals = together.finest.steps, len(together.s) - 1
         tolerance = self._scene.numerics.tolerance or 1.0
         numerics = replace(
-            self._scene.numerics, tolerance=None, verify=True, intervals=intervals_of(mesh) // 2,
+            self._scene.numerics, tolerance=None, verify=True, intervals=intervals // 2,
             dt_max=longest_step(steps, self._scene.output_interval), strides=strides_of(tolerance, steps),
             increment_tolerance=step_tolerance(steps, tolerance),
         )  # fmt: skip
@@ -156,7 +156,8 @@ class Refined(Run):
 
     @property
     def _most(self) -> int:
-        return min(self._scene.numerics.most_intervals, MOST_ROWS // (len(self._outputs) + 1))
+        most = min(self._scene.numerics.most_intervals, MOST_ROWS // (len(self._outputs) + 1))
+        return most * FIRST_INTERVALS // first_intervals(self._scene)
 
     @property
     def _together(self) -> Together:

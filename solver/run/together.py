@@ -11,7 +11,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.run.accuracy import QUANTITIES, errors_of, excess, sizes
-from solver.run.plan import HOPELESS, Excess, intervals_of, step_tolerance
+from solver.run.first_mesh import first_intervals
+from solver.run.plan import FAR_FROM_IT, HOPELESS, Excess, intervals_of, step_tolerance
 from solver.run.recording import (
     BALANCE,
     CURVATURE,
@@ -68,13 +69,14 @@ class Together:
         self._chosen, self._diagonal = chosen(attempts), is_diagonal(attempts)
         self._in_waves = [number(name) for name in of_waves(scene.rod)]
         self.finest = attempts[self._chosen.finest]
+        self._intervals = intervals_of(self.finest.mesh, first_intervals(scene))
         self.frames = min(len(recorded[i]) for i in self._chosen.meshes)
         """How many there are."""
 
     @property
     def s(self) -> Array:
         """Arclengths of the nodes (n,), m."""
-        return np.linspace(0.0, float(self._scene.rod.length), intervals_of(self.finest.mesh) + 1)
+        return np.linspace(0.0, float(self._scene.rod.length), self._intervals + 1)
 
     def piece(self, i: int) -> Piece:
         """Frame number i and those that follow it, as many as are looked at together.
@@ -138,8 +140,10 @@ class Together:
         if self._diagonal:
             of_steps = np.minimum(of_steps, 0.5 * of_mesh)
             of_mesh = of_mesh - of_steps
-        totals = [previous.total for previous in before]
         hopeless = [HOPELESS.get(name, np.inf) for name in QUANTITIES]
+        # how an error falls says nothing as long as the meshes do not show the motion
+        totals = [np.inf if most == np.inf and target * previous.mesh > FAR_FROM_IT else previous.total
+                  for previous, most in zip(before, hopeless, strict=True)]  # fmt: skip
         return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, hopeless, strict=True)]
 
     @cached_property
@@ -162,7 +166,7 @@ class Together:
 
     @property
     def _many(self) -> int:
-        return max(AT_ONCE // (intervals_of(self.finest.mesh) + 1), 1)
+        return max(AT_ONCE // (self._intervals + 1), 1)
 
     def _pieces(self) -> Iterator[slice]:
         """Frames by so many that their arrays stay small."""
@@ -197,7 +201,7 @@ class Together:
 
     def _of_steps(self, series: Sequence[int], here: slice, judged: bool) -> Columns:
         """The error by the steps, as a series of attempts with different ones tells it; none where nothing tells it."""
-        nodes = intervals_of(self.finest.mesh) + 1
+        nodes = self._intervals + 1
         if len(series) < 2:
             many = min(here.stop, self.frames) - here.start
             return Columns(np.zeros((many, nodes, len(JUDGED) if judged else WIDTH)), np.zeros((many, 1, len(NUMBERS))))

@@ -8,6 +8,7 @@ from typing import Any
 
 from solver.measures.frame import Frame, Statistics
 from solver.run.checkpoint import Saved, restore, saved
+from solver.run.first_mesh import first_intervals
 from solver.run.plan import IN_CONTACT, OVERHEAD, Trial, intervals_of, longest_step, step_tolerance, strides_of
 from solver.run.simulation import Simulation
 from solver.scene.scene import Scene
@@ -28,8 +29,9 @@ class UnderWay:
         self.statistics = Statistics()
         self.work, self.pressed = 0.0, False
         tolerance = scene.numerics.tolerance or 1.0
+        intervals = intervals_of(trial.mesh, first_intervals(scene))
         numerics = replace(
-            scene.numerics, tolerance=None, verify=False, intervals=intervals_of(trial.mesh),
+            scene.numerics, tolerance=None, verify=False, intervals=intervals,
             dt_max=longest_step(trial.steps, scene.output_interval), strides=strides_of(tolerance, trial.steps),
             small_motion=SMALL_MOTION, increment_tolerance=step_tolerance(trial.steps, tolerance),
         )  # fmt: skip

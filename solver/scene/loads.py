@@ -39,6 +39,11 @@ class PointLoad:
     moment: Vector = ZERO
     frame: Frame_ = "lab"
 
+    @property
+    def pulls(self) -> bool:
+        """Whether it has a force."""
+        return not all(component.is_zero for component in self.force)
+
     def keeps(self, view: View) -> bool:
         """Whether force and moment act along the motion about an axis, at all times."""
         force, moment = at_all_times(self.force), at_all_times(self.moment)

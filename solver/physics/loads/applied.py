@@ -20,13 +20,14 @@ from solver.scene.scene import Scene
 class AppliedLoads:
     """The loads of a scene at arclengths `s` (n,), at as many `times` within a step as a method asks for.
 
-    The density at s[i] acts on a length `lengths[i]` about `centres[i]`; by default that of a node of the box scheme.
+    They are nodes of the box scheme, or the middles of rigid `segments` of these lengths (n,).
     `records`: what kernels read, in space, or in the plane of an `axis`.
     """
 
-    def __init__(self, scene: Scene, section: Section, s: Array, acting: tuple[Array, Array] | None = None,
+    def __init__(self, scene: Scene, section: Section, s: Array, segments: Array | None = None,
                  times: int = 1, axis: Any = None) -> None:  # fmt: skip
-        samples = Samples(s, section, *(acting or nodes_act(s)), times)
+        acting = nodes_act(s) if segments is None else (s, segments)
+        samples = Samples(s, section, *acting, times, rigid=segments is not None)
         self._sources, self._axis, self._times = sources_of(scene, samples), axis, times
         self.records = records_of(self._sources)
         if axis is not None:

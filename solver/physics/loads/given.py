@@ -30,18 +30,24 @@ class GivenLoads(Source):
     """
 
     def __init__(self, scene: Scene, samples: Samples, kind: type[Record], following: bool) -> None:
-        inside = tuple(load for load in scene.points if load.s not in (0.0, scene.rod.length))
         n, arrays = len(samples.s), (np.zeros((samples.times, len(samples.s), 3)) for _ in range(2))
-        loads: list[DistributedLoad | PointLoad] = [*scene.distributed, *inside]
+        loads: list[DistributedLoad | PointLoad] = [*scene.distributed, *points_within(scene)]
         self._following = following
-        acting = [load for load in loads if any(not _is_zero(c) for c in self._part(load))]
+        acting = [load for load in loads if self._has_lever(load, samples)
+                  or any(not _is_zero(c) for c in self._part(load))]  # fmt: skip
         super().__init__(kind(bool(acting), *arrays))
         self._distributed = [(load, np.stack([p(samples.s) for p in self._part(load)], axis=1))
                              for load in acting if isinstance(load, DistributedLoad)]  # fmt: skip
-        self._points = [(load, point_weights(load.s, samples.centres, samples.lengths))
-                        for load in acting if isinstance(load, PointLoad)]  # fmt: skip
+        self._points = [(self._target(load)[..., k], samples.weights(load.s), curve)
+                        for load in acting if isinstance(load, PointLoad)
+                        for k, curve in enumerate(self._part(load)) if not curve.is_zero]  # fmt: skip
+        for load in acting:
+            if isinstance(load, PointLoad) and self._has_lever(load, samples):  # a3 x f: a moment along material axes
+                levers = samples.levers(load.s)
+                self._points += [(self.record.moment[..., 0], -levers, load.force[1]),
+                                 (self.record.moment[..., 1], levers, load.force[0])]  # fmt: skip
         self._density = np.zeros((n, 3))
-        self.steady = all(_is_steady(load) for load in acting)
+        self.steady = all(is_steady(load) for load in acting)
         self.corners = tuple(corner for load in acting for curve in _schedules(load) for corner in curve.corners)
         for i in range(samples.times):
             self.set_time(0.0, i)
@@ -52,14 +58,17 @@ class GivenLoads(Source):
         self.record.moment[i] = 0.0
         for load, density in self._distributed:
             self._target(load)[i] += np.multiply(density, load.schedule.value(t), out=self._density)
-        for point, weights in self._points:
-            for k, component in enumerate(self._part(point)):
-                np.multiply(weights, component.value(t), out=self._density[:, k])
-            self._target(point)[i] += self._density
+        for target, density, curve in self._points:
+            target[i] += np.multiply(density, curve.value(t), out=self._density[:, 0])
 
     def _acts_by_force(self, load: DistributedLoad | PointLoad) -> bool:
         """Whether it is the load's force, not its moment, that is of this kind."""
         return (load.frame == "material") == self._following
+
+    def _has_lever(self, load: DistributedLoad | PointLoad, samples: Samples) -> bool:
+        """Whether the moment that its force has about a segment's middle is of this kind; see also `levers`."""
+        turns = samples.rigid and not self._following and load.frame == "material"
+        return turns and isinstance(load, PointLoad) and load.pulls
 
     def _part(self, load: DistributedLoad | PointLoad) -> Any:
         return load.force if self._acts_by_force(load) else load.moment
@@ -79,19 +88,13 @@ def nodes_act(s: Array) -> tuple[Array, Array]:
     return centres, lengths
 
 
-def point_weights(at: float, centres: Array, lengths: Array) -> Array:
-    """Densities (n,) in 1/m that act like a unit point load at arclength `at`.
-
-    Two neighbours are weighted so that force and moment are those of the point.
-    """
-    i = int(np.clip(np.searchsorted(centres, at) - 1, 0, len(centres) - 2))
-    share = (at - centres[i]) / (centres[i + 1] - centres[i])
-    weights = np.zeros_like(centres)
-    weights[i], weights[i + 1] = (1.0 - share) / lengths[i], share / lengths[i + 1]
-    return weights
+def points_within(scene: Scene) -> list[PointLoad]:
+    """The point loads of a scene, but for those at its ends."""
+    return [load for load in scene.points if load.s not in (0.0, scene.rod.length)]
 
 
-def _is_steady(load: DistributedLoad | PointLoad) -> bool:
+def is_steady(load: DistributedLoad | PointLoad) -> bool:
+    """Whether a load is the same at all times."""
     if isinstance(load, DistributedLoad):
         return load.schedule.is_constant
     return all(c.is_constant for c in (*load.force, *load.moment))

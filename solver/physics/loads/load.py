@@ -22,6 +22,7 @@ from enum import IntEnum
 from math import inf
 from typing import Any, NamedTuple
 
+import numpy as np
 from numba import types
 
 from solver.arrays import Array
@@ -29,6 +30,9 @@ from solver.kernels.dispatch import dispatched, for_each, has_variant
 from solver.kernels.kernel import by_type, inner
 from solver.kernels.vectors import dot
 from solver.physics.section import Section
+
+ON_NODE = 1e-9
+"""Part of a segment by which a point may be beside a node and is still taken to be there."""
 
 
 class Account(IntEnum):
@@ -101,13 +105,40 @@ class Source:
 @dataclass(frozen=True)
 class Samples:
     """Where a method wants loads: at arclengths `s` (n,), each density acting on `lengths` about `centres` (n,), at so
-    many `times` within a step; the `section` there."""
+    many `times` within a step; the `section` there. `rigid`: these are segments, on which a force may act anywhere."""
 
     s: Array
     section: Section
     centres: Array
     lengths: Array
     times: int
+    rigid: bool = False
+
+    def weights(self, at: float) -> Array:
+        """Densities (n,) in 1/m that act like a unit point load at arclength `at`, together with its `levers`.
+
+        On the segments that are there; else two neighbours are weighted so that force and moment are those of the
+        point.
+        """
+        weights = np.zeros_like(self.centres)
+        if self.rigid:
+            segments = self._segments(at)
+            weights[segments] = 1.0 / (len(segments) * self.lengths[segments])
+            return weights
+        i = int(np.clip(np.searchsorted(self.centres, at) - 1, 0, len(self.centres) - 2))
+        share = (at - self.centres[i]) / (self.centres[i + 1] - self.centres[i])
+        weights[i], weights[i + 1] = (1.0 - share) / self.lengths[i], share / self.lengths[i + 1]
+        return weights
+
+    def levers(self, at: float) -> Array:
+        """How far (n,) from their middles a unit point load at arclength `at` acts on rigid segments, per length."""
+        levers: Array = self.weights(at) * (at - self.centres) if self.rigid else np.zeros_like(self.centres)
+        return levers
+
+    def _segments(self, at: float) -> Any:
+        """The segment that has the point, or the two that meet there."""
+        beside = np.abs(at - self.centres) / self.lengths
+        return np.flatnonzero(beside <= max(0.5 * (1.0 + ON_NODE), float(beside.min())))
 
 
 @dispatched

@@ -6,7 +6,7 @@ from collections import namedtuple
 from typing import Any
 
 from solver.kernels.dispatch import enter
-from solver.physics.loads import added_mass, damping, dead, drag, following, solids, user, weight
+from solver.physics.loads import added_mass, damping, dead, drag, following, levers, solids, user, weight
 from solver.physics.loads import load as protocol
 from solver.physics.loads.load import Samples, Source
 from solver.scene.scene import Scene
@@ -15,6 +15,7 @@ LOADS: tuple[Any, ...] = (
     weight,
     dead,
     following,
+    levers,
     damping,
     added_mass,
     drag,

@@ -73,6 +73,7 @@ def thrown() -> Scene:
     along = DistributedLoad(in_plane(constant(FORCE), constant(0.5 * FORCE)), across(constant(0.1 * FORCE)),
                             schedule=GROWTH)  # fmt: skip
     points = (PointLoad(0.33, in_plane(GROWTH, ZERO), across(ZERO), "material"),
+              PointLoad(0.41, in_plane(SHIFT, GROWTH), across(ZERO)),
               PointLoad(LENGTH, in_plane(ZERO, SHIFT), across(ZERO), "material"),
               PointLoad(0.0, in_plane(ZERO, SHIFT), across(ZERO)))  # fmt: skip
     start = replace(ARC, velocity=(0.1, 0.0, 0.2), angular_velocity=(0.0, 1.0, 0.0))

@@ -8,10 +8,22 @@ from functools import cache
 import numpy as np
 import pytest
 
-from solver import Condition, Curve, End, Initial, Numerics, Outcome, RunFailed, Scene, VerifiedFrame, simulate
+from solver import (
+    Condition,
+    Curve,
+    End,
+    Initial,
+    Numerics,
+    Outcome,
+    PointLoad,
+    RunFailed,
+    Scene,
+    VerifiedFrame,
+    simulate,
+)
 from solver.run import plan
 from solver.run.accuracy import QUANTITIES, errors_of, sizes
-from solver.run.first_mesh import LARGEST_TURN
+from solver.run.first_mesh import LARGEST_TURN, first_intervals
 from solver.run.plan import FIRST_INTERVALS, Trial
 from solver.run.recording import Columns, columns_of, row_of
 from solver.run.refined import Refined
@@ -20,7 +32,7 @@ from solver.run.together import Together
 from solver.run.under_way import UnderWay
 from solver.scene.ends import FREE
 from tests.solver.bent import bent_cantilever
-from tests.solver.scenes import EJ
+from tests.solver.scenes import EJ, LENGTH
 from validation.error_bars import missed, misses
 
 NUMERICS = Numerics(method="staggered")
@@ -214,3 +226,12 @@ def test_where_strands_pressed_before_a_state_on_a_mesh_too_coarse_for_that_it_i
         other._first_if_pressed = run.under_way.trial.mesh + finer if run.under_way else 0
         assert other.begin_from({**state, ".pressed": pressed}, run.rows) is begins
         assert (other.statistics.steps > 0) is begins
+
+
+def test_the_coarsest_mesh_has_a_node_at_a_point_load_if_few_enough_have() -> None:
+    def loaded(*places: float) -> Scene:
+        return replace(tolerated(1e-3), points=tuple(PointLoad(at * LENGTH) for at in places))
+
+    assert first_intervals(loaded()) == first_intervals(loaded(0.5, 0.25)) == FIRST_INTERVALS
+    assert [first_intervals(loaded(*places)) for places in ((0.4,), (1 / 3, 0.5), (0.4, 0.25), (0.1, 0.4142))] \
+        == [20, 18, 20, FIRST_INTERVALS]  # fmt: skip

@@ -45,6 +45,8 @@ PRESSED = {
     "current": {"fluid": Fluid(1000.0, 1.0, 1.2, 0.1, (0.1, 0.2, 0.05))},
     "tip, lab": {"points": (PointLoad(LENGTH, DENSITIES, DENSITIES),)},
     "tip, following": {"points": (PointLoad(LENGTH, DENSITIES, DENSITIES, "material"),)},
+    "beside the middles of segments": {"points": (PointLoad(0.37 * LENGTH, DENSITIES, DENSITIES),
+                                                  PointLoad(0.61 * LENGTH, DENSITIES, DENSITIES, "material"))},
     "free start": {"start": End.free(), "end": End.clamp(), "points": (PointLoad(0.0, DENSITIES, DENSITIES, "material"),
                                                                        PointLoad(0.0, DENSITIES, DENSITIES))},
     "pin and clamp": {"start": End.pin(), "end": End.clamp()},

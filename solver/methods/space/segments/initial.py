@@ -34,7 +34,7 @@ def _across(s: Array) -> Array:
 def loads_on_segments(scene: Scene, s: Array, times: int, axis: Any = None) -> AppliedLoads:
     """The loads of a scene on the segments between nodes `s` (N + 1,), at so many times within a step."""
     middles = 0.5 * (s[1:] + s[:-1])
-    return AppliedLoads(scene, segments_of(scene.rod, s), middles, (middles, np.diff(s)), times, axis)
+    return AppliedLoads(scene, segments_of(scene.rod, s), middles, np.diff(s), times, axis)
 
 
 def chain_of(rod: Rod, section: Section, entrained: Array, s: Array) -> Chain:

@@ -14,13 +14,18 @@ from numpy.testing import assert_allclose
 from solver import Curve, DistributedLoad, End, Fluid, Initial, PointLoad, Rod, Scene, constant_vector
 from solver.arrays import Array
 from solver.physics.loads.applied import AppliedLoads
-from solver.physics.loads.given import nodes_act, point_weights
+from solver.physics.loads.given import nodes_act
+from solver.physics.loads.load import Samples
 from solver.physics.section import sample
 
 LENGTH, INTERVALS = 2.0, 8
 S = np.linspace(0.0, LENGTH, INTERVALS + 1)
 H = LENGTH / INTERVALS
 ZERO = constant_vector((0.0, 0.0, 0.0))
+ROD = Rod.circular(LENGTH, 0.02, 1e7, 5e6, 2000.0)
+NODES = Samples(S, sample(ROD, S), *nodes_act(S), times=1)
+MIDDLES = 0.5 * (S[1:] + S[:-1])
+SEGMENTS = Samples(MIDDLES, sample(ROD, MIDDLES), MIDDLES, np.diff(S), times=1, rigid=True)
 RAMP = Curve.table([0.0, 4.0], [0.0, 1.0])
 
 
@@ -44,9 +49,8 @@ def at(loads: AppliedLoads, t: float) -> Now:
 
 
 def scene_with(**loads: object) -> Scene:
-    rod = Rod.circular(LENGTH, 0.02, 1e7, 5e6, 2000.0)
     return Scene(
-        rod=rod, initial=Initial.straight(), start=End.clamp(), end=End.free(),
+        rod=ROD, initial=Initial.straight(), start=End.clamp(), end=End.free(),
         t_end=1.0, output_interval=1.0, **loads,  # type: ignore[arg-type]
     )  # fmt: skip
 
@@ -64,27 +68,41 @@ def force_and_moment_at_the_root(density: Array) -> tuple[float, float]:
 
 @given(st.floats(0.0, LENGTH))
 def test_a_point_load_acts_with_its_force_and_its_moment_wherever_it_is(at: float) -> None:
-    force, moment = force_and_moment_at_the_root(point_weights(at, *nodes_act(S)))
+    force, moment = force_and_moment_at_the_root(NODES.weights(at))
     assert force == pytest.approx(1.0, abs=1e-14)
     assert moment == pytest.approx(at, abs=1e-13)
 
 
 @pytest.mark.parametrize("at", [0.0, 0.1 * H, 0.5 * H, 0.9 * H, LENGTH - 0.5 * H, LENGTH - 0.01 * H, LENGTH])
 def test_a_point_load_near_an_end_is_as_exact_as_elsewhere(at: float) -> None:
-    assert_allclose(force_and_moment_at_the_root(point_weights(at, *nodes_act(S))), (1.0, at), atol=1e-14)
+    assert_allclose(force_and_moment_at_the_root(NODES.weights(at)), (1.0, at), atol=1e-14)
 
 
 def test_a_point_load_on_a_node_is_that_nodes_alone() -> None:
-    weights = point_weights(float(S[3]), *nodes_act(S))
+    weights = NODES.weights(float(S[3]))
     assert weights[3] == pytest.approx(1.0 / H)
     assert np.count_nonzero(np.abs(weights) > 1e-12) == 1
 
 
 def test_a_point_load_moves_smoothly_along_the_rod() -> None:
     along = np.linspace(0.0, LENGTH, 2001)
-    weights = np.array([point_weights(float(at), *nodes_act(S)) for at in along])
+    weights = np.array([NODES.weights(float(at)) for at in along])
     # piecewise linear: a step of 1 mm may change a weight by 1e-3 m / (H/2) / (H/2)
     assert np.abs(np.diff(weights, axis=0)).max() <= 1e-3 / (0.5 * H) ** 2 * (1 + 1e-9)
+
+
+@given(st.floats(0.0, LENGTH))
+def test_on_rigid_segments_a_point_load_acts_where_it_is_and_nowhere_else(at: float) -> None:
+    weights, levers = SEGMENTS.weights(at) * H, SEGMENTS.levers(at) * H
+    assert weights.sum() == pytest.approx(1.0, abs=1e-14)
+    assert (weights * MIDDLES + levers).sum() == pytest.approx(at, abs=1e-14)
+    there = np.flatnonzero(weights)
+    assert (np.abs(at - MIDDLES[there]) <= 0.5 * H * (1.0 + 1e-8)).all() and len(there) == (2 if at in S[1:-1] else 1)
+
+
+def test_at_a_node_both_segments_bear_half_of_it_at_their_ends() -> None:
+    assert_allclose(SEGMENTS.weights(float(S[3]))[[2, 3]] * H, 0.5)
+    assert_allclose(SEGMENTS.levers(float(S[3]))[[2, 3]] * H, [0.25 * H, -0.25 * H])
 
 
 def test_weight_is_less_buoyancy() -> None:
@@ -118,7 +136,7 @@ def test_loads_add_up() -> None:
     one = DistributedLoad(force=constant_vector((1.0, 0.0, 0.0)))
     point = PointLoad(1.0, force=(Curve.constant(5.0), ZERO[1], ZERO[2]))
     now = at(applied(distributed=(one, one), points=(point, point)), 0.0)
-    assert_allclose(now.lab[:, 0], 2.0 + 10.0 * point_weights(1.0, *nodes_act(S)))
+    assert_allclose(now.lab[:, 0], 2.0 + 10.0 * NODES.weights(1.0))
 
 
 def test_a_point_load_at_an_end_is_the_ends_and_no_density() -> None:

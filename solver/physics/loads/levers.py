@@ -1,0 +1,71 @@
+"""What point forces within the rod do besides acting on a rigid segment: they turn it, for they act beside its middle.
+
+A force F (lab) at a way l from the middle along the segment has the moment l T x F about it. Where a method knows no
+rigid segments there are none, see `Samples.weights`.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from solver.kernels.kernel import inner
+from solver.kernels.vectors import lever, lever_by_rotation, times, vector
+from solver.physics.loads.given import is_steady, points_within
+from solver.physics.loads.load import GIVEN, Point, Samples, Source, Tangents
+from solver.scene.scene import Scene
+
+
+class Record(NamedTuple):
+    """`arm`: the sum of l F per length at each time of a step (times, n, 3), N m/m, lab."""
+
+    present: bool
+    arm: Any
+
+
+class Levers(Source):
+    """The levers of a scene's point forces that keep their direction."""
+
+    def __init__(self, scene: Scene, samples: Samples) -> None:
+        loads = [load for load in points_within(scene) if samples.rigid and load.frame == "lab" and load.pulls]
+        self._loads = [(load, samples.levers(load.s)) for load in loads]
+        super().__init__(Record(bool(loads), np.zeros((samples.times, len(samples.s), 3))))
+        self._arm = np.zeros(len(samples.s))
+        self.steady = all(is_steady(load) for load in loads)
+        for i in range(samples.times):
+            self.set_time(0.0, i)
+
+    def set_time(self, t: float, i: int) -> None:
+        """Write the levers at time t."""
+        self.record.arm[i] = 0.0
+        for load, levers in self._loads:
+            for k, component in enumerate(load.force):
+                self.record.arm[i, :, k] += np.multiply(levers, component.value(t), out=self._arm)
+
+
+of = Levers
+
+
+def about(record: Record, axis: Any) -> Record:
+    """In the plane of an axis."""
+    return Record(record.present, record.arm @ axis.lab)
+
+
+@inner
+def force(load: Record, i: int, j: int, at: Point) -> Any:
+    """The moment l T x F, and no force more."""
+    arm = vector(load.arm[i], j)
+    return times(0.0, arm), lever(arm, at.R)
+
+
+@inner
+def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
+    """By rotation."""
+    return Tangents(None, None, None, None, None, lever_by_rotation(vector(load.arm[i], j), at.R), None)
+
+
+@inner
+def account(load: Record) -> int:
+    """Work of the loads."""
+    return GIVEN

@@ -75,8 +75,8 @@ class Remarks:
             )
         if self.turning_loads:
             sentences.append(
-                "Forces turn with the rod: negative_modes is counted with them held as they are, and says neither that "
-                "the rod stays there nor that it leaves. A dynamic run shows it."
+                "Forces turn with the rod, or have no potential: negative_modes is counted with them held as they "
+                "are, and says neither that the rod stays there nor that it leaves. A dynamic run shows it."
             )
         return sentences
 

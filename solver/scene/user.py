@@ -44,5 +44,5 @@ class UserLoad(ABC):
         return K, C
 
     def energy(self, t: float, s: Array, r: Array) -> Array:
-        """Potential energy per length (n,) in J/m, of a load that is "stored"."""
+        """Potential energy per length (n,) in J/m, of a load that is "stored": the same at all times."""
         raise NotImplementedError("a load whose power is stored must say its energy")

@@ -34,6 +34,8 @@ from solver.statics.contact import StaticContact
 from solver.statics.ends import StaticEnd
 
 BLOCK, BAND = 9, 17
+SKEW = 1e-6
+"""Part of the largest derivative of loads by place by which they may differ from those of a potential: differences."""
 SOFTEST = 1e-8
 """Stiffness (in EJ/L, shared by all segments) given to every rotation in the iteration, which does not change what it
 converges to: a rod that may spin freely about its own axis has one state, the nearest."""
@@ -219,8 +221,11 @@ class Equations:
         return float(self.compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
 
     def loads_turn(self) -> bool:
-        """Whether forces turn with the rod, of the point that was looked at last: they have no potential."""
-        return bool(self.tangents.E.any() or self._driven.values[0, :, :3].any())
+        """Whether loads have no potential, of the point that was looked at last: what turns with the rod, or depends on
+        the place in a way that no energy does."""
+        K = self.tangents.K
+        skew = np.abs(K - np.swapaxes(K, 1, 2)).max() > SKEW * np.abs(K).max()
+        return bool(skew or self.tangents.E.any() or self._driven.values[0, :, :3].any())
 
     def _follower(self, side: int) -> Array:
         """Forces (3,) that follow an end's frame."""

@@ -193,12 +193,21 @@ def _loads(component: Component, t: Array) -> Array:
 
 
 def _largest_pull(scene: Scene, t: Array) -> float:
-    """The largest force (N) at an end or in a point, or the rod's weight if that is larger."""
+    """The largest force (N) at an end, in a point or along the rod, its weight or a current's drag."""
     forces = [np.linalg.norm([_loads(c, t) for c in end.translation], axis=0).max() for end in (scene.start, scene.end)]
     forces += [np.linalg.norm([_at(c, t) for c in load.force], axis=0).max() for load in scene.points]
     s = np.linspace(0.0, scene.rod.length, SAMPLES)
-    mass = float(np.trapezoid(np.asarray(scene.rod.mass(s)) + np.zeros_like(s), s))
-    return float(max([*forces, mass * float(np.linalg.norm(scene.gravity))]))
+
+    def along(density: Array) -> float:
+        return float(np.trapezoid(density + np.zeros_like(s), s))
+
+    forces += [along(np.linalg.norm([p(s) + np.zeros_like(s) for p in load.force], axis=0))
+               * np.abs(_at(load.schedule, t)).max() for load in scene.distributed]  # fmt: skip
+    if scene.fluid:
+        drag = 0.5 * scene.fluid.density * (scene.fluid.drag_normal + pi * scene.fluid.drag_tangential)
+        forces.append(drag * float(np.linalg.norm(scene.fluid.current)) ** 2 * along(np.asarray(scene.rod.diameter(s))))
+    weight = along(np.asarray(scene.rod.mass(s))) * float(np.linalg.norm(scene.gravity))
+    return float(max([*forces, weight]))
 
 
 def _at(curve: Curve, t: Array) -> Array:

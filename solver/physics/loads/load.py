@@ -81,8 +81,6 @@ class Tangents(NamedTuple):
 class Source:
     """A load of a scene, sampled where a method wants it: its `record`, and how this changes with time."""
 
-    steady = True
-    """Whether the record is the same at all times."""
     bars = False
     """Whether a step that is too long may pass over where the load acts: then `longest_step` says so."""
     corners: tuple[float, ...] = ()
@@ -90,6 +88,8 @@ class Source:
 
     def __init__(self, record: Any) -> None:
         self.record = record
+        self.steady = type(self).set_time is Source.set_time
+        """Whether the record is the same at all times."""
 
     def set_time(self, t: float, i: int) -> None:
         """Write what acts at time t, the i-th time of a step, into the record."""

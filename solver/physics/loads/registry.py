@@ -36,6 +36,8 @@ LoadsAbout = namedtuple("LoadsAbout", [_name(load) for load in ABOUT])  # type: 
 
 
 for _load in LOADS:
+    if not (hasattr(_load, "account") or hasattr(_load, "energy")):
+        raise TypeError(f"{_load.__name__} must say what becomes of its power, by account or energy")
     enter(protocol, (_load.Record,), _load)
 
 

@@ -15,11 +15,15 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import matrix, vector
 from solver.physics.loads.load import Account, Point, Samples, Source, Tangents, point
 from solver.scene.scene import Scene
 from solver.scene.user import UserLoad
+
+STEADY = 1e-9
+"""Part of the largest energy by which that of a load may change with time."""
 
 
 class Record(NamedTuple):
@@ -82,9 +86,20 @@ class UserLoads(Source):
             if source.account == "stored":
                 load.stored[:] += source.energy(t, s, load.r)
             if linearise:
+                _require_steady(source, t, s, load.r)
                 K, C = source.tangents(t, s, load.r, load.V)
                 load.K[:] += K
                 load.C[:] += C
+
+
+def _require_steady(load: UserLoad, t: float, s: Array, r: Array) -> None:
+    """Raise ValueError where a stored load's energy changes though nothing moves: nobody would have given it."""
+    if load.account != "stored":
+        return
+    now, first = load.energy(t, s, r), load.energy(0.0, s, r)
+    if np.abs(now - first).max() > STEADY * np.abs(now).max():
+        raise ValueError(f"{type(load).__name__}: the energy of a load that is stored must not change with time; "
+                         'one that acts by the time has account = "given"')  # fmt: skip
 
 
 @intrinsic

@@ -19,6 +19,7 @@ from solver import (
     Numerics,
     PointLoad,
     Scene,
+    UserLoad,
     constant_vector,
     simulate,
 )
@@ -55,6 +56,20 @@ def test_of_forces_that_turn_with_the_rod_the_run_says_that_modes_prove_nothing(
     while not run.finished:
         run.advance()
     assert any("turn with the rod" in sentence for sentence in run.remarks.sentences()) == turning
+
+
+class Whirl(UserLoad):
+    """A force about the axis of the straight rod: it does work on a circle, so it has no potential."""
+
+    def force(self, t: float, s: Array, r: Array, V: Array) -> Array:
+        return min(t, 1.0) * 100.0 * EJ * np.column_stack([-r[:, 1], r[:, 0], 0.0 * s])
+
+
+def test_of_forces_without_a_potential_the_run_says_so() -> None:
+    run = Equilibria(static(numerics=Numerics(intervals=4), gravity=(1e-3, 0.0, 0.0), loads=(Whirl(),)))
+    while not run.finished:
+        run.advance()
+    assert any("have no potential" in sentence for sentence in run.remarks.sentences())
 
 
 def twisted(moment: float, intervals: int) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solver import Condition, Contact, Curve, End, Initial, Rod
+from solver import Condition, Contact, Curve, DistributedLoad, End, Fluid, Initial, Rod
 from solver.arrays import Array
 from solver.physics.contact.law import Law, pair_force
 from solver.physics.contact.points import Points
@@ -89,6 +89,16 @@ def test_the_ends_tell_the_turns_and_the_slack() -> None:
     pulled = replace(end, translation=(there[0], there[1], (Condition("load", Curve.constant(3.0)),)))
     assert foreseen(replace(scene, end=pulled)).pull == pytest.approx(3.0)
     assert foreseen(replace(scene, contact=None)) == Foreseen()
+
+
+def test_a_load_along_the_rod_and_a_current_pull_as_well() -> None:
+    scene, none = looped(Contact(), 0.0), Curve.constant(0.0)
+    force = Curve.constant(3.0), Curve.constant(4.0), none
+    load = DistributedLoad(force, schedule=Curve.table([0.0, 1.0], [0.0, -2.0]))
+    assert foreseen(replace(scene, distributed=(load,))).pull == pytest.approx(10.0 * scene.rod.length)
+    stream = Fluid(1000.0, drag_normal=1.0, current=(3.0, 0.0, 4.0))
+    area = scene.rod.length * float(scene.rod.diameter(0.0))
+    assert foreseen(replace(scene, fluid=stream)).pull == pytest.approx(12500.0 * area)
 
 
 def test_a_ring_goes_on_from_its_end_to_its_start() -> None:

@@ -60,6 +60,13 @@ class Broken(UserLoad):
         return np.zeros((len(s), 3))
 
 
+class Tide(Bed):
+    """A bed whose energy rises though nothing moves."""
+
+    def energy(self, t: float, s: Array, r: Array) -> Array:
+        return super().energy(t, s, r) + 0.1 * t
+
+
 def scene(method: str, **loads: object) -> Scene:
     """A curled rod, clamped at its start."""
     numerics = Numerics(method=method, intervals=20, dt_max=0.01)  # type: ignore[arg-type]
@@ -124,6 +131,12 @@ def test_a_rod_that_falls_onto_an_elastic_bed_keeps_its_energy(method: str) -> N
 def test_what_a_users_load_raises_reaches_the_user(method: str) -> None:
     with pytest.raises(RuntimeError, match="no such depth"):
         last(scene(method, loads=(Broken(),)))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_stored_energy_that_changes_by_itself_is_refused(method: str) -> None:
+    with pytest.raises(ValueError, match="must not change with time"):
+        last(scene(method, loads=(Tide(),)))
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -6,6 +6,7 @@ import argparse
 import errno
 import sys
 from collections.abc import Iterator
+from math import isnan
 from pathlib import Path
 from time import monotonic
 from typing import TYPE_CHECKING, Any
@@ -106,7 +107,7 @@ def summary(path: Path) -> str:
             energies = [name for name in last if name.startswith("energy_")]
             stored = sum(last[name] for name in energies if not name.endswith(("_balance", "_error")))
             lines += [
-                f"  at t = {last['time']:g} s: Tw {last['Tw']:.4f}, Wr {last['Wr']:.4f}, Lk {last['Lk']:.4f}",
+                f"  at t = {last['time']:g} s: {_topology(last)}",
                 f"  energy {stored:.4g} J, " + _trust(last),
             ]
         if attributes["outcome"] == Outcome.COMPLETED and attributes["message"]:
@@ -114,6 +115,11 @@ def summary(path: Path) -> str:
     return "\n".join(
         [*lines, f"  {path} ({path.stat().st_size / 1e6:.1f} MB, {frames} frames)"]
     )
+
+
+def _topology(last: dict[str, float]) -> str:
+    """Tw, Wr and Lk, those that there are: Lk of a static analysis is known where both ends are held."""
+    return ", ".join(f"{name} {last[name]:z.4f}" for name in ("Tw", "Wr", "Lk") if not isnan(last[name]))
 
 
 def _trust(last: dict[str, float]) -> str:

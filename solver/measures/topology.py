@@ -26,6 +26,8 @@ from solver.kernels.vectors import Vector, minus, norm, vector
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
 
+FLAT = 1e-10
+"""Part of its size by which a curve may leave a plane and is taken to lie in it."""
 SMALL_TANGENT = 0.1
 """Below it eight terms of the arctangent's series are exact to rounding: 0.1^16 / 17 = 6e-18."""
 
@@ -35,24 +37,47 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
 
     `r` (n >= 2, 3): the vertices, lab frame, m. The rays leave r[0] along -`start_tangent` and r[-1]
     along `end_tangent` (3,), of any length > 0. Right-handed crossings count positive. Where two
-    parts of the curve touch exactly the writhe jumps by 2 and the value there means nothing.
+    parts of the curve touch exactly the writhe jumps by 2; of a curve in a plane, where parts of it and
+    rays may cross, the value is that in the middle of the jumps, 0.
 
     Raises ValueError for another shape or a zero tangent; NaN in gives NaN out.
     """
     first, last = _unit(start_tangent), _unit(end_tangent)
-    columns, quarter = shorten(_columns(r, 2), first, last)
+    vertices = _columns(r, 2)
+    if is_plane(vertices.T, np.array([first, last])):
+        return 0.0
+    columns, quarter = shorten(vertices, first, last)
     quarter += _segment_pairs(columns, False) + _rays(np.ascontiguousarray(columns.T), first, last)
     return -quarter / pi
 
 
 def writhe_shares(r: Array, start_tangent: Array, end_tangent: Array) -> tuple[float, float]:
     """The parts of `writhe` (turns) that the pairs of segments have in it, and those with a ray."""
+    if is_plane(r, np.array([start_tangent, end_tangent])):
+        return 0.0, 0.0
     return -_segment_pairs(_columns(r, 2), False) / pi, share_of_rays(r, start_tangent, end_tangent)
 
 
 def share_of_rays(r: Array, start_tangent: Array, end_tangent: Array) -> float:
     """The part of `writhe` (turns) that the pairs with a ray have in it."""
+    if is_plane(r, np.array([start_tangent, end_tangent])):
+        return 0.0
     return -float(_rays(r, _unit(start_tangent), _unit(end_tangent))) / pi
+
+
+def is_plane(r: Array, tangents: Array) -> bool:
+    """Whether a polygon `r` (n, 3) and the unit `tangents` (2, 3) at its ends lie in a plane but for rounding."""
+    away = r - r[0]
+    squares = np.einsum("ij,ij->i", away, away)
+    far = away[int(np.argmax(squares))]
+    size = sqrt(float(squares.max()))
+    points = np.concatenate([away, size * tangents])
+    normals = np.cross(far, points)
+    squares = np.einsum("ij,ij->i", normals, normals)
+    normal, length = normals[int(np.argmax(squares))], sqrt(float(squares.max()))
+    if not length > FLAT * size * size:
+        return not np.isnan(length)  # on a line
+    return bool(np.abs(points @ normal).max() <= FLAT * size * length)
 
 
 def writhe_of_rod(r: Array, orientation: Array) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import nan, pi
+from math import nan
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from solver.measures.topology import writhe_of_rod
 from solver.methods.method import Ahead, Method
 from solver.physics.elasticity import elasticity_of, principal
 from solver.physics.ends import ABOUT_A3
+from solver.run.linking import LinkingNumber
 from solver.scene.scene import Scene
 
 MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
@@ -40,7 +41,7 @@ class Accounts:
         bent = float(scene.rod.length * np.linalg.norm(method.fields().kappa[:, :2], axis=1).max())
         self._lost_at_rest = max(MADE_OF_NOTHING, LOST_AT_REST * (1.0 if pulled else min(bent, 1.0)) ** 2) * self._unit
         self._turnover, self._there = 0.0, 0.0
-        self._Lk_at_start = 0.0
+        self._linking = LinkingNumber()
 
     def after_step(self, dt: float, iterations: int, flowed: Array) -> None:
         """Enter the step just taken, and the energy (4,) that flowed in it: see `Method.take_step`."""
@@ -104,13 +105,11 @@ class Accounts:
         self._t, self._balance = t, balance
 
     def _linking_number(self, t: float, Tw: float, Wr: float, ahead: Ahead) -> float:
-        """Relative rotation of the ends in turns, from Tw + Wr at the start on."""
+        """NaN where nobody asks."""
         if not self._scene.topology:
             return nan
-        if t == 0.0:
-            self._Lk_at_start = Tw + Wr
         turned = []
         for end, still in zip((self._method.start, self._method.end), ahead.twisted, strict=True):
             exact = end.prescribed(ABOUT_A3, t)
             turned.append(float(end.travel[ABOUT_A3]) - still if exact is None else exact)
-        return self._Lk_at_start + (turned[1] - turned[0]) / (2 * pi)
+        return self._linking.of(turned[1] - turned[0], Tw, Wr)

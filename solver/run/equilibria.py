@@ -16,6 +16,7 @@ from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import LARGEST_STRAIN, axial_stiffness
+from solver.run.linking import LinkingNumber
 from solver.run.run import Run
 from solver.run.watch import Watch
 from solver.scene.contact import Contact
@@ -42,7 +43,8 @@ class Equilibria(Run):
         self._equations = Equations(scene)
         self._path = Path(self._equations)
         self.remarks.axial_stiffness = axial_stiffness(scene)
-        self._Lk = self._turns_at_start()
+        self._linking = LinkingNumber()
+        self._count_turns_at_start()
         self._watch = Watch(self.remarks, scene.contact is not None)
 
     @property
@@ -82,11 +84,11 @@ class Equilibria(Run):
         times = [t for end in self._equations.ends for t in end.corners()] + self._equations.applied.corners()
         return [t / self._scene.t_end for t in times]
 
-    def _turns_at_start(self) -> float:
-        """Tw + Wr of the initial shape, in turns."""
+    def _count_turns_at_start(self) -> None:
+        """Of the initial shape."""
         equations = self._equations
         equations.residual(equations.start)
-        return self._twist(equations.start) + self._writhe(self._fields(equations.start))
+        self._linking.of(0.0, self._twist(equations.start), self._writhe(self._fields(equations.start)))
 
     def _frame(self, t: float) -> Frame:
         """The frame of the point that the path has reached."""
@@ -102,12 +104,13 @@ class Equilibria(Run):
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
         energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], stages.F[0], motion)
         energy = energy._replace(kinetic=0.0, added_mass=0.0)
+        Tw, Wr = self._twist(point), self._writhe(fields)
         frame = Frame(
             t=t, **vars(fields),
             **{f"energy_{name}": value for name, value in energy._asdict().items()},
             energy_contact=equations.contact.energy,
             work_ends=nan, work_loads=nan, dissipation=nan, energy_balance=nan,
-            Tw=self._twist(point), Wr=self._writhe(fields), Lk=self._linking_number(equations.time(point.q)),
+            Tw=Tw, Wr=Wr, Lk=self._linking_number(equations.time(point.q), Tw, Wr),
             min_gap=equations.contact.smallest_gap(equations.bending(), equations.nodes()),
             contacts=equations.contact.pressing,
             dt=path.last_dq * self._scene.t_end, newton_iterations=path.last_iterations,
@@ -125,12 +128,12 @@ class Equilibria(Run):
     def _writhe(self, fields: Fields) -> float:
         return writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
 
-    def _linking_number(self, t: float) -> float:
-        """The ends' relative rotation in turns, from Tw + Wr at the start on; NaN where it is not prescribed."""
+    def _linking_number(self, t: float, Tw: float, Wr: float) -> float:
+        """NaN where the ends' relative rotation is not prescribed."""
         turned = [end.spin(t) for end in self._equations.ends]
         if turned[0] is None or turned[1] is None:
             return nan
-        return float(self._Lk + (turned[1] - turned[0]) / (2 * pi))
+        return self._linking.of(turned[1] - turned[0], Tw, Wr)
 
     def _fields(self, point: Point) -> Fields:
         """The state along the rod, at the nodes, of the point that was looked at last."""

@@ -8,8 +8,9 @@ from solver.measures.passages import Passages, Shape, passages, shape_of
 from solver.measures.topology import share_of_rays
 from solver.run.remarks import Remarks
 
-JUMP = 1.0
-"""Turns by which Tw + Wr - Lk may change between frames without anything having passed through: half of a jump."""
+JUMP = 1.5
+"""Turns by which Tw + Wr - Lk may change between frames without anything having passed through, which makes 2. Where a
+rod leaves a plane in which its ends' rays cross it changes by 1."""
 
 
 class Watch:

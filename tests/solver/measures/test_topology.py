@@ -7,8 +7,10 @@ from math import pi
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from solver.measures.topology import writhe, writhe_closed
+from solver.run.linking import LinkingNumber
 
 Array = NDArray[np.float64]
 E3 = np.array([0.0, 0.0, 1.0])
@@ -178,3 +180,22 @@ def test_other_shapes_are_refused(shape: tuple[int, ...]):
 def test_a_zero_tangent_is_refused():
     with pytest.raises(ValueError, match="tangent must not be zero"):
         writhe(open_helix(10), [0.0, 0.0, 0.0], E3)
+
+
+@pytest.mark.parametrize("lean", [-0.5, 0.0, 0.5])
+def test_a_plane_hairpin_has_none_wherever_its_rays_cross(lean: float):
+    """Its rays run into each other, beside each other, or apart. By rounding it leaves its plane."""
+    angle = np.linspace(0.0, np.pi, 41)[:, None]
+    leg = np.linspace(1.0, 0.0, 20, endpoint=False)[:, None]
+    arc = 0.2 * np.hstack([np.cos(angle), 0 * angle, -np.sin(angle)])
+    left, right = arc[0] + leg * [lean, 0, 1], arc[-1] + leg[::-1] * [-lean, 0, 1]
+    plane = np.vstack([left, arc, right]) @ Rotation.from_rotvec([0.3, -1.1, 0.7]).as_matrix()
+    assert writhe(plane, plane[1] - plane[0], plane[-1] - plane[-2]) == 0.0
+
+
+def test_where_a_rod_leaves_a_plane_whose_rays_cross_tw_and_wr_remain_lk():
+    linking = LinkingNumber()
+    assert linking.of(0.0, 0.5, 0.0) == 0.5
+    assert linking.of(np.pi, 1.0, 0.0) == 1.0
+    assert linking.of(np.pi, 1.01, -1.01) == 0.0
+    assert linking.of(2 * np.pi, 1.5, -1.0) == 0.5

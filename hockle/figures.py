@@ -30,10 +30,11 @@ STYLE: dict[Any, Any] = {
     "lines.linewidth": 1.8,
     "legend.frameon": False,
 }
-BENDING, TORSION, KINETIC, OTHER = "#c2410c", "#1d4ed8", "#15803d", ("#7c3aed", "#0891b2")
+BENDING, TORSION, KINETIC, OTHER = "#c2410c", "#1d4ed8", "#15803d", ("#7c3aed", "#0891b2", "#a16207")
 ENERGIES = (
     ("energy_torsion", "torsional", TORSION),
     ("energy_bending", "bending", BENDING),
+    ("energy_stretching", "stretching", OTHER[2]),
     ("energy_kinetic", "kinetic", KINETIC),
     ("energy_contact", "contact", OTHER[0]),
     ("energy_potential", "potential, from its start", OTHER[1]),
@@ -77,7 +78,8 @@ def snapshots(dataset: xr.Dataset) -> Figure:
 
 def energies(dataset: xr.Dataset) -> Figure:
     """Strain energies and kinetic energy in time (figure 7), and what else there is of energy."""
-    changes = [(dataset[name].values - _level(name, dataset), label, colour) for name, label, colour in ENERGIES]
+    changes = [(dataset[name].values - _level(name, dataset), label, colour) for name, label, colour in ENERGIES
+               if name in dataset]  # fmt: skip
     largest = max(float(np.abs(values).max()) for values, _, _ in changes)
     scale, prefix = prefixed(largest)
     with mpl.rc_context(STYLE):

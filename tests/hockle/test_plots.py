@@ -63,6 +63,15 @@ def test_what_hardly_changes_is_drawn_with_its_zero(tmp_path: Path):
         assert axes.get_ylim()[0] == 0.0
 
 
+def test_what_a_rod_that_stretches_stores_is_drawn(tmp_path: Path):
+    path = tmp_path / "out.nc"
+    pulled = ["numerics.method=staggered", "rod.axial_stiffness=20000", 'ends.end={"preset": "free", "f3": 50}']
+    settings = [word for setting in pulled for word in ("--set", setting)]
+    assert main(["run", "cantilever-vibration", "-o", str(path), *QUICK, *settings]) == 0
+    with open_dataset(path) as dataset:
+        assert "stretching" in figures.energies(dataset).axes[0].get_legend_handles_labels()[1]
+
+
 def test_what_is_thrown_without_twist_has_no_figure_of_its_twist(tmp_path: Path):
     path = tmp_path / "out.nc"
     assert main(["run", "free-flight", "-o", str(path), "--set", "t_end=1"]) == 0

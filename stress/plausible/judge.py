@@ -26,6 +26,7 @@ from solver import Frame, RunFailed, Scene
 from solver.arrays import Array
 from solver.run import plan
 from solver.run.accuracy import errors_of, excess, sizes
+from solver.run.first_mesh import first_intervals
 from solver.run.recording import Columns, columns_of, row_of
 from solver.run.refined import Refined
 from solver.run.simulation import Simulation
@@ -37,7 +38,7 @@ from validation.error_bars import MISSED, missed, misses
 from validation.provenance import provenance
 
 TRUTH, WORK, SMALL = 0.02, 12.0, 0.1
-FIXED = [(16 * 2**mesh, 0.1**steps) for mesh in range(7) for steps in range(1, 5)]
+FIXED = [(plan.FIRST_INTERVALS * 2**mesh, 0.1**steps) for mesh in range(7) for steps in range(1, 5)]
 LONGEST, DEAR = 300.0, 2.0
 """Seconds of CPU time after which a truth is given up; and how many times the answer's a fixed run may take."""
 HEADER = ("kind", "scenes", "values outside 3 bars", "largest", "CPU s, median", "over the cheapest fixed run, median",
@@ -83,7 +84,9 @@ def judge(kind: str, number: int) -> Verdict:
     verdict.error, verdict.error_of_truth = float(errors.max()), float(known.max())
     bounds = np.maximum(np.maximum(errors, known), SMALL)
     too_dear: list[tuple[int, float]] = []
-    for intervals, tolerated in FIXED:
+    alike = first_intervals(built) / plan.FIRST_INTERVALS  # meshes that have nodes in common with those of the answer
+    for sixteenths, tolerated in FIXED:
+        intervals = int(sixteenths * alike)
         if any(intervals >= mesh and tolerated <= steps for mesh, steps in too_dear):
             continue
         try:

@@ -14,7 +14,8 @@ D = |a||b||c| + (a.b)|c| + (b.c)|a| + (c.a)|b|. Both triangles have the same V, 
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import isnan, pi, sqrt
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,7 +23,7 @@ from numpy.typing import ArrayLike
 from solver.arrays import Array
 from solver.kernels.kernel import allocating, inlined, inner, kernel
 from solver.kernels.rotation import rotate
-from solver.kernels.vectors import Vector, minus, norm, vector
+from solver.kernels.vectors import Vector, dot, minus, norm, times, vector, vector_product
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
 
@@ -44,7 +45,7 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
     """
     first, last = _unit(start_tangent), _unit(end_tangent)
     vertices = _columns(r, 2)
-    if is_plane(vertices.T, np.array([first, last])):
+    if is_plane(np.ascontiguousarray(vertices.T), np.array([first, last])):
         return 0.0
     columns, quarter = shorten(vertices, first, last)
     quarter += _segment_pairs(columns, False) + _rays(np.ascontiguousarray(columns.T), first, last)
@@ -65,19 +66,39 @@ def share_of_rays(r: Array, start_tangent: Array, end_tangent: Array) -> float:
     return -float(_rays(r, _unit(start_tangent), _unit(end_tangent))) / pi
 
 
+@kernel
 def is_plane(r: Array, tangents: Array) -> bool:
     """Whether a polygon `r` (n, 3) and the unit `tangents` (2, 3) at its ends lie in a plane but for rounding."""
-    away = r - r[0]
-    squares = np.einsum("ij,ij->i", away, away)
-    far = away[int(np.argmax(squares))]
-    size = sqrt(float(squares.max()))
-    points = np.concatenate([away, size * tangents])
-    normals = np.cross(far, points)
-    squares = np.einsum("ij,ij->i", normals, normals)
-    normal, length = normals[int(np.argmax(squares))], sqrt(float(squares.max()))
-    if not length > FLAT * size * size:
-        return not np.isnan(length)  # on a line
-    return bool(np.abs(points @ normal).max() <= FLAT * size * length)
+    n, largest, widest, total = len(r), 0.0, 0.0, 0.0
+    far, normal = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    for i in range(n):
+        away = minus(vector(r, i), vector(r, 0))
+        square = dot(away, away)
+        total += square
+        if square > largest:
+            largest, far = square, away
+    size = sqrt(largest)
+    for i in range(n + 2):
+        across = vector_product(far, _beside(r, tangents, size, i))
+        square = dot(across, across)
+        if square > widest:
+            widest, normal = square, across
+    length = sqrt(widest)
+    if not length > FLAT * largest:
+        return not isnan(total)  # on a line
+    farthest = 0.0
+    for i in range(n + 2):
+        farthest = max(farthest, abs(dot(normal, _beside(r, tangents, size, i))))
+    return bool(farthest <= FLAT * size * length and not isnan(total))
+
+
+@inner
+def _beside(r: Array, tangents: Array, size: float, i: int) -> Any:
+    """The way from the first vertex to vertex i, or one of the tangents, `size` long."""
+    n = len(r)
+    if i < n:
+        return minus(vector(r, i), vector(r, 0))
+    return times(size, vector(tangents, i - n))
 
 
 def writhe_of_rod(r: Array, orientation: Array) -> float:

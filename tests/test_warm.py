@@ -67,8 +67,8 @@ def test_what_is_not_in_the_cache_is_compiled_by_another_process_and_once(tmp_pa
 COMPILE = """
 import sys
 from numba import config
-config.CACHE_DIR = sys.argv[1]
 from solver.kernels import kernel
+config.CACHE_DIR = sys.argv[1]
 kernel.compile_apart("some", sys.argv[2])
 """
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isnan
+
 from solver.arrays import Array
 from solver.measures.frame import Frame
 from solver.measures.passages import Passages, Shape, passages, shape_of
@@ -41,6 +43,8 @@ class Watch:
     def see(self, frame: Frame) -> str:
         """Enter the next frame. Why the run must end, or nothing."""
         self._see_overlap(frame)
+        if not self._holds and isnan(frame.Wr):
+            return ""
         shape, turns = shape_of(frame), frame.Tw + frame.Wr - frame.Lk
         jump = turns - self._turns
         self._turns = turns

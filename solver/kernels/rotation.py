@@ -123,7 +123,8 @@ def spun_between(R: Array, Q: Array) -> tuple[float, float]:
         cosine += R[k, 0] * Q[k, 0] + R[k, 1] * Q[k, 1]
         sine += R[k, 1] * Q[k, 0] - R[k, 0] * Q[k, 1]
         swung += R[k, 2] * Q[k, 2]
-    return cosine / swung, sine / swung
+    whole = 1.0 / swung
+    return cosine * whole, sine * whole
 
 
 @kernel

@@ -19,7 +19,6 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.kernel import inlined_late, inner, kernel
-from solver.kernels.rotation import spun_between
 from solver.kernels.scratch import scratch_like
 from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
@@ -436,7 +435,7 @@ def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k:
 def update(chain: Chain, transform: Array, unit: float, fraction: float, stages: Stages, tangents: Tangents,
            real: Factors, pair: Factors) -> tuple[float, float]:  # fmt: skip
     """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one."""
-    T, frame = transform, tangents.R
+    T = transform
     turned, forced, largest = 0.0, 0.0, unit
     for i in range(STAGES):
         t0, t1, t2 = fraction * T[i, 0], fraction * T[i, 1], fraction * T[i, 2]
@@ -446,7 +445,7 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
             c1 = t0 * x[1] + t1 * z[1].real + t2 * z[1].imag
             c2 = t0 * x[2] + t1 * z[2].real + t2 * z[2].imag
             Q, R = stages.R[i, a], stages.start[a]
-            cosine, sine = spun_between(frame[a], Q)  # see `turn_residuals`
+            cosine, sine = tangents.spun[i, a, 0], tangents.spun[i, a, 1]
             c0, c1 = cosine * c0 + sine * c1, cosine * c1 - sine * c0
             u = Q[0, 0] * c0 + Q[0, 1] * c1 + Q[0, 2] * c2
             v = Q[1, 0] * c0 + Q[1, 1] * c1 + Q[1, 2] * c2

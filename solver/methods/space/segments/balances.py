@@ -22,7 +22,7 @@ from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.scratch import scratch
 from solver.kernels.vectors import add_matrix, add_vector, matrix, tangent_by_rotation, vector
-from solver.methods.space.segments.chain import Chain, Residuals, Stages
+from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.methods.space.segments.joints import joint_tangents, share
 from solver.methods.space.segments.opening import opening_tangents
 from solver.physics.elasticity import stretches
@@ -58,6 +58,7 @@ class Tangents(NamedTuple):
     `back` (N + 1, 2, 3, 3) of the joints, and `opens` (N + 1, 3, 3, 3), what e t is by a rotation of the orientation
     before and of the one behind, and by F; their transposes, with minus, are what F does to these orientations.
     Ends (2, 3, 3): `turn`, what a rotation of the end's frame does to the condition on its translation.
+    Of the orientations at all stages (3, N + 2, 2): `spun`, see `stages.turn_residuals`.
     """
 
     M: Array
@@ -73,13 +74,14 @@ class Tangents(NamedTuple):
     back: Array
     opens: Array
     turn: Array
+    spun: Array
 
     @classmethod
     def empty(cls, intervals: int) -> Tangents:
         """Zeros for N = `intervals`."""
         N = intervals
         segments, orientations, joints = (N, 3, 3), (N + 2, 3, 3), (N + 1, 2, 3, 3)
-        shapes = [segments] * 5 + [orientations] * 4 + [joints] * 2 + [(N + 1, 3, 3, 3), (2, 3, 3)]
+        shapes = [segments] * 5 + [orientations] * 4 + [joints] * 2 + [(N + 1, 3, 3, 3), (2, 3, 3), (STAGES, N + 2, 2)]
         return cls(*(np.zeros(shape) for shape in shapes))
 
 

@@ -48,7 +48,8 @@ def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals
     """Turn the rows in material components from the stages' own frames into those that go with the tangents.
 
     That is the tangents' frame, swung to the stage's own tangent T but not spun about it: what a force does is then no
-    moment about T, where a thin rod's inertia is next to nothing, however far the segment swings. Where an end's
+    moment about T, where a thin rod's inertia is next to nothing, however far the segment swings. By which angle that
+    frame is spun against the stage's own stands in `tangents.spun`, cos and sin. Where an end's
     conditions are of two kinds, only components of one kind are turned: exact for a frame that spins about the axis
     of the odd one.
     """
@@ -58,6 +59,7 @@ def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals
     for i in range(STAGES):
         for a in range(n):
             row, (cosine, sine) = residuals.rotation[i, a], spun_between(R[a], stages.R[i, a])
+            tangents.spun[i, a, 0], tangents.spun[i, a, 1] = cosine, sine
             kinds = driven.kinds[0 if a == 0 else 1]
             if 0 < a < n - 1 or kinds[3] == kinds[4]:
                 row[0], row[1] = cosine * row[0] - sine * row[1], sine * row[0] + cosine * row[1]

@@ -68,7 +68,7 @@ class NewtonSystem:
 
     def _factor(self, linear: LinearSolver) -> bool:
         method, work = self._method, self._method.work
-        status = factor(linear, method.trial.Y, work.past, self._c0, method.h, work.nodes, method.section, work.system)
+        status = factor(linear, method.trial.Y, work.past, self._c0, method.h, work.nodes, work.system)
         return bool(status == CONVERGED)
 
     def _solve(self, linear: LinearSolver) -> Array:
@@ -91,7 +91,7 @@ class NewtonSystem:
         put(system.start, 0, 0)
         panel, mean = np.zeros((18, 24)), np.zeros((MEANS, 3))
         for j in range(N):
-            interval_panel(j, method.trial.Y, self._c0, method.h, BOX, method.work.nodes, method.section, system.rows,
+            interval_panel(j, method.trial.Y, self._c0, method.h, BOX, method.work.nodes, system.rows,
                            system.columns, mean, panel, 6)  # fmt: skip
             put(panel[6:], 6 + 12 * j, 12 * j)
         put(system.end, 6 + 12 * N, 12 * N)
@@ -103,7 +103,7 @@ class NewtonSystem:
 def _assemble(reference: Reference, old: State, new: State, c0: float, h: float, ends: EndValues) -> None:
     section, loads, _, _, work = reference.records
     balance_nodes(old, new, work.past, c0, section, loads, work.nodes)
-    form_residuals(new, work.past, c0, h, section, ends, work.nodes, work.feedback, work.system)
+    form_residuals(new, work.past, c0, h, ends, work.nodes, work.feedback, work.system)
 
 
 class StagesSystem:

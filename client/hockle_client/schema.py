@@ -379,6 +379,12 @@ class RodSpec(TypedDict):
     in N m²; default [0.0, 0.0, 0.0]
     """
 
+    sticking_stiffness: NotRequired[Union[Union[float, ProfileTable], None]]
+    """EJ: profile, by which bending is stiffer until layers slip; beside `slip_curvature`; in N m²"""
+
+    slip_curvature: NotRequired[Union[Union[float, ProfileTable], None]]
+    """profile, the curvature about which layers that stick come to slip; in 1/m"""
+
     axial_stiffness: NotRequired[Union[Union[float, ProfileTable], None]]
     """EA: profile; without it the rod cannot stretch. For `staggered` and static analyses; in N"""
 
@@ -787,6 +793,14 @@ Setting = Literal[
     "rod.mass_per_length.s",
     "rod.mass_per_length.value",
     "rod.shear_modulus",
+    "rod.slip_curvature",
+    "rod.slip_curvature.interpolation",
+    "rod.slip_curvature.s",
+    "rod.slip_curvature.value",
+    "rod.sticking_stiffness",
+    "rod.sticking_stiffness.interpolation",
+    "rod.sticking_stiffness.s",
+    "rod.sticking_stiffness.value",
     "rod.torsional_stiffness",
     "rod.torsional_stiffness.interpolation",
     "rod.torsional_stiffness.s",

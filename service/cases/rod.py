@@ -12,7 +12,7 @@ from service.cases.errors import refusal
 from service.cases.quantities import Positive, PositiveProfile, Profile, ProfileTriple, Spec, curve, curves
 from service.meaning import means
 from solver import Rod
-from solver.physics.elasticity import Coupling, Stretch, TwistStretch, elasticity_of
+from solver.physics.elasticity import Coupling, Softening, Stretch, TwistStretch, elasticity_of
 from solver.scene.rod import Profiles
 
 
@@ -59,6 +59,13 @@ class RodSpec(Spec):
         means("K23, K13, K12: three profiles, what couples torsion with bending about a2 and about a1, and these two",
               "N m²"),
     ] = NO_COUPLING  # fmt: skip
+    sticking_stiffness: Annotated[
+        PositiveProfile | None,
+        means("EJ: profile, by which bending is stiffer until layers slip; beside `slip_curvature`", "N m²"),
+    ] = None
+    slip_curvature: Annotated[
+        PositiveProfile | None, means("profile, the curvature about which layers that stick come to slip", "1/m")
+    ] = None
     axial_stiffness: Annotated[
         PositiveProfile | None,
         means("EA: profile; without it the rod cannot stretch. For `staggered` and static analyses", "N"),
@@ -93,6 +100,9 @@ class RodSpec(Spec):
         if self.twist_stretch_coupling != 0.0 and self.axial_stiffness is None:
             rule = "must be 0 without axial_stiffness: only a rod that can stretch has it"
             raise refusal("twist_stretch_coupling", self.twist_stretch_coupling, rule)
+        if (self.sticking_stiffness is None) != (self.slip_curvature is None):
+            missing = "slip_curvature" if self.slip_curvature is None else "sticking_stiffness"
+            raise refusal(missing, None, "must be given with sticking_stiffness and slip_curvature, or neither of them")
         return self
 
     def build(self) -> Rod:
@@ -125,6 +135,8 @@ class RodSpec(Spec):
         if self.coupling != NO_COUPLING:
             first, second, third = curves(self.coupling)
             laws.append(Coupling(first, second, third))
+        if self.sticking_stiffness is not None and self.slip_curvature is not None:
+            laws.append(Softening(curve(self.sticking_stiffness), curve(self.slip_curvature)))
         if self.axial_stiffness is not None:
             laws.append(Stretch(curve(self.axial_stiffness)))
         if self.twist_stretch_coupling != 0.0:

@@ -19,6 +19,7 @@ from solver.methods.schemes import BACKWARD_EULER, Scheme, c0_of
 from solver.methods.space.box.energies import energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, State, V
 from solver.methods.space.box.flows import Flows, enter_step
+from solver.methods.space.box.nodes import moments
 from solver.methods.space.box.schemes import SpaceScheme
 from solver.methods.space.box.trial import Measured, mean_turning, measure_trial, total_bending
 from solver.methods.time.generalized_alpha.guess import force_rate, guess, stretch_feedback
@@ -27,7 +28,7 @@ from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work
 from solver.physics.contact.forces import Touch
 from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
-from solver.physics.elasticity import can_stretch, mean_bending, moments, principal
+from solver.physics.elasticity import can_stretch, mean_bending, principal
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.loads.registry import Loads
@@ -176,10 +177,11 @@ class BoxMethod:
     def fields(self) -> Fields:
         """The state along the rod."""
         Y, quaternion = self.state.Y, self.state.quaternion
-        kappa = Y[:, KAPPA : KAPPA + 3].copy()
+        q = np.empty((len(Y), 3))
+        moments(self._hand_over(), Y, q)
         return Fields(
             v=self.velocity(), omega=Y[:, OMEGA : OMEGA + 3].copy(), f=rotate_back(quaternion, Y[:, F:].copy()),
-            kappa=kappa, q=moments(self.section.elastic, kappa), strain=np.zeros(len(self.s)), r=self.state.r.copy(),
+            kappa=Y[:, KAPPA : KAPPA + 3].copy(), q=q, strain=np.zeros(len(self.s)), r=self.state.r.copy(),
             orientation=quaternion.copy(),
         )  # fmt: skip
 

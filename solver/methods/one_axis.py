@@ -22,6 +22,7 @@ from solver.methods.space.one_axis.motion import extrapolate, follow_segments, l
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
 from solver.physics.axial import axial_compliance
+from solver.physics.elasticity import moments
 from solver.physics.ends import LOAD, DrivenEnd
 from solver.scene.scene import Scene
 
@@ -75,7 +76,7 @@ class OneAxisMethod(RadauMethod):
         bend, elastic = np.diff(state.phi) / self.chain.span, self.chain.elastic
         return Fields(
             v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(state.F * back),
-            kappa=axis.about(bend - self._offset), q=axis.about(elastic.K * (bend - elastic.kappa0)),
+            kappa=axis.about(bend - self._offset), q=axis.about(moments(elastic, bend)),
             strain=np.zeros(len(self.s)), r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
         )  # fmt: skip
 

@@ -1,7 +1,10 @@
 """Elasticity, eq. (1) of Goyal, Perkins & Lee 2003: q = K (kappa - kappa0), in the material frame.
 
-The only place that knows stiffness. K is symmetric, so half of strain . K strain is the energy that the moment
-conserves. About one axis K and kappa0 are numbers.
+The only place that knows stiffness. K is symmetric, so half of strain . K strain, strain = kappa - kappa0, is the
+energy that the moment conserves. About one axis K and kappa0 are numbers.
+
+A law of the bend, b = sqrt(strain1^2 + strain2^2), adds its energy U(b), so U'/b (strain1, strain2, 0) to q. Where a
+rod has one, q is not linear in kappa.
 
 A rod with a law of stretch lengthens, r_s = (1 + eps) a3, by the tension N = f . a3. Its complementary energy per
 length, U - N eps with the energy U, is a function of kappa and N; eps is minus its derivative by N, and q that by
@@ -11,16 +14,19 @@ kappa. So what N adds to q and what kappa adds to eps go together: dq / dN = - d
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from math import sqrt
 from typing import Any, NamedTuple
 
+import numba
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import inlined, inner, kernel
-from solver.kernels.vectors import dot, minus, stiffness, times, transform, vector_product
+from solver.kernels.kernel import by_type, inlined, inner, kernel
+from solver.kernels.vectors import add, dot, minus, plus, stiffness, times, transform, vector_product
 from solver.kernels.vectors import vector as line
 from solver.scene.curve import Curve
 from solver.scene.rod import Profile, Rod
+from solver.scene.view import View
 
 
 @dataclass(frozen=True)
@@ -54,22 +60,40 @@ class TwistStretch:
     g: Profile
 
 
+@dataclass(frozen=True)
+class Softening:
+    """Bending that softens: EJ (N m^2) along s, by which a rod is stiffer until its curvature is `kappa` (1/m).
+
+    A law of the bend b: U = EJ kappa^2 (sqrt(1 + (b / kappa)^2) - 1), so the moment grows by EJ b at first, and in all
+    by EJ kappa. Umbilicals and flexible pipes bend so, whose layers stick to each other, then slip: Feret & Bournazel,
+    J. Offshore Mech. Arct. Eng. 109 (1987) 263. Without the friction's hysteresis.
+    """
+
+    EJ: Profile
+    kappa: Profile
+
+    def keeps(self, view: View) -> bool:
+        """About any axis: the moment is along the strain."""
+        return True
+
+
 class Elasticity(NamedTuple):
     """At n arclengths: `K` (n, 3, 3) in N m^2, stress-free `kappa0` (n, 3) in rad/m; about one axis (n,) each.
 
     Of a rod that can stretch (n,), else (0,): `compliance` 1/EA in 1/N, and what the tension adds to q3, `by_tension`
-    g/EA in m. K is at a given tension, its torsional stiffness GJ - g^2/EA.
+    g/EA in m. K is at a given tension, its torsional stiffness GJ - g^2/EA. `softening` (n, 2), else (0, 2): EJ, kappa.
     """
 
     K: Array
     kappa0: Array
     compliance: Array
     by_tension: Array
+    softening: Array
 
 
 def elasticity_of(rod: Rod, s: Array) -> Elasticity:
     """That of a rod at arclengths s (n,). Raises TypeError for a law that is not known here."""
-    K, compliance, g = np.zeros((len(s), 3, 3)), np.zeros(0), np.zeros(len(s))
+    K, compliance, g, softening = np.zeros((len(s), 3, 3)), np.zeros(0), np.zeros(len(s)), np.zeros((0, 2))
     for i, profile in enumerate(rod.stiffness):
         K[:, i, i] = profile(s)
     for law in rod.laws:
@@ -77,16 +101,18 @@ def elasticity_of(rod: Rod, s: Array) -> Elasticity:
             for (i, j), profile in zip(((1, 2), (0, 2), (0, 1)), (law.K23, law.K13, law.K12), strict=True):
                 K[:, i, j] = K[:, j, i] = K[:, i, j] + profile(s)
         elif isinstance(law, Stretch):
-            compliance = _inverse("EA", np.array(law.EA(s)))
+            compliance = 1.0 / _positive("EA", "N", law.EA(s))
         elif isinstance(law, TwistStretch):
             g = g + law.g(s)
+        elif isinstance(law, Softening):
+            softening = np.stack([_positive("EJ", "N m^2", law.EJ(s)), _positive("kappa", "1/m", law.kappa(s))], axis=1)
         else:
             raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
     by_tension = _coupled(g, compliance, K[:, 2, 2])
     if rod.laws and not np.linalg.eigvalsh(K).min() > 0.0:
         raise ValueError("stiffness must be positive definite along the rod: the coupling must be smaller")
     kappa0 = np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1))
-    return Elasticity(K, kappa0, compliance, by_tension)
+    return Elasticity(K, kappa0, compliance, by_tension, softening)
 
 
 def _coupled(g: Array, compliance: Array, GJ: Array) -> Array:
@@ -105,11 +131,11 @@ def _coupled(g: Array, compliance: Array, GJ: Array) -> Array:
     return np.asarray(g * compliance)
 
 
-def _inverse(name: str, values: Array) -> Array:
-    lowest = float(values.min())
+def _positive(name: str, unit: str, values: Array) -> Array:
+    lowest = float(np.min(values))
     if not lowest > 0.0:
-        raise ValueError(f"{name} must be > 0 N everywhere along the rod, got {lowest}")
-    return np.asarray(1.0 / values)
+        raise ValueError(f"{name} must be > 0 {unit} everywhere along the rod, got {lowest}")
+    return np.array(values)
 
 
 OF_STRETCH = (Stretch, TwistStretch)
@@ -126,14 +152,18 @@ def without_stretch(rod: Rod) -> Rod:
 
 
 def about(elastic: Elasticity, index: int) -> Elasticity:
-    """That of a turn about one principal axis, of a rod that cannot stretch."""
+    """That of a turn about one principal axis, of a rod whose laws keep to it. None but K is of torsion."""
+    softening = elastic.softening if index < 2 else elastic.softening[:0]
     K, kappa0 = elastic.K[:, index, index].copy(), elastic.kappa0[:, index].copy()
-    return Elasticity(K, kappa0, np.zeros(0), np.zeros(0))
+    return elastic._replace(K=K, kappa0=kappa0, softening=softening)
 
 
 def principal(elastic: Elasticity) -> Array:
-    """EJ1, EJ2 and GJ3 (n, 3)."""
-    return np.ascontiguousarray(np.diagonal(elastic.K, axis1=1, axis2=2))
+    """EJ1, EJ2 and GJ3 (n, 3) of the rod that is not strained."""
+    stiffnesses = np.array(np.diagonal(elastic.K, axis1=1, axis2=2))
+    if len(elastic.softening):
+        stiffnesses[:, :2] += elastic.softening[:, :1]
+    return stiffnesses
 
 
 def mean_bending(elastic: Elasticity) -> float:
@@ -142,24 +172,71 @@ def mean_bending(elastic: Elasticity) -> float:
 
 
 def moments(elastic: Elasticity, kappa: Array) -> Array:
-    """The moments q (n, 3) of curvatures kappa (n, 3)."""
-    return np.asarray(np.einsum("nij,nj->ni", elastic.K, kappa - elastic.kappa0))
+    """The moments q of curvatures kappa, (n, 3) each, or about one axis (n,), as `moment` has them."""
+    strain = kappa - elastic.kappa0
+    if elastic.K.ndim == 1:
+        return np.asarray((elastic.K + _secants(elastic, np.abs(strain))) * strain)
+    q = np.asarray(np.einsum("nij,nj->ni", elastic.K, strain))
+    q[:, :2] += _secants(elastic, np.linalg.norm(strain[:, :2], axis=1))[:, None] * strain[:, :2]
+    return q
+
+
+def _secants(elastic: Elasticity, bend: Array) -> Array:
+    """U'/b (n,) of the laws of the bend."""
+    if len(elastic.softening) == 0:
+        return np.zeros(len(bend))
+    return np.asarray(_of_bend.py_func(elastic, slice(None), bend)[1])  # type: ignore[attr-defined]
 
 
 @kernel
 def add_strain(elastic: Elasticity, j: int, q: Any, kappa: Array) -> None:
-    """Add to kappa (3,) what a moment q adds: K^-1 q, by Cramer's rule. (LAPACK rounds as the host's CPU has it.)"""
-    a, b, c = stiffness(elastic.K, j)
+    """Add to kappa (3,) what a small moment q adds, by Cramer's rule. (LAPACK rounds as the host's CPU has it.)"""
+    a, b, c = tangent(elastic, j, (kappa[0], kappa[1], kappa[2]))
     bc, ca, ab = vector_product(b, c), vector_product(c, a), vector_product(a, b)
     whole = dot(a, bc)
     for k in range(3):
         kappa[k] += (q[0] * bc[k] + q[1] * ca[k] + q[2] * ab[k]) / whole
 
 
+@inlined
+def is_linear(elastic: Elasticity) -> bool:
+    """Whether q is linear in kappa at a given tension."""
+    return len(elastic.softening) == 0
+
+
+@inner
+def _of_bend(elastic: Elasticity, j: Any, bend: Any) -> Any:
+    """Of the laws of the bend b: the energy U(b), U'/b and U''. Of one joint, or in numpy of all."""
+    EJ, ratio = elastic.softening[j, 0], bend / elastic.softening[j, 1]
+    root = np.sqrt(1.0 + ratio * ratio)
+    return EJ * bend * bend / (1.0 + root), EJ / root, EJ / root**3
+
+
+@inner
+def _bend(strain: Any) -> float:
+    return sqrt(strain[0] * strain[0] + strain[1] * strain[1])
+
+
 @inner
 def moment(elastic: Elasticity, j: int, kappa: Any) -> Any:
-    """q = K (kappa - kappa0)."""
-    return transform(stiffness(elastic.K, j), minus(kappa, line(elastic.kappa0, j)))
+    """q, K (kappa - kappa0) and what other laws add."""
+    strain = minus(kappa, line(elastic.kappa0, j))
+    q = transform(stiffness(elastic.K, j), strain)
+    return q if is_linear(elastic) else plus(q, moment_beyond(elastic, j, strain))
+
+
+@by_type
+def moment_beyond(elastic: Elasticity, j: int, strain: Any) -> Any:
+    """What q is more than K strain, of a rod where it is not linear in kappa."""
+    if isinstance(strain, numba.types.Float):
+        return lambda elastic, j, strain: _of_bend(elastic, j, abs(strain))[1] * strain
+    return lambda elastic, j, strain: _moment_of_bend(elastic, j, strain)
+
+
+@inner
+def _moment_of_bend(elastic: Elasticity, j: int, strain: Any) -> Any:
+    _, secant, _ = _of_bend(elastic, j, _bend(strain))
+    return secant * strain[0], secant * strain[1], 0.0
 
 
 @inlined
@@ -170,16 +247,52 @@ def moment_of(a: float, b: float, c: float, d: float, e: float, f: float, g: flo
 
 
 @inner
-def tangent(elastic: Elasticity, j: int) -> Any:
-    """dq / d kappa = K."""
-    return stiffness(elastic.K, j)
+def tangent(elastic: Elasticity, j: int, kappa: Any) -> Any:
+    """dq / d kappa, symmetric."""
+    K = stiffness(elastic.K, j)
+    return K if is_linear(elastic) else _tangent_beyond(elastic, j, minus(kappa, line(elastic.kappa0, j)), K)
+
+
+@by_type
+def _tangent_beyond(elastic: Elasticity, j: int, strain: Any, K: Any) -> Any:
+    """K and what laws of the bend add, U'/b across its direction and U'' along it."""
+    if isinstance(strain, numba.types.Float):
+        return lambda elastic, j, strain, K: K + _of_bend(elastic, j, abs(strain))[2]
+    return lambda elastic, j, strain, K: add(K, _tangent_of_bend(elastic, j, strain))
 
 
 @inner
-def strain_energy(K: Any, strain: Any) -> tuple[float, float]:
-    """Of bending and of torsion: 1/2 strain . K strain, the torsional share being that of the axial strain."""
-    q = transform(K, strain)
-    return 0.5 * (strain[0] * q[0] + strain[1] * q[1]), 0.5 * strain[2] * q[2]
+def _tangent_of_bend(elastic: Elasticity, j: int, strain: Any) -> Any:
+    bend = _bend(strain)
+    _, secant, along = _of_bend(elastic, j, bend)
+    if bend == 0.0:
+        return (secant, 0.0, 0.0), (0.0, secant, 0.0), (0.0, 0.0, 0.0)
+    x, y, more = strain[0] / bend, strain[1] / bend, along - secant
+    return (secant + more * x * x, more * x * y, 0.0), (more * x * y, secant + more * y * y, 0.0), (0.0, 0.0, 0.0)
+
+
+@by_type
+def strain_energy(elastic: Elasticity, j: int, x: Any) -> Any:
+    """Of bending and of torsion at a strain x: 1/2 x . K x, the torsional share being that of x3; what other laws add
+    is of bending. About one axis their sum."""
+    if isinstance(x, numba.types.Float):
+        return lambda elastic, j, x: 0.5 * elastic.K[j] * x * x + _energy_of_bend(elastic, j, abs(x))
+    return lambda elastic, j, x: _strain_energy(elastic, j, x)
+
+
+@inner
+def _energy_of_bend(elastic: Elasticity, j: int, bend: float) -> float:
+    if is_linear(elastic):
+        return 0.0
+    energy: float = _of_bend(elastic, j, bend)[0]
+    return energy
+
+
+@inner
+def _strain_energy(elastic: Elasticity, j: int, strain: Any) -> tuple[float, float]:
+    q = transform(stiffness(elastic.K, j), strain)
+    bending = 0.5 * (strain[0] * q[0] + strain[1] * q[1]) + _energy_of_bend(elastic, j, _bend(strain))
+    return bending, 0.5 * strain[2] * q[2]
 
 
 @inlined

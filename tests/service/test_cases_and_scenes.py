@@ -55,7 +55,7 @@ PAIRS = (
     Pair(Rod, (RodSpec,),
          {"stiffness": ("bending_stiffness", "torsional_stiffness", "youngs_modulus", "shear_modulus"),
           "mass": ("mass_per_length", "density"), "inertia": ("inertia_per_length", "density"),
-          "laws": ("coupling", "axial_stiffness", "twist_stretch_coupling")},
+          "laws": ("coupling", "sticking_stiffness", "slip_curvature", "axial_stiffness", "twist_stretch_coupling")},
          (), "rod.", lambda scene: scene.rod, lambda scene, part: replace(scene, rod=part)),
     Pair(Initial, (Straight, Centreline), {"centreline": ("shape", "origin", "direction", "points")},
          (), "initial.", lambda scene: scene.initial, lambda scene, part: replace(scene, initial=part)),

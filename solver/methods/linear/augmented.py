@@ -22,7 +22,6 @@ from solver.methods.space.box.fields import OMEGA, F, Nodes, V
 from solver.methods.space.box.intervals import MEANS, interval_panel, interval_residuals
 from solver.methods.space.box.schemes import AT_LEFT_NODE, MINUS_DIFFERENCE
 from solver.methods.status import CONVERGED, SINGULAR
-from solver.physics.section import Section
 
 
 class Augmented(NamedTuple):
@@ -78,11 +77,11 @@ def wide_residuals(wide: Augmented, Y: Array, past: Array, c0: float, h: float, 
 
 
 @kernel
-def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: System, mean: Array,
+def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, system: System, mean: Array,
                W: Array) -> None:  # fmt: skip
     """Write the tangents of interval j into rows 18 to 41 of W (42, 48)."""
-    interval_panel(j, Y, c0, h, system.space, nodes, section, system.rows, system.columns, mean, W, 18)
-    interval_panel(j, Y, c0, h, MINUS_DIFFERENCE, nodes, section, system.rows, system.columns, mean, W, 30)
+    interval_panel(j, Y, c0, h, system.space, nodes, system.rows, system.columns, mean, W, 18)
+    interval_panel(j, Y, c0, h, MINUS_DIFFERENCE, nodes, system.rows, system.columns, mean, W, 30)
     for k in range(12):
         W[18 + k, 12 + k] = system.space.b
         W[30 + k, 12 + k] = 1.0 - system.space.gamma
@@ -90,10 +89,10 @@ def wide_panel(j: int, Y: Array, c0: float, h: float, nodes: Nodes, section: Sec
 
 
 @kernel
-def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, system: System, mean: Array,
+def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, system: System, mean: Array,
                W: Array) -> None:  # fmt: skip
     """Write the 18 conditions at s = 0 into the first rows of W (42, 48)."""
-    interval_panel(0, Y, c0, h, AT_LEFT_NODE, nodes, section, system.rows, system.columns, mean, W, 6)
+    interval_panel(0, Y, c0, h, AT_LEFT_NODE, nodes, system.rows, system.columns, mean, W, 6)
     W[:6, :] = 0.0
     copy(system.start, W[:6, :12])
     for k in range(12):
@@ -102,7 +101,7 @@ def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, section: Section, sy
 
 @variant(factor, Augmented)
 @kernel
-def factor_wide(wide: Augmented, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, section: Section,
+def factor_wide(wide: Augmented, Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
                 system: System) -> int:  # fmt: skip
     """Write the residuals that the box scheme has not, and factor panel after panel."""
     wide_residuals(wide, Y, past, c0, h, nodes, system)
@@ -111,10 +110,10 @@ def factor_wide(wide: Augmented, Y: Array, past: Array, c0: float, h: float, nod
         W = wide.panels[j]
         W[:, :] = 0.0
         if j == 0:
-            wide_start(Y, c0, h, nodes, section, system, mean, W)
+            wide_start(Y, c0, h, nodes, system, mean, W)
         else:
             copy(wide.panels[j - 1, 24:, 24:], W[:18, :24])
-        wide_panel(j, Y, c0, h, nodes, section, system, mean, W)
+        wide_panel(j, Y, c0, h, nodes, system, mean, W)
         if not eliminate(W, wide.swaps[j]):
             return SINGULAR
     wide.last[:, :] = 0.0

@@ -17,7 +17,6 @@ from solver.methods.space.box.fields import Nodes
 from solver.methods.space.box.intervals import MEANS, interval_panel
 from solver.methods.space.box.schemes import BOX
 from solver.methods.status import CONVERGED, SINGULAR
-from solver.physics.section import Section
 
 REACH = 17
 """Diagonals below the main one, and above it: row 6 + 12 j of an interval has the columns 12 j to 12 j + 23."""
@@ -49,7 +48,7 @@ def _enter(block: Array, row: int, column: int, band: Array) -> None:
 
 @variant(factor, Banded)
 @kernel
-def factor_band(linear: Banded, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, section: Section,
+def factor_band(linear: Banded, Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
                 system: System) -> int:  # fmt: skip
     """Form the matrix and factor it."""
     band, N = linear.band, len(system.b)
@@ -57,7 +56,7 @@ def factor_band(linear: Banded, Y: Array, past: Array, c0: float, h: float, node
     band[:, :] = 0.0
     _enter(system.start, 0, 0, band)
     for j in range(N):
-        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 0)
+        interval_panel(j, Y, c0, h, BOX, nodes, system.rows, system.columns, mean, panel, 0)
         _enter(panel, 6 + 12 * j, 12 * j, band)
     _enter(system.end, 6 + 12 * N, 12 * N, band)
     return CONVERGED if _eliminate(band, linear.swaps) else SINGULAR

@@ -28,7 +28,6 @@ from solver.methods.space.box.fields import Nodes
 from solver.methods.space.box.intervals import MEANS, interval_panel
 from solver.methods.space.box.schemes import BOX
 from solver.methods.status import CONVERGED, SINGULAR
-from solver.physics.section import Section
 
 
 class Elimination(NamedTuple):
@@ -55,7 +54,7 @@ class Elimination(NamedTuple):
 
 @variant(factor, Elimination)
 @kernel
-def factor_blocks(linear: Elimination, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, section: Section,
+def factor_blocks(linear: Elimination, Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
                   system: System) -> int:  # fmt: skip
     """Factor the system, making each panel when its turn comes."""
     # made here, so that the compiler knows their strides
@@ -68,7 +67,7 @@ def factor_blocks(linear: Elimination, Y: Array, past: Array, c0: float, h: floa
         for k in range(12):
             carried[i, k] = system.start[i, k]
     for j in range(len(linear.lower)):
-        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 0)
+        interval_panel(j, Y, c0, h, BOX, nodes, system.rows, system.columns, mean, panel, 0)
         sweep(panel, linear.swept[j])
         keep_multipliers(carried, panel, linear.by_swept[j])
         for anew in (False, True):

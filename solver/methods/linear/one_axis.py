@@ -20,7 +20,6 @@ from solver.methods.linear.tridiagonal import invert3
 from solver.methods.space.one_axis.balances import Driven, Tangents
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages
 from solver.methods.space.segments.chain import STAGES
-from solver.physics.elasticity import tangent
 from solver.physics.ends import LOAD, LOAD_LAB, RATE
 
 
@@ -78,7 +77,7 @@ def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factor
                 lower[a, k, m], D[a, k, m], upper[a, k, m] = 0.0, 0.0, 0.0
         D[a, 0, 0] = tangents.stiff[a]
     for i in range(N + 1):
-        upper[i, 0, 0] = -tangent(chain.elastic, i) / chain.span[i]
+        upper[i, 0, 0] = -tangents.spring[i]
         lower[i + 1, 0, 0] = upper[i, 0, 0]
     for j in range(N):
         a, X, Y, T = j + 1, factors.X[j], factors.Y[j], tangents.T[j + 1]

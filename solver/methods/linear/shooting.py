@@ -22,7 +22,6 @@ from solver.methods.space.box.fields import Nodes
 from solver.methods.space.box.intervals import MEANS, interval_panel
 from solver.methods.space.box.schemes import BOX
 from solver.methods.status import CONVERGED, LOST_DIGITS
-from solver.physics.section import Section
 
 LARGEST_GROWTH = 1e12
 """Beyond it fewer than four digits are left and Newton's iteration cannot be trusted."""
@@ -45,10 +44,10 @@ class Shooting(NamedTuple):
 
 @variant(factor, Shooting)
 @kernel
-def shoot(linear: Shooting, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, section: Section,
+def shoot(linear: Shooting, Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
           system: System) -> int:  # fmt: skip
     """March the seven solutions for the system's own residuals, and find their coefficients."""
-    linear.growth[0] = _march(linear, Y, c0, h, nodes, section, system)
+    linear.growth[0] = _march(linear, Y, c0, h, nodes, system)
     return CONVERGED if linear.growth[0] < LARGEST_GROWTH else LOST_DIGITS
 
 
@@ -72,7 +71,7 @@ def _only_once(linear: Shooting) -> bool:
 
 
 @inner
-def _march(linear: Shooting, Y: Array, c0: float, h: float, nodes: Nodes, section: Section,
+def _march(linear: Shooting, Y: Array, c0: float, h: float, nodes: Nodes,
            system: System) -> float:  # fmt: skip
     """Write the marched solutions and their coefficients; return the growth (inf if a block is singular)."""
     marched, c, N = linear.marched, linear.coefficients, len(linear.marched) - 1
@@ -80,7 +79,7 @@ def _march(linear: Shooting, Y: Array, c0: float, h: float, nodes: Nodes, sectio
         return np.inf
     A, panel, mean = scratch((12, 12)), scratch((18, 24)), scratch((MEANS, 3))
     for j in range(N):
-        interval_panel(j, Y, c0, h, BOX, nodes, section, system.rows, system.columns, mean, panel, 6)
+        interval_panel(j, Y, c0, h, BOX, nodes, system.rows, system.columns, mean, panel, 6)
         for i in range(12):
             for k in range(12):
                 A[i, k] = panel[6 + i, 12 + k]

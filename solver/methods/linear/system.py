@@ -14,7 +14,6 @@ from solver.arrays import Array
 from solver.kernels.dispatch import dispatched
 from solver.methods.space.box.fields import Nodes
 from solver.methods.space.box.schemes import BOX, SpaceScheme
-from solver.physics.section import Section
 
 
 class System(NamedTuple):
@@ -51,7 +50,7 @@ class LinearSolver(Protocol):
 
 
 @dispatched
-def factor(linear: LinearSolver, Y: Array, past: Array, c0: float, h: float, nodes: Nodes, section: Section,
+def factor(linear: LinearSolver, Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
            system: System) -> int:  # fmt: skip
     """Do all that the tangents at the iterate `Y` (n, 12) are needed for; return how it ended, see `status`.
 

@@ -36,9 +36,9 @@ def _reference(record: tuple[Any, ...]) -> Reference:
 
 
 @kernel
-def factor(linear, Y: Array, past: Array, c0: float, h: float, nodes, section, of) -> int:  # type: ignore[no-untyped-def]  # fmt: skip
+def factor(linear, Y: Array, past: Array, c0: float, h: float, nodes, of) -> int:  # type: ignore[no-untyped-def]  # fmt: skip
     """What a linear solver's own variant does, which only kernels find by reference."""
-    return system.factor(linear, Y, past, c0, h, nodes, section, of)
+    return system.factor(linear, Y, past, c0, h, nodes, of)
 
 
 @kernel

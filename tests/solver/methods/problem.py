@@ -59,9 +59,9 @@ def two_turns() -> Initial:
 
 
 @kernel
-def panel_of(j: int, Y: Array, c0: float, h: float, system, nodes, section, mean: Array, panel: Array) -> None:  # type: ignore[no-untyped-def]  # fmt: skip
+def panel_of(j: int, Y: Array, c0: float, h: float, system, nodes, mean: Array, panel: Array) -> None:  # type: ignore[no-untyped-def]  # fmt: skip
     """`interval_panel` as Python may call it."""
-    interval_panel(j, Y, c0, h, system.space, nodes, section, system.rows, system.columns, mean, panel, 6)
+    interval_panel(j, Y, c0, h, system.space, nodes, system.rows, system.columns, mean, panel, 6)
 
 
 @dataclass
@@ -94,7 +94,7 @@ class Problem:
         call(balance_nodes, self.old, self.new, work.past, self.c0, self.section, self.loads, work.nodes)
         if call(touching, self.contact.touch):
             call(add_contact, self.new, work.nodes, self.h, self.contact.touch)
-        call(form_residuals, self.new, work.past, self.c0, self.h, self.section, self.ends, work.nodes, work.feedback,
+        call(form_residuals, self.new, work.past, self.c0, self.h, self.ends, work.nodes, work.feedback,
              system)  # fmt: skip
         wide = self.work.linear
         if isinstance(wide, Augmented):
@@ -136,13 +136,13 @@ class Problem:
         A, W = np.zeros((size * (N + 1), size * (N + 1))), np.zeros((left + size, 2 * size))
         A[:6, :12] = system.start
         if self.wide:
-            call(wide_start, Y, self.c0, self.h, nodes, self.section, system, mean, W)
+            call(wide_start, Y, self.c0, self.h, nodes, system, mean, W)
             A[:18, :24] = W[:18, :24]
         for j in range(N):
             if self.wide:
-                call(wide_panel, j, Y, self.c0, self.h, nodes, self.section, system, mean, W)
+                call(wide_panel, j, Y, self.c0, self.h, nodes, system, mean, W)
             else:
-                call(panel_of, j, Y, self.c0, self.h, system, nodes, self.section, mean, W)
+                call(panel_of, j, Y, self.c0, self.h, system, nodes, mean, W)
             A[left + size * j : left + size * (j + 1), size * j : size * (j + 2)] = W[left:]
         A[left + size * N :, size * N : size * N + 12] = system.end
         return A + self._contact_matrix(A.shape[0], size, left)

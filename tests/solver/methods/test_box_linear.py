@@ -20,7 +20,7 @@ from tests.solver.methods.problem import Problem, problem
 def factored(case: Problem, linear: LinearSolver) -> int:
     """How factoring the assembled system ended."""
     work = case.work
-    return int(call(factor, linear, case.new.Y, work.past, case.c0, case.h, work.nodes, case.section, work.system))
+    return int(call(factor, linear, case.new.Y, work.past, case.c0, case.h, work.nodes, work.system))
 
 
 def eliminate(case: Problem, linear: LinearSolver | None = None) -> Array:

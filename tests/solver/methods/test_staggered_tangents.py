@@ -162,7 +162,11 @@ CASES += [("all of them", "mixed", Fluid(1000.0, 1.0, 1.2, 0.3, (0.4, -0.2, 0.1)
 
 @pytest.mark.parametrize(("term", "kinds", "fluid"), CASES)
 def test_the_tangents_by_rotation_are_derivatives(term: str, kinds: str, fluid: Fluid | None) -> None:
-    case = problem(term, kinds, fluid)
+    check_rotation(problem(term, kinds, fluid))
+
+
+def check_rotation(case: Problem) -> None:
+    """Check what the rotations do to the balances and to the ends' conditions."""
     tangents = case.method.work.tangents
     largest = np.abs(tangents.stiff).max()
     for a in range(N + 2):

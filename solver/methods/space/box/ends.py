@@ -5,21 +5,18 @@ from __future__ import annotations
 from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, Nodes, V
-from solver.physics.elasticity import tangent
 from solver.physics.ends import LOAD, RATE, RATE_LAB, Kinds
-from solver.physics.section import Section
 
 
 @inner
 def end_conditions(Y: Array, node: int, kinds: Kinds, targets: Array, dead: Array, rows: Array, columns: Array,
-                   nodes: Nodes, section: Section, b: Array, A: Array) -> None:  # fmt: skip
+                   nodes: Nodes, b: Array, A: Array) -> None:  # fmt: skip
     """Write residuals `b` (6,) and tangents `A` (6, 12) of the conditions `kinds` (6,) with values `targets` (6,).
 
     `dead` (6,): lab force and moment that add to f and q where these are what is given. `rows` (12,) and
     `columns` (12,) are the system's scales.
     """
     A[:, :] = 0.0
-    K = tangent(section.elastic, node)
     for i in range(3):
         held = kinds[i] == RATE or kinds[i] == RATE_LAB
         first = V if held else F
@@ -43,7 +40,7 @@ def end_conditions(Y: Array, node: int, kinds: Kinds, targets: Array, dead: Arra
         else:
             b[row] = nodes.q[node, i] - targets[row]
             for k in range(3):
-                A[row, KAPPA + k] = K[i][k]
+                A[row, KAPPA + k] = nodes.K[node, i, k]
             for k in range(3):
                 b[row] -= nodes.R[node, k, i] * dead[3 + k]
                 _turn_axis(nodes.R[node], nodes.J[node], i, k, -dead[3 + k], A[row])

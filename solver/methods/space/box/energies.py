@@ -15,11 +15,11 @@ from solver.kernels.dispatch import for_each
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import matrices_of
-from solver.kernels.vectors import add, dot, plus
+from solver.kernels.vectors import dot, middle, plus
 from solver.measures.energies import Energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, State, V
 from solver.methods.space.box.nodes import Motion
-from solver.physics.elasticity import strain_energy, tangent
+from solver.physics.elasticity import strain_energy
 from solver.physics.loads.load import energy, entrained, has_energy, point, prepare
 from solver.physics.loads.registry import Loads
 
@@ -39,16 +39,17 @@ def _integrate(reference: Reference, state: State, h: float, R: Array, by_loads:
     bending, torsion, kinetic = 0.0, 0.0, 0.0
     for j in range(len(Y) - 1):
         mass = section.mass[j] + section.mass[j + 1]
-        bent, twisted = strain_energy(add(tangent(elastic, j), tangent(elastic, j + 1)),
-                                      plus(_strain(Y, elastic.kappa0, j), _strain(Y, elastic.kappa0, j + 1)))
-        bending += bent
-        torsion += twisted
+        strain = middle(_strain(Y, elastic.kappa0, j), _strain(Y, elastic.kappa0, j + 1))
+        for node in range(j, j + 2):
+            bent, twisted = strain_energy(elastic, node, strain)
+            bending += bent
+            torsion += twisted
         for i in range(3):
             velocity, omega = Y[j, V + i] + Y[j + 1, V + i], Y[j, OMEGA + i] + Y[j + 1, OMEGA + i]
             kinetic += mass * velocity * velocity
             kinetic += (section.inertia[j, i] + section.inertia[j + 1, i]) * omega * omega
-    part = 0.0625 * h  # 1/2, and three means of two
-    return Energies(2.0 * part * bending, 2.0 * part * torsion, 0.0, part * kinetic, by_loads[1], by_loads[0])
+    kinetic *= 0.0625 * h  # 1/2, and three means of two
+    return Energies(0.5 * h * bending, 0.5 * h * torsion, 0.0, kinetic, by_loads[1], by_loads[0])
 
 
 @inner

@@ -40,13 +40,15 @@ class Nodes(NamedTuple):
     """What the nodes bring to the balances, at the current iterate, and its tangents.
 
     (n, 3): `P` = rho_c A dV/dt - B (lab); `q` moment (material); `W` = I omega_t + omega x I omega
-    - Q (material). (n, 3, 3): `R`; `J` = d psi / d omega; the rest are d(first letter)/d(V or omega (`w`)).
+    - Q (material). (n, 3, 3): `R`; `J` = d psi / d omega; `K` = dq / d kappa; the rest are d(first letter)/d(V or omega
+    (`w`)).
     """
 
     R: Array
     J: Array
     P: Array
     q: Array
+    K: Array
     W: Array
     P_V: Array
     P_w: Array

@@ -23,7 +23,6 @@ from solver.kernels.kernel import inlined, inner
 from solver.kernels.scratch import scratch
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, Nodes, V
 from solver.methods.space.box.schemes import SpaceScheme
-from solver.physics.section import Section
 
 MEANS = 5
 """Means over an interval: kappa, omega, F (lab), q, and a3 x R_m^t F_m."""
@@ -73,7 +72,7 @@ def _take_means(j: int, Y: Array, left: float, right: float, nodes: Nodes, mean:
 
 
 @inlined
-def interval_panel(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes, section: Section,
+def interval_panel(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, nodes: Nodes,
                    rows: Array, columns: Array, mean: Array, panel: Array, top: int) -> None:  # fmt: skip
     """Write the tangents of interval j's residuals by the scaled unknowns into rows `top` to `top` + 11 of `panel`.
 
@@ -90,7 +89,7 @@ def interval_panel(j: int, Y: Array, c0: float, h: float, space: SpaceScheme, no
         _translation(panel, mean, sign, weight, top, at, space, j, nodes.R, nodes.J[node], nodes.R[node],
                      nodes.P_V[node], nodes.P_w[node], rows, columns)  # fmt: skip
         _rotation(panel, mean, sign, weight, top, at, space, j, nodes.R, nodes.J[node], nodes.R[node],
-                  nodes.W_w[node], section.elastic.K[node], rows, columns)  # fmt: skip
+                  nodes.W_w[node], nodes.K[node], rows, columns)  # fmt: skip
 
 
 @inlined

@@ -10,12 +10,13 @@ from typing import Any, NamedTuple, no_type_check
 
 from solver.arrays import Array
 from solver.kernels.dispatch import variant
+from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import cosine_and_sinc, dot, entries, jacobian_series, product, right_jacobian, unit
 from solver.kernels.vectors import add_matrix, add_product, add_vector, matrix, tangent_by_rotation, vector
 from solver.methods.space.box.fields import KAPPA, OMEGA, Nodes, State, V
-from solver.physics.elasticity import moment
+from solver.physics.elasticity import moment, tangent
 from solver.physics.loads.load import Point, Tangents, add_forces, add_tangents, point, take_force, take_tangents
 from solver.physics.loads.registry import Loads
 from solver.physics.section import Section
@@ -44,7 +45,7 @@ def place_nodes(old: State, new: State, past: Array, c0: float, nodes: Nodes) ->
 
 @inner
 def balance_rotation(new: State, section: Section, past: Array, c0: float, nodes: Nodes) -> None:
-    """Write q = K (kappa - kappa0) and W = I omega_t + omega x I omega with its tangent by omega, but for loads."""
+    """Write q and W = I omega_t + omega x I omega, but for loads, with their tangents by kappa and by omega."""
     for j in range(len(past)):
         W, D = nodes.W[j], nodes.W_w[j]
         I0, I1, I2 = section.inertia[j, 0], section.inertia[j, 1], section.inertia[j, 2]
@@ -52,14 +53,25 @@ def balance_rotation(new: State, section: Section, past: Array, c0: float, nodes
         for i in range(3):
             W[i] = section.inertia[j, i] * (c0 * new.Y[j, OMEGA + i] + past[j, 9 + i])
             D[i, i] = section.inertia[j, i] * c0
-        q = moment(section.elastic, j, (new.Y[j, KAPPA], new.Y[j, KAPPA + 1], new.Y[j, KAPPA + 2]))
-        nodes.q[j, 0], nodes.q[j, 1], nodes.q[j, 2] = q
+        kappa = new.Y[j, KAPPA], new.Y[j, KAPPA + 1], new.Y[j, KAPPA + 2]
+        nodes.q[j, 0], nodes.q[j, 1], nodes.q[j, 2] = moment(section.elastic, j, kappa)
+        K = tangent(section.elastic, j, kappa)
+        for k in range(3):
+            nodes.K[j, 0, k], nodes.K[j, 1, k], nodes.K[j, 2, k] = K[0][k], K[1][k], K[2][k]
         W[0] += (I2 - I1) * w1 * w2
         W[1] += (I0 - I2) * w2 * w0
         W[2] += (I1 - I0) * w0 * w1
         D[0, 1], D[0, 2] = (I2 - I1) * w2, (I2 - I1) * w1
         D[1, 0], D[1, 2] = (I0 - I2) * w2, (I0 - I2) * w0
         D[2, 0], D[2, 1] = (I1 - I0) * w1, (I1 - I0) * w0
+
+
+@kernel
+def moments(reference: Reference, Y: Array, q: Array) -> None:
+    """Write the moments q (n, 3) of unknowns Y (n, 12); `reference`: see `newton.step`."""
+    section, _, _, _, _ = reference.records
+    for j in range(len(q)):
+        q[j, 0], q[j, 1], q[j, 2] = moment(section.elastic, j, (Y[j, KAPPA], Y[j, KAPPA + 1], Y[j, KAPPA + 2]))
 
 
 @inner

@@ -48,8 +48,8 @@ class Tangents(NamedTuple):
 
     Segments: translation's `M` by acceleration, `C` by velocity and `K` by place (N, 2, 2), and `E` (N,) by rotation
     (with the sign of a load); rotation's `spin` by the rate of rotation. Orientations (N + 2,): rotation's `stiff` by
-    their own rotation, and `T`. Ends (2, 2): `turn`, what a rotation of the end's frame does to the conditions on its
-    translation.
+    their own rotation, and `T`. Joints (N + 1,): `spring`, dq by their rotation. Ends (2, 2): `turn`, what a rotation
+    of the end's frame does to the conditions on its translation.
     """
 
     M: Array
@@ -59,6 +59,7 @@ class Tangents(NamedTuple):
     spin: Array
     stiff: Array
     T: Plane
+    spring: Array
     turn: Array
 
     @classmethod
@@ -66,7 +67,7 @@ class Tangents(NamedTuple):
         """Zeros for N = `intervals`."""
         N = intervals
         return cls(np.zeros((N, 2, 2)), np.zeros((N, 2, 2)), np.zeros((N, 2, 2)), np.zeros(N, complex), np.zeros(N),
-                   np.zeros(N + 2), np.zeros(N + 2, complex), np.zeros((2, 2)))  # fmt: skip
+                   np.zeros(N + 2), np.zeros(N + 2, complex), np.zeros(N + 1), np.zeros((2, 2)))  # fmt: skip
 
 
 class Motion(NamedTuple):
@@ -209,9 +210,10 @@ def tangents_at(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages,
     copy(stages.T[i], tangents.T)
     tangents.stiff[:] = 0.0
     for j in range(N + 1):
-        spring = tangent(chain.elastic, j) / chain.span[j]
-        tangents.stiff[j] += spring
-        tangents.stiff[j + 1] += spring
+        kappa = (stages.phi[i, j + 1] - stages.phi[i, j]) / chain.span[j]
+        tangents.spring[j] = tangent(chain.elastic, j, kappa) / chain.span[j]
+        tangents.stiff[j] += tangents.spring[j]
+        tangents.stiff[j + 1] += tangents.spring[j]
     for j in range(N):
         M, C, K = tangents.M[j], tangents.C[j], tangents.K[j]
         for k in range(2):

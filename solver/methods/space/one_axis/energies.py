@@ -12,15 +12,14 @@ from solver.measures.energies import Energies
 from solver.methods.space.one_axis.balances import Motion, along, end_velocity, motion_at
 from solver.methods.space.one_axis.chain import Chain
 from solver.methods.space.segments.chain import STAGES
+from solver.physics.elasticity import strain_energy
 from solver.physics.loads.load import add_energies, add_powers
 
 
 def energies(reference: Reference, chain: Chain, phi: Array, motion: Motion) -> Energies:
     """The energies at the end of a step: angles (N + 2,), and the segments' motion; `reference`: see `newton.step`."""
-    strain = np.diff(phi) / chain.span - chain.elastic.kappa0
-    elastic = float(0.5 * np.sum(chain.span * chain.elastic.K * strain**2))
     by_loads, V, omega = np.zeros(2), motion.V, motion.omega[1:-1]
-    _sum_loads(reference, motion, by_loads)
+    elastic = _sum(reference, phi, motion, by_loads)
     kinetic = np.sum(chain.mass * (V.real**2 + V.imag**2)) + np.sum(chain.dry_inertia * omega**2)
     turning = np.sum((chain.inertia - chain.dry_inertia) * omega**2)
     return Energies(
@@ -34,9 +33,15 @@ def energies(reference: Reference, chain: Chain, phi: Array, motion: Motion) -> 
 
 
 @kernel
-def _sum_loads(reference: Reference, motion: Motion, out: Array) -> None:
-    _, loads, _, _, _, _, _ = reference.records
+def _sum(reference: Reference, phi: Array, motion: Motion, out: Array) -> float:
+    """Write the energies of loads, and return that of the joints."""
+    chain, loads, _, _, _, _, _ = reference.records
     add_energies(loads, STAGES - 1, motion, out)
+    elastic, energy = chain.elastic, 0.0
+    for j in range(len(chain.span)):
+        strain = (phi[j + 1] - phi[j]) / chain.span[j] - elastic.kappa0[j]
+        energy += chain.span[j] * strain_energy(elastic, j, strain)
+    return energy
 
 
 @kernel

@@ -13,7 +13,7 @@ from solver.measures.energies import Energies
 from solver.methods.space.segments.balances import Motion, motion_at
 from solver.methods.space.segments.chain import STAGES, Chain
 from solver.methods.space.segments.opening import tension
-from solver.physics.elasticity import strain_energy, stretch_energy, stretches, tangent
+from solver.physics.elasticity import strain_energy, stretch_energy, stretches
 from solver.physics.loads.load import add_energies, add_powers
 from solver.physics.loads.registry import Loads
 
@@ -35,8 +35,8 @@ def energies_at(chain: Chain, loads: Loads, i: int, bend: Array, F: Array, motio
     by_loads[0], by_loads[1] = 0.0, 0.0
     add_energies(loads, i, motion, by_loads)
     for joint in range(len(bend)):
-        kappa = times(1.0 / chain.span[joint], vector(bend, joint))
-        bent, twisted = strain_energy(tangent(chain.elastic, joint), minus(kappa, vector(chain.elastic.kappa0, joint)))
+        strain = minus(times(1.0 / chain.span[joint], vector(bend, joint)), vector(chain.elastic.kappa0, joint))
+        bent, twisted = strain_energy(chain.elastic, joint, strain)
         bending += chain.span[joint] * bent
         torsion += chain.span[joint] * twisted
     if stretches(chain.elastic):

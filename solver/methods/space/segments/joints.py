@@ -10,18 +10,19 @@ so the elastic energy turns the left neighbour by B q and the right one by -B^t 
 
 from __future__ import annotations
 
-from typing import no_type_check
+from typing import Any, no_type_check
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels import vectors
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import abreast, series
 from solver.kernels.rotation import angle_by_sine, cross, dot, product
 from solver.kernels.scratch import scratch
-from solver.kernels.vectors import scale
+from solver.kernels.vectors import add_vector, minus, plus, scale, times, vector, vector_product
 from solver.methods.space.segments.chain import Chain
-from solver.physics.elasticity import moment_of, tangent
+from solver.physics.elasticity import is_linear, moment_beyond, moment_of, tangent
 
 SMALL = 0.25
 """Square of the angle (rad) of a joint below which the series of b is exact to rounding."""
@@ -90,6 +91,28 @@ def bend_joints(chain: Chain, quaternion: Array, bend: Array, moment: Array, lef
     """Write Theta, q, B q and B^t q of all joints (N + 1, 3 each) for orientations `quaternion` (N + 2, 4)."""
     elastic = chain.elastic
     _bend(quaternion[:-1], quaternion[1:], elastic.K, elastic.kappa0, chain.span, bend, moment, left, right)
+    if not is_linear(elastic):
+        for a in range(len(bend)):
+            strain = minus(times(1.0 / chain.span[a], vector(bend, a)), vector(elastic.kappa0, a))
+            add_moment(moment_beyond(elastic, a, strain), a, bend, moment, left, right)
+
+
+@inner
+def add_moment(q: Any, a: int, bend: Array, moment: Array, left: Array, right: Array) -> None:
+    """Add q to the moment of joint a, and B q and B^t q to what it does to its neighbours."""
+    on_left, on_right = on_neighbours(vector(bend, a), q)
+    add_vector(1.0, q, moment[a])
+    add_vector(1.0, on_left, left[a])
+    add_vector(1.0, on_right, right[a])
+
+
+@inner
+def on_neighbours(theta: Any, q: Any) -> Any:
+    """B q and B^t q."""
+    b, _ = coefficient(vectors.dot(theta, theta))
+    c = vector_product(theta, q)
+    even = plus(q, times(b, vector_product(theta, c)))
+    return plus(even, times(0.5, c)), plus(even, times(-0.5, c))
 
 
 @kernel
@@ -120,7 +143,7 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
         x, y, z = bend[i, 0], bend[i, 1], bend[i, 2]
         b, slope = coefficient(x * x + y * y + z * z)
         theta, q, per = bend[i], moment[i], 1.0 / chain.span[i]
-        spring = scale(per, tangent(chain.elastic, i))
+        spring = scale(per, tangent(chain.elastic, i, times(per, vector(bend, i))))
         q0, q1, q2 = q[0], q[1], q[2]
         c0, c1, c2 = y * q2 - z * q1, z * q0 - x * q2, x * q1 - y * q0
         d = (y * c2 - z * c1, z * c0 - x * c2, x * c1 - y * c0)

@@ -29,10 +29,9 @@ from solver.kernels.vectors import (
     tangent_rate,
     times,
     vector,
-    vector_product,
 )
 from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
-from solver.methods.space.segments.joints import bend_joints, coefficient, share
+from solver.methods.space.segments.joints import add_moment, bend_joints, on_neighbours, share
 from solver.physics.elasticity import axial_strain, axial_tangent, moment_of_tension
 
 
@@ -69,20 +68,7 @@ def pull_joints(chain: Chain, R: Array, F: Array, bend: Array, moment: Array, le
     if len(chain.elastic.compliance) == 0:
         return
     for a in range(len(bend)):
-        q, theta = moment_of_tension(chain.elastic, a, tension(R, F, a)), vector(bend, a)
-        on_left, on_right = _on_neighbours(theta, q)
-        add_vector(1.0, q, moment[a])
-        add_vector(1.0, on_left, left[a])
-        add_vector(1.0, on_right, right[a])
-
-
-@inner
-def _on_neighbours(theta: Any, q: Any) -> Any:
-    """B q and B^t q: see `joints`."""
-    b, _ = coefficient(dot(theta, theta))
-    c = vector_product(theta, q)
-    even = plus(q, times(b, vector_product(theta, c)))
-    return plus(even, times(0.5, c)), plus(even, times(-0.5, c))
+        add_moment(moment_of_tension(chain.elastic, a, tension(R, F, a)), a, bend, moment, left, right)
 
 
 @kernel
@@ -174,7 +160,7 @@ def opening_tangents(chain: Chain, stages: Stages, i: int, stiff: Array, before:
     for a in range(last + 1):
         by_N, by_tension = axial_tangent(chain.elastic, a)
         c, e, t = chain.span[a] * by_N, stages.opening[i, 0, a], _tangent(R, a)
-        on_left, on_right = _on_neighbours(vector(stages.bend[i], a), by_tension)
+        on_left, on_right = on_neighbours(vector(stages.bend[i], a), by_tension)
         part = share(a, last)
         left, right = 0.0 if a == 0 else part, 0.0 if a == last else part
         f, g = in_material(matrix(R, a), vector(F, a)), in_material(matrix(R, a + 1), vector(F, a))

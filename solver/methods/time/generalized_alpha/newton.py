@@ -74,14 +74,14 @@ def balance_nodes(old: State, new: State, past: Array, c0: float, section: Secti
 
 
 @kernel
-def form_residuals(new: State, past: Array, c0: float, h: float, section: Section, ends: EndValues, nodes: Nodes,
+def form_residuals(new: State, past: Array, c0: float, h: float, ends: EndValues, nodes: Nodes,
                    feedback: Array, system: System) -> None:  # fmt: skip
     """Residuals of every equation at the iterate `new`, and the tangents of those of the ends."""
     interval_residuals(new.Y, past, c0, h, system.space, nodes, feedback, system.rows, system.b)
     end_conditions(new.Y, 0, ends.start_kinds, ends.start, ends.start_dead, system.rows, system.columns,
-                   nodes, section, system.b_start, system.start)  # fmt: skip
+                   nodes, system.b_start, system.start)  # fmt: skip
     end_conditions(new.Y, len(new.Y) - 1, ends.end_kinds, ends.end, ends.end_dead, system.rows, system.columns,
-                   nodes, section, system.b_end, system.end)  # fmt: skip
+                   nodes, system.b_end, system.end)  # fmt: skip
 
 
 @inner
@@ -139,8 +139,8 @@ def step(reference: Reference, old: State, new: State, scheme: Scheme, dt: float
         balance_nodes(old, new, past, c0, section, loads, nodes)
         if contact:
             add_contact(new, nodes, h, touch)
-        form_residuals(new, past, c0, h, section, ends, nodes, work.feedback, system)
-        status = factor(work.linear, new.Y, past, c0, h, nodes, section, system)
+        form_residuals(new, past, c0, h, ends, nodes, work.feedback, system)
+        status = factor(work.linear, new.Y, past, c0, h, nodes, system)
         if status != CONVERGED:
             return status, iteration
         if contact and solves_again(work.linear):

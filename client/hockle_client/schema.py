@@ -385,6 +385,12 @@ class RodSpec(TypedDict):
     slip_curvature: NotRequired[Union[Union[float, ProfileTable], None]]
     """profile, the curvature about which layers that stick come to slip; in 1/m"""
 
+    locking_stiffness: NotRequired[Union[Union[float, ProfileTable], None]]
+    """EJ: profile, by which bending is stiffer beyond `locking_curvature`; of bend restrictors; in N m²"""
+
+    locking_curvature: NotRequired[Union[Union[float, ProfileTable], None]]
+    """profile, the inverse of the radius at which bending locks; in 1/m"""
+
     axial_stiffness: NotRequired[Union[Union[float, ProfileTable], None]]
     """EA: profile; without it the rod cannot stretch. For `staggered` and static analyses; in N"""
 
@@ -788,6 +794,14 @@ Setting = Literal[
     "rod.inertia_per_length",
     "rod.kappa0",
     "rod.length",
+    "rod.locking_curvature",
+    "rod.locking_curvature.interpolation",
+    "rod.locking_curvature.s",
+    "rod.locking_curvature.value",
+    "rod.locking_stiffness",
+    "rod.locking_stiffness.interpolation",
+    "rod.locking_stiffness.s",
+    "rod.locking_stiffness.value",
     "rod.mass_per_length",
     "rod.mass_per_length.interpolation",
     "rod.mass_per_length.s",

@@ -12,7 +12,7 @@ from service.cases.errors import refusal
 from service.cases.quantities import Positive, PositiveProfile, Profile, ProfileTriple, Spec, curve, curves
 from service.meaning import means
 from solver import Rod
-from solver.physics.elasticity import Coupling, Softening, Stretch, TwistStretch, elasticity_of
+from solver.physics.elasticity import Coupling, Locking, Softening, Stretch, TwistStretch, elasticity_of
 from solver.scene.rod import Profiles
 
 
@@ -66,6 +66,13 @@ class RodSpec(Spec):
     slip_curvature: Annotated[
         PositiveProfile | None, means("profile, the curvature about which layers that stick come to slip", "1/m")
     ] = None
+    locking_stiffness: Annotated[
+        PositiveProfile | None,
+        means("EJ: profile, by which bending is stiffer beyond `locking_curvature`; of bend restrictors", "N m²"),
+    ] = None
+    locking_curvature: Annotated[
+        PositiveProfile | None, means("profile, the inverse of the radius at which bending locks", "1/m")
+    ] = None
     axial_stiffness: Annotated[
         PositiveProfile | None,
         means("EA: profile; without it the rod cannot stretch. For `staggered` and static analyses", "N"),
@@ -100,9 +107,11 @@ class RodSpec(Spec):
         if self.twist_stretch_coupling != 0.0 and self.axial_stiffness is None:
             rule = "must be 0 without axial_stiffness: only a rod that can stretch has it"
             raise refusal("twist_stretch_coupling", self.twist_stretch_coupling, rule)
-        if (self.sticking_stiffness is None) != (self.slip_curvature is None):
-            missing = "slip_curvature" if self.slip_curvature is None else "sticking_stiffness"
-            raise refusal(missing, None, "must be given with sticking_stiffness and slip_curvature, or neither of them")
+        for pair in (("sticking_stiffness", "slip_curvature"), ("locking_stiffness", "locking_curvature")):
+            present = [name for name in pair if getattr(self, name) is not None]
+            if len(present) == 1:
+                (missing,) = {*pair} - {*present}
+                raise refusal(missing, None, f"must be given beside {present[0]}")
         return self
 
     def build(self) -> Rod:
@@ -137,6 +146,8 @@ class RodSpec(Spec):
             laws.append(Coupling(first, second, third))
         if self.sticking_stiffness is not None and self.slip_curvature is not None:
             laws.append(Softening(curve(self.sticking_stiffness), curve(self.slip_curvature)))
+        if self.locking_stiffness is not None and self.locking_curvature is not None:
+            laws.append(Locking(curve(self.locking_stiffness), curve(self.locking_curvature)))
         if self.axial_stiffness is not None:
             laws.append(Stretch(curve(self.axial_stiffness)))
         if self.twist_stretch_coupling != 0.0:

@@ -77,11 +77,28 @@ class Softening:
         return True
 
 
+@dataclass(frozen=True)
+class Locking:
+    """Bending that locks: EJ (N m^2) along s, by which a rod is stiffer where its curvature is beyond `kappa` (1/m).
+
+    A law of the bend b: U = EJ/2 (b - kappa)^2 beyond kappa. Bend restrictors do so, whose links come to lie on each
+    other at their smallest radius, 1/kappa.
+    """
+
+    EJ: Profile
+    kappa: Profile
+
+    def keeps(self, view: View) -> bool:
+        """About any axis: the moment is along the strain."""
+        return True
+
+
 class Elasticity(NamedTuple):
     """At n arclengths: `K` (n, 3, 3) in N m^2, stress-free `kappa0` (n, 3) in rad/m; about one axis (n,) each.
 
     Of a rod that can stretch (n,), else (0,): `compliance` 1/EA in 1/N, and what the tension adds to q3, `by_tension`
-    g/EA in m. K is at a given tension, its torsional stiffness GJ - g^2/EA. `softening` (n, 2), else (0, 2): EJ, kappa.
+    g/EA in m. K is at a given tension, its torsional stiffness GJ - g^2/EA. EJ and kappa of
+    `softening` and of `locking`, (n, 2) where the rod has it, else (0, 2).
     """
 
     K: Array
@@ -89,11 +106,13 @@ class Elasticity(NamedTuple):
     compliance: Array
     by_tension: Array
     softening: Array
+    locking: Array
 
 
 def elasticity_of(rod: Rod, s: Array) -> Elasticity:
     """That of a rod at arclengths s (n,). Raises TypeError for a law that is not known here."""
-    K, compliance, g, softening = np.zeros((len(s), 3, 3)), np.zeros(0), np.zeros(len(s)), np.zeros((0, 2))
+    K, compliance, g = np.zeros((len(s), 3, 3)), np.zeros(0), np.zeros(len(s))
+    softening, locking = np.zeros((2, 0, 2))
     for i, profile in enumerate(rod.stiffness):
         K[:, i, i] = profile(s)
     for law in rod.laws:
@@ -105,14 +124,16 @@ def elasticity_of(rod: Rod, s: Array) -> Elasticity:
         elif isinstance(law, TwistStretch):
             g = g + law.g(s)
         elif isinstance(law, Softening):
-            softening = np.stack([_positive("EJ", "N m^2", law.EJ(s)), _positive("kappa", "1/m", law.kappa(s))], axis=1)
+            softening = _of_law(law, s)
+        elif isinstance(law, Locking):
+            locking = _of_law(law, s)
         else:
             raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
     by_tension = _coupled(g, compliance, K[:, 2, 2])
     if rod.laws and not np.linalg.eigvalsh(K).min() > 0.0:
         raise ValueError("stiffness must be positive definite along the rod: the coupling must be smaller")
     kappa0 = np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1))
-    return Elasticity(K, kappa0, compliance, by_tension, softening)
+    return Elasticity(K, kappa0, compliance, by_tension, softening, locking)
 
 
 def _coupled(g: Array, compliance: Array, GJ: Array) -> Array:
@@ -129,6 +150,10 @@ def _coupled(g: Array, compliance: Array, GJ: Array) -> Array:
                          f"{largest[worst]:.6g} N m, got {g[worst]}")  # fmt: skip
     GJ -= g * g * compliance
     return np.asarray(g * compliance)
+
+
+def _of_law(law: Softening | Locking, s: Array) -> Array:
+    return np.stack([_positive("EJ", "N m^2", law.EJ(s)), _positive("kappa", "1/m", law.kappa(s))], axis=1)
 
 
 def _positive(name: str, unit: str, values: Array) -> Array:
@@ -153,9 +178,10 @@ def without_stretch(rod: Rod) -> Rod:
 
 def about(elastic: Elasticity, index: int) -> Elasticity:
     """That of a turn about one principal axis, of a rod whose laws keep to it. None but K is of torsion."""
-    softening = elastic.softening if index < 2 else elastic.softening[:0]
     K, kappa0 = elastic.K[:, index, index].copy(), elastic.kappa0[:, index].copy()
-    return elastic._replace(K=K, kappa0=kappa0, softening=softening)
+    if index == 2:
+        elastic = elastic._replace(softening=elastic.softening[:0], locking=elastic.locking[:0])
+    return elastic._replace(K=K, kappa0=kappa0)
 
 
 def principal(elastic: Elasticity) -> Array:
@@ -183,9 +209,7 @@ def moments(elastic: Elasticity, kappa: Array) -> Array:
 
 def _secants(elastic: Elasticity, bend: Array) -> Array:
     """U'/b (n,) of the laws of the bend."""
-    if len(elastic.softening) == 0:
-        return np.zeros(len(bend))
-    return np.asarray(_of_bend.py_func(elastic, slice(None), bend)[1])  # type: ignore[attr-defined]
+    return np.asarray(_of_bend.py_func(elastic, slice(None), bend)[1] + 0.0 * bend)  # type: ignore[attr-defined]
 
 
 @kernel
@@ -201,15 +225,23 @@ def add_strain(elastic: Elasticity, j: int, q: Any, kappa: Array) -> None:
 @inlined
 def is_linear(elastic: Elasticity) -> bool:
     """Whether q is linear in kappa at a given tension."""
-    return len(elastic.softening) == 0
+    return len(elastic.softening) == 0 and len(elastic.locking) == 0
 
 
 @inner
 def _of_bend(elastic: Elasticity, j: Any, bend: Any) -> Any:
     """Of the laws of the bend b: the energy U(b), U'/b and U''. Of one joint, or in numpy of all."""
-    EJ, ratio = elastic.softening[j, 0], bend / elastic.softening[j, 1]
-    root = np.sqrt(1.0 + ratio * ratio)
-    return EJ * bend * bend / (1.0 + root), EJ / root, EJ / root**3
+    energy, secant, along = 0.0, 0.0, 0.0
+    if len(elastic.softening) > 0:
+        EJ, ratio = elastic.softening[j, 0], bend / elastic.softening[j, 1]
+        root = np.sqrt(1.0 + ratio * ratio)
+        energy, secant, along = EJ * bend * bend / (1.0 + root), EJ / root, EJ / root**3
+    if len(elastic.locking) > 0:
+        EJ, kappa = elastic.locking[j, 0], elastic.locking[j, 1]
+        beyond = np.maximum(bend - kappa, 0.0)
+        energy, secant = energy + 0.5 * EJ * beyond * beyond, secant + EJ * beyond / (beyond + kappa)
+        along = along + EJ * (bend > kappa)
+    return energy, secant, along
 
 
 @inner

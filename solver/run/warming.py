@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from operator import itemgetter
 
 import numpy as np
 
@@ -25,17 +27,12 @@ LEAVES_ITS_PLANE = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], 
 def warm(*methods: str) -> None:
     """Load every kernel of some methods, or of all, from the cache, after other processes have compiled, side by side,
     what is not there; once."""
-    chosen = methods or tuple(METHODS)
-    with ThreadPoolExecutor(len(chosen)) as pool:
-        list(pool.map(_compile, chosen))
-    for method in chosen:
-        for kind in METHODS[method]:
-            load(method, kind.touches)
-
-
-def _compile(method: str) -> None:
-    for kind in METHODS[method]:
-        compile_for(method, kind.touches)
+    kinds = [(method, kind.touches) for method in methods or METHODS for kind in METHODS[method]]
+    longest_first = sorted(kinds, key=itemgetter(1), reverse=True)  # with contact
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(lambda kind: compile_for(*kind), longest_first))
+    for method, touching in kinds:
+        load(method, touching)
 
 
 @cache

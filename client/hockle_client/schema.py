@@ -247,7 +247,9 @@ class NumericsSpec(TypedDict):
     """
 
     intervals: NotRequired[Union[int, None]]
-    """along the rod, instead of a tolerance; 200 where another resolution is given"""
+    """along the rod, instead of a tolerance; 200 where another resolution is given. With `static` the fewest
+    from there to half as many again that have a node at each point load
+    """
 
     dt_max: NotRequired[Union[float, None]]
     """the largest step, instead of a tolerance; 0.05 where another resolution is given. Steps are shortened

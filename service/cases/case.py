@@ -18,6 +18,7 @@ from service.meaning import FILE_NAME, NO_CONTROL, means
 from solver import Numerics
 from solver.measures.frame import OUTPUTS
 from solver.methods.linear.registry import LINEAR_SOLVERS
+from solver.run.first_mesh import with_nodes_at
 
 ALL_FIELDS = tuple(output.name for output in OUTPUTS if output.along_rod)
 if TYPE_CHECKING:
@@ -54,7 +55,8 @@ class NumericsSpec(Spec):
     ] = Numerics.linear_solver
     intervals: Annotated[
         Annotated[int, Field(ge=2, le=20_000)] | None,
-        means(f"along the rod, instead of a tolerance; {INTERVALS} where another resolution is given"),
+        means(f"along the rod, instead of a tolerance; {INTERVALS} where another resolution is given. With `static` "
+              "the fewest from there to half as many again that have a node at each point load"),
     ] = None
     dt_max: Annotated[
         Positive | None,
@@ -184,10 +186,12 @@ class CaseSpec(Spec):
     @field_validator("numerics", mode="before")
     @classmethod
     def _resolve_statics(cls, raw: Any, case: ValidationInfo) -> Any:
-        """A static analysis has no tolerance where nothing is said about the resolution."""
+        """A static analysis has no tolerance where nothing is said about the resolution, and a node at each load."""
         if case.data.get("analysis") != "static" or not isinstance(raw, dict) or raw.get("tolerance") is not None:
             return raw
-        return {"intervals": INTERVALS, **raw}
+        rod, loads = case.data.get("rod"), case.data.get("loads")  # missing where they are refused
+        places = [load.s / rod.length for load in loads.point] if rod and loads else []
+        return {"intervals": with_nodes_at(places, INTERVALS), **raw}
 
     @model_validator(mode="after")
     def _check_positions(self) -> Self:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import ceil, log2
 
 import numpy as np
@@ -13,8 +14,6 @@ from solver.scene.scene import Scene
 
 LARGEST_TURN, LARGEST_TURN_PRESSED = 1.2, 0.6
 """Rotation (rad) within an interval that the first mesh has at the most; and where strands press on each other."""
-MOST_FIRST = 24
-"""Intervals of the coarsest mesh up to which one is looked for that has a node at each point load."""
 ON_NODE = 1e-6
 """Part of an interval by which a load may be beside a node."""
 LOOKED_AT = 513
@@ -37,15 +36,22 @@ def first_mesh(scene: Scene, pressed: bool) -> int:
 def first_intervals(scene: Scene) -> int:
     """Of the coarsest mesh: with a node at each point load, if few enough are.
 
-    There the curvature has a cusp, as sharp as the rod is taut. On meshes that have it at a node its error falls
-    evenly; elsewhere now more and now less, as the load lies in its interval, and the differences tell little.
+    On meshes that have it at a node the error falls evenly; elsewhere now more and now less, as the load lies in its
+    interval, and the differences tell little.
     """
-    places = np.array([load.s for load in scene.points]) / float(scene.rod.length)
-    for first in range(FIRST_INTERVALS, MOST_FIRST + 1):
-        beside = places * first - np.round(places * first)
-        if (np.abs(beside) <= ON_NODE).all():
-            return first
-    return FIRST_INTERVALS
+    return with_nodes_at([load.s / float(scene.rod.length) for load in scene.points], FIRST_INTERVALS)
+
+
+def with_nodes_at(places: Sequence[float], least: int) -> int:
+    """The fewest intervals, from `least` to half as many again, with a node at each point load; else `least`.
+
+    There the curvature has a cusp, as sharp as the rod is taut, and its largest value. `places`: parts of the length.
+    """
+    for intervals in range(least, least + least // 2 + 1):
+        beside = np.array(places) * intervals
+        if (np.abs(beside - np.round(beside)) <= ON_NODE).all():
+            return intervals
+    return least
 
 
 def _scales(scene: Scene) -> list[float]:

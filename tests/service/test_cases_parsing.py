@@ -271,6 +271,16 @@ def test_a_static_analysis_that_says_nothing_of_its_resolution_has_the_usual_int
         assert (told.intervals, told.tolerance) == (200, None)
 
 
+@pytest.mark.parametrize(("places", "intervals"), [((), 200), ((0.5,), 200), ((1 / 3,), 201), ((1 / 3, 0.25), 204),
+                                                   ((0.1234,), 200)])  # fmt: skip
+def test_a_static_analysis_has_a_node_at_each_point_load(places: tuple[float, ...], intervals: int):
+    raw = load_case("static-elastica")
+    point = [{"s": part * raw["rod"]["length"], "force": [1.0, 0.0, 0.0]} for part in places]
+    case = {**raw, "loads": {"point": point}, "numerics": {}}
+    assert parse_case(case).numerics.intervals == intervals
+    assert parse_case({**case, "numerics": {"intervals": 50}}).numerics.intervals == 50
+
+
 def numerics(**given):
     return parse_case({**load_case("elastica"), "numerics": given}).numerics
 

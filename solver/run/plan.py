@@ -249,6 +249,7 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> T
         return Trial(last.mesh, max(last.steps - 2, LOOSEST)) if last.steps > LOOSEST else None
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
+    same = same and _work(history) > CHEAP * MOST_WORK  # a rope may be too limp for three coarse meshes
     if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > LAST_PART * MOST_WORK:
         return None
     return Trial(last.mesh + 1, last.steps)

@@ -28,8 +28,8 @@ def ran(mesh: int, steps: int, work: float = SMALL) -> Attempt:
     return Attempt(mesh, steps, work, 1.0, complete=True, slow=False)
 
 
-def failed(mesh: int, t: float) -> Attempt:
-    return Attempt(mesh, 0, SMALL, t, complete=False, slow=False, outcome=3)
+def failed(mesh: int, t: float, work: float = SMALL) -> Attempt:
+    return Attempt(mesh, 0, work, t, complete=False, slow=False, outcome=3)
 
 
 def slow(mesh: int, steps: int) -> Attempt:
@@ -56,7 +56,8 @@ def slow(mesh: int, steps: int) -> Attempt:
         ([ran(0, 0), ran(0, 1), ran(1, 0, 0.9 * MOST_WORK)], Excess(9.0, 0.1), None),
         ([ran(0, 0), ran(0, 1), ran(1, 0), slow(2, 0)], Excess(9.0, 0.1, 9.0), None),
         ([failed(0, 0.5)], Excess(), Trial(1, 0)),
-        ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2)], Excess(), None),
+        ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2)], Excess(), Trial(3, 0)),
+        ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2, 0.2 * MOST_WORK)], Excess(), None),
         ([slow(0, 0)], Excess(), Trial(0, -2)),
         ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK)], Excess(), Trial(1, -5)),
         ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK), ran(1, -5)], Excess(9.0, 9.0), None),

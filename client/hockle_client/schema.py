@@ -399,6 +399,9 @@ class RodSpec(TypedDict):
     twist_stretch_coupling: NotRequired[Union[float, ProfileTable]]
     """g: profile, what couples torsion with stretch; beside `axial_stiffness`; in N m; default 0.0"""
 
+    retardation_time: NotRequired[Union[Union[float, ProfileTable], None]]
+    """profile, by which the material resists its own bending and twisting. For `staggered`; in s"""
+
     mass_per_length: NotRequired[Union[Union[float, ProfileTable], None]]
     """profile; in kg/m"""
 
@@ -808,6 +811,10 @@ Setting = Literal[
     "rod.mass_per_length.interpolation",
     "rod.mass_per_length.s",
     "rod.mass_per_length.value",
+    "rod.retardation_time",
+    "rod.retardation_time.interpolation",
+    "rod.retardation_time.s",
+    "rod.retardation_time.value",
     "rod.shear_modulus",
     "rod.slip_curvature",
     "rod.slip_curvature.interpolation",

@@ -209,10 +209,11 @@ class CaseSpec(Spec):
         return self
 
     @model_validator(mode="after")
-    def _check_stretch(self) -> Self:
-        if self.analysis == "dynamic" and self.rod.axial_stiffness is not None and self.numerics.method == "box":
-            rule = "must be staggered for a rod that can stretch: leave out rod.axial_stiffness, or give this method"
-            raise refusal("numerics/method", self.numerics.method, rule)
+    def _check_laws(self) -> Self:
+        for name, does in (("axial_stiffness", "can stretch"), ("retardation_time", "resists its own bending")):
+            if self.analysis == "dynamic" and getattr(self.rod, name) is not None and self.numerics.method == "box":
+                rule = f"must be staggered for a rod that {does}: leave out rod.{name}, or give this method"
+                raise refusal("numerics/method", self.numerics.method, rule)
         return self
 
     @model_validator(mode="after")

@@ -12,7 +12,15 @@ from service.cases.errors import refusal
 from service.cases.quantities import Positive, PositiveProfile, Profile, ProfileTriple, Spec, curve, curves
 from service.meaning import means
 from solver import Rod
-from solver.physics.elasticity import Coupling, Locking, Softening, Stretch, TwistStretch, elasticity_of
+from solver.physics.elasticity import (
+    Coupling,
+    Locking,
+    Softening,
+    Stretch,
+    TwistStretch,
+    Viscosity,
+    elasticity_of,
+)
 from solver.scene.rod import Profiles
 
 
@@ -80,6 +88,10 @@ class RodSpec(Spec):
     twist_stretch_coupling: Annotated[
         Profile, means("g: profile, what couples torsion with stretch; beside `axial_stiffness`", "N m")
     ] = 0.0
+    retardation_time: Annotated[
+        PositiveProfile | None,
+        means("profile, by which the material resists its own bending and twisting. For `staggered`", "s"),
+    ] = None
     mass_per_length: Annotated[PositiveProfile | None, means("profile", "kg/m")] = None
     inertia_per_length: Annotated[
         tuple[PositiveProfile, PositiveProfile, PositiveProfile] | None,
@@ -152,6 +164,8 @@ class RodSpec(Spec):
             laws.append(Stretch(curve(self.axial_stiffness)))
         if self.twist_stretch_coupling != 0.0:
             laws.append(TwistStretch(curve(self.twist_stretch_coupling)))
+        if self.retardation_time is not None:
+            laws.append(Viscosity(curve(self.retardation_time)))
         return tuple(laws)
 
     def _stiffness(self, solid: Rod) -> Profiles:

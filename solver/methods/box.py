@@ -28,7 +28,7 @@ from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work
 from solver.physics.contact.forces import Touch
 from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
-from solver.physics.elasticity import can_stretch, mean_bending, principal
+from solver.physics.elasticity import mean_bending, needs_segments, principal
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.loads.registry import Loads
@@ -89,9 +89,9 @@ class BoxMethod:
 
     @classmethod
     def of(cls, scene: Scene) -> BoxMethod:
-        """The method for a scene. Raises ValueError for a rod that can stretch: its intervals keep their lengths."""
-        if can_stretch(scene.rod):
-            raise ValueError('method must be "staggered" for a rod that can stretch, got "box"')
+        """The method for a scene. Raises ValueError for a rod with a law that is not known here."""
+        if needs_segments(scene.rod):
+            raise ValueError(f'method must be "staggered" for a rod that {needs_segments(scene.rod)}, got "box"')
         return cls(scene)
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:

@@ -18,11 +18,10 @@ from solver.methods.space.one_axis.axis import Axis, Plane, axis_of, directions
 from solver.methods.space.one_axis.balances import Driven, Motion, Tangents
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages, State, about_axis
 from solver.methods.space.one_axis.energies import energies, stage_powers
-from solver.methods.space.one_axis.motion import extrapolate, follow_segments, largest_turn
+from solver.methods.space.one_axis.motion import bend_joints, extrapolate, follow_segments, largest_turn
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
 from solver.physics.axial import axial_compliance
-from solver.physics.elasticity import moments
 from solver.physics.ends import LOAD, DrivenEnd
 from solver.scene.scene import Scene
 
@@ -73,10 +72,11 @@ class OneAxisMethod(RadauMethod):
         axis, (r, V), (state, _) = self._axis, self._nodes(), self._shown
         phi, omega = at_nodes(state.phi), at_nodes(state.omega)
         back = directions(-self.chain.swing * phi)
-        bend, elastic = np.diff(state.phi) / self.chain.span, self.chain.elastic
+        bend, q = np.diff(state.phi) / self.chain.span, np.empty(len(self.s))
+        bend_joints(self.chain, state.phi, state.omega, q)
         return Fields(
             v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(state.F * back),
-            kappa=axis.about(bend - self._offset), q=axis.about(moments(elastic, bend)),
+            kappa=axis.about(bend - self._offset), q=axis.about(q),
             strain=np.zeros(len(self.s)), r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
         )  # fmt: skip
 

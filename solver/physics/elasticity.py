@@ -93,12 +93,27 @@ class Locking:
         return True
 
 
+@dataclass(frozen=True)
+class Viscosity:
+    """A material that resists its own bending and twisting: the retardation time (s) along s.
+
+    Kelvin's and Voigt's: K kappa_t times that time is added to q, with the linear law's K.
+    """
+
+    time: Profile
+
+    def keeps(self, view: View) -> bool:
+        """About any axis, as K does."""
+        return True
+
+
 class Elasticity(NamedTuple):
     """At n arclengths: `K` (n, 3, 3) in N m^2, stress-free `kappa0` (n, 3) in rad/m; about one axis (n,) each.
 
     Of a rod that can stretch (n,), else (0,): `compliance` 1/EA in 1/N, and what the tension adds to q3, `by_tension`
     g/EA in m. K is at a given tension, its torsional stiffness GJ - g^2/EA. EJ and kappa of
-    `softening` and of `locking`, (n, 2) where the rod has it, else (0, 2).
+    `softening` and of `locking`, (n, 2) where the rod has it, else (0, 2). `viscosity`: what q gains by kappa_t, (n, 3,
+    3) in N m^2 s, else (0, 3, 3).
     """
 
     K: Array
@@ -107,12 +122,13 @@ class Elasticity(NamedTuple):
     by_tension: Array
     softening: Array
     locking: Array
+    viscosity: Array
 
 
 def elasticity_of(rod: Rod, s: Array) -> Elasticity:
     """That of a rod at arclengths s (n,). Raises TypeError for a law that is not known here."""
     K, compliance, g = np.zeros((len(s), 3, 3)), np.zeros(0), np.zeros(len(s))
-    softening, locking = np.zeros((2, 0, 2))
+    (softening, locking), time = np.zeros((2, 0, 2)), np.zeros(0)
     for i, profile in enumerate(rod.stiffness):
         K[:, i, i] = profile(s)
     for law in rod.laws:
@@ -127,13 +143,15 @@ def elasticity_of(rod: Rod, s: Array) -> Elasticity:
             softening = _of_law(law, s)
         elif isinstance(law, Locking):
             locking = _of_law(law, s)
+        elif isinstance(law, Viscosity):
+            time = _positive("time", "s", law.time(s))
         else:
             raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
     by_tension = _coupled(g, compliance, K[:, 2, 2])
     if rod.laws and not np.linalg.eigvalsh(K).min() > 0.0:
         raise ValueError("stiffness must be positive definite along the rod: the coupling must be smaller")
     kappa0 = np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1))
-    return Elasticity(K, kappa0, compliance, by_tension, softening, locking)
+    return Elasticity(K, kappa0, compliance, by_tension, softening, locking, time[:, None, None] * K[: len(time)])
 
 
 def _coupled(g: Array, compliance: Array, GJ: Array) -> Array:
@@ -171,6 +189,13 @@ def can_stretch(rod: Rod) -> bool:
     return any(isinstance(law, Stretch) for law in rod.laws)
 
 
+def needs_segments(rod: Rod) -> str:
+    """What a rod does that is known to segments alone, or nothing."""
+    if can_stretch(rod):
+        return "can stretch"
+    return "resists the rates of bending and twisting" if any(isinstance(law, Viscosity) for law in rod.laws) else ""
+
+
 def without_stretch(rod: Rod) -> Rod:
     """The rod that cannot stretch, and else is the same."""
     return replace(rod, laws=tuple(law for law in rod.laws if not isinstance(law, OF_STRETCH)))
@@ -178,10 +203,10 @@ def without_stretch(rod: Rod) -> Rod:
 
 def about(elastic: Elasticity, index: int) -> Elasticity:
     """That of a turn about one principal axis, of a rod whose laws keep to it. None but K is of torsion."""
-    K, kappa0 = elastic.K[:, index, index].copy(), elastic.kappa0[:, index].copy()
     if index == 2:
         elastic = elastic._replace(softening=elastic.softening[:0], locking=elastic.locking[:0])
-    return elastic._replace(K=K, kappa0=kappa0)
+    return elastic._replace(K=elastic.K[:, index, index].copy(), kappa0=elastic.kappa0[:, index].copy(),
+                            viscosity=elastic.viscosity[:, index, index].copy())  # fmt: skip
 
 
 def principal(elastic: Elasticity) -> Array:
@@ -198,18 +223,14 @@ def mean_bending(elastic: Elasticity) -> float:
 
 
 def moments(elastic: Elasticity, kappa: Array) -> Array:
-    """The moments q of curvatures kappa, (n, 3) each, or about one axis (n,), as `moment` has them."""
+    """The moments q (n, 3) of curvatures kappa (n, 3), as `moment` has them."""
     strain = kappa - elastic.kappa0
-    if elastic.K.ndim == 1:
-        return np.asarray((elastic.K + _secants(elastic, np.abs(strain))) * strain)
     q = np.asarray(np.einsum("nij,nj->ni", elastic.K, strain))
-    q[:, :2] += _secants(elastic, np.linalg.norm(strain[:, :2], axis=1))[:, None] * strain[:, :2]
+    if len(elastic.softening) + len(elastic.locking):
+        bend = np.linalg.norm(strain[:, :2], axis=1)
+        _, secant, _ = _of_bend.py_func(elastic, slice(None), bend)  # type: ignore[attr-defined]
+        q[:, :2] += secant[:, None] * strain[:, :2]
     return q
-
-
-def _secants(elastic: Elasticity, bend: Array) -> Array:
-    """U'/b (n,) of the laws of the bend."""
-    return np.asarray(_of_bend.py_func(elastic, slice(None), bend)[1] + 0.0 * bend)  # type: ignore[attr-defined]
 
 
 @kernel
@@ -325,6 +346,18 @@ def _strain_energy(elastic: Elasticity, j: int, strain: Any) -> tuple[float, flo
     q = transform(stiffness(elastic.K, j), strain)
     bending = 0.5 * (strain[0] * q[0] + strain[1] * q[1]) + _energy_of_bend(elastic, j, _bend(strain))
     return bending, 0.5 * strain[2] * q[2]
+
+
+@inlined
+def is_viscous(elastic: Elasticity) -> bool:
+    """Whether the rod resists the rates of bending and twisting."""
+    return len(elastic.viscosity) > 0
+
+
+@inner
+def viscosity(elastic: Elasticity, j: int) -> Any:
+    """dq / d kappa_t, symmetric, of a rod that has it."""
+    return stiffness(elastic.viscosity, j)
 
 
 @inlined

@@ -56,7 +56,7 @@ PAIRS = (
          {"stiffness": ("bending_stiffness", "torsional_stiffness", "youngs_modulus", "shear_modulus"),
           "mass": ("mass_per_length", "density"), "inertia": ("inertia_per_length", "density"),
           "laws": ("coupling", "sticking_stiffness", "slip_curvature", "locking_stiffness", "locking_curvature",
-                   "axial_stiffness", "twist_stretch_coupling")},
+                   "axial_stiffness", "twist_stretch_coupling", "retardation_time")},
          (), "rod.", lambda scene: scene.rod, lambda scene, part: replace(scene, rod=part)),
     Pair(Initial, (Straight, Centreline), {"centreline": ("shape", "origin", "direction", "points")},
          (), "initial.", lambda scene: scene.initial, lambda scene, part: replace(scene, initial=part)),

@@ -77,7 +77,10 @@ def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factor
                 lower[a, k, m], D[a, k, m], upper[a, k, m] = 0.0, 0.0, 0.0
         D[a, 0, 0] = tangents.stiff[a]
     for i in range(N + 1):
-        upper[i, 0, 0] = -tangents.spring[i]
+        viscous = tangents.spring_t[i] * eigenvalue
+        D[i, 0, 0] += viscous
+        D[i + 1, 0, 0] += viscous
+        upper[i, 0, 0] = -tangents.spring[i] - viscous
         lower[i + 1, 0, 0] = upper[i, 0, 0]
     for j in range(N):
         a, X, Y, T = j + 1, factors.X[j], factors.Y[j], tangents.T[j + 1]

@@ -8,6 +8,7 @@ A segment's displacement is eliminated by its own balance: with P = M lambda^2 +
 and what remains of translation is that neighbours stay joined: delta r_j+1 - delta r_j = d(h/2 T_j + h/2 T_j+1). The
 rows of F are minus positive and those of psi positive definite but for loads, so no pivots are searched between blocks.
 Where the rod can stretch, delta (e t) comes to the right, and its transpose to the rows of psi: see `Tangents.opens`.
+Where it resists rates, lambda times its tangents stand beside those of its stiffness.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from solver.kernels.scratch import scratch_like
 from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
 from solver.methods.space.segments.joints import share
-from solver.physics.elasticity import stretches
+from solver.physics.elasticity import is_viscous, stretches
 from solver.physics.ends import LOAD, RATE, RATE_LAB
 
 
@@ -131,6 +132,15 @@ def _open_end(driven: Driven, tangents: Tangents, a: int, lower: Array, D: Array
                     D[3 + k, 3 + m] -= weight * here[2, n, m]
 
 
+@inner
+def _resist(tangents: Tangents, eigenvalue: complex, a: int, k: int, lower: Array, D: Array, upper: Array) -> None:
+    """Add what viscosity does to a component of rotation in the blocks of row a."""
+    for m in range(3):
+        D[k, m] += tangents.stiff_t[a, k, m] * eigenvalue
+        lower[k, m] += tangents.before_t[a, k, m] * eigenvalue
+        upper[k, m] += tangents.behind_t[a, k, m] * eigenvalue
+
+
 @kernel
 def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factors, a: int,
           lower: Array, D: Array, upper: Array) -> None:  # fmt: skip
@@ -158,6 +168,9 @@ def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factor
         D[2, 3 + k], lower[2, 3 + k] = 0.0, 0.0
         upper[3 + k, 0] += half * ahead[k, 1]
         upper[3 + k, 1] -= half * ahead[k, 0]
+    if is_viscous(chain.elastic):
+        for k in range(3):
+            _resist(tangents, eigenvalue, a, k, lower, D, upper)
     if stretches(chain.elastic):
         _open(tangents, a, lower, D, upper)
 
@@ -181,6 +194,8 @@ def _fill_end(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: comp
                 D[k, m] = tangents.stiff[a, k, m]
                 lower[k, m] = tangents.before[a, k, m]
                 upper[k, m] = tangents.behind[a, k, m]
+        if is_viscous(chain.elastic) and not held:
+            _resist(tangents, eigenvalue, a, k, lower, D, upper)
         if a == N:
             D[k, k] += chain.h * chain.inertia[a - 1, k] * eigenvalue * eigenvalue
             x, y = half * tangents.R[a, k, 0], half * tangents.R[a, k, 1]

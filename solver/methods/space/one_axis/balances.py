@@ -18,7 +18,7 @@ from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages
 from solver.methods.space.one_axis.motion import bend_joints
 from solver.methods.space.segments.chain import STAGES
-from solver.physics.elasticity import tangent
+from solver.physics.elasticity import is_viscous, tangent, viscosity
 from solver.physics.ends import LOAD, RATE, RATE_LAB, Kinds
 from solver.physics.loads.load import Point, add_forces, add_tangents, point, take_force, take_tangents
 from solver.physics.loads.load import Tangents as LoadTangent
@@ -48,7 +48,8 @@ class Tangents(NamedTuple):
 
     Segments: translation's `M` by acceleration, `C` by velocity and `K` by place (N, 2, 2), and `E` (N,) by rotation
     (with the sign of a load); rotation's `spin` by the rate of rotation. Orientations (N + 2,): rotation's `stiff` by
-    their own rotation, and `T`. Joints (N + 1,): `spring`, dq by their rotation. Ends (2, 2): `turn`, what a rotation
+    their own rotation, and `T`. Joints (N + 1,): `spring`, dq by their rotation; `spring_t` by its rate, 0 without
+    viscosity. Ends (2, 2): `turn`, what a rotation
     of the end's frame does to the conditions on its translation.
     """
 
@@ -60,6 +61,7 @@ class Tangents(NamedTuple):
     stiff: Array
     T: Plane
     spring: Array
+    spring_t: Array
     turn: Array
 
     @classmethod
@@ -67,7 +69,8 @@ class Tangents(NamedTuple):
         """Zeros for N = `intervals`."""
         N = intervals
         return cls(np.zeros((N, 2, 2)), np.zeros((N, 2, 2)), np.zeros((N, 2, 2)), np.zeros(N, complex), np.zeros(N),
-                   np.zeros(N + 2), np.zeros(N + 2, complex), np.zeros(N + 1), np.zeros((2, 2)))  # fmt: skip
+                   np.zeros(N + 2), np.zeros(N + 2, complex), np.zeros(N + 1), np.zeros(N + 1),
+                   np.zeros((2, 2)))  # fmt: skip
 
 
 class Motion(NamedTuple):
@@ -182,7 +185,7 @@ def end_velocity(chain: Chain, stages: Stages, i: int, side: int) -> complex:
 def balance(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages, residuals: Residuals, i: int) -> None:
     """Write the residuals of all segments, and what the conditions at the ends miss, at stage i."""
     h, F, q = chain.h, stages.F[i], stages.q[i]
-    bend_joints(chain, stages.phi[i], q)
+    bend_joints(chain, stages.phi[i], stages.omega[i], q)
     for j in range(len(chain.mass)):
         T, P = stages.T[i, j + 1], h * chain.mass[j] * stages.A[i, j] - (F[j + 1] - F[j])
         residuals.translation[i, j, 0], residuals.translation[i, j, 1] = P.real, P.imag
@@ -212,6 +215,7 @@ def tangents_at(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages,
     for j in range(N + 1):
         kappa = (stages.phi[i, j + 1] - stages.phi[i, j]) / chain.span[j]
         tangents.spring[j] = tangent(chain.elastic, j, kappa) / chain.span[j]
+        tangents.spring_t[j] = viscosity(chain.elastic, j) / chain.span[j] if is_viscous(chain.elastic) else 0.0
         tangents.stiff[j] += tangents.spring[j]
         tangents.stiff[j + 1] += tangents.spring[j]
     for j in range(N):

@@ -12,7 +12,7 @@ from solver.measures.energies import Energies
 from solver.methods.space.one_axis.balances import Motion, along, end_velocity, motion_at
 from solver.methods.space.one_axis.chain import Chain
 from solver.methods.space.segments.chain import STAGES
-from solver.physics.elasticity import strain_energy
+from solver.physics.elasticity import is_viscous, strain_energy, viscosity
 from solver.physics.loads.load import add_energies, add_powers
 
 
@@ -58,3 +58,7 @@ def stage_powers(reference: Reference, out: Array) -> None:
         work -= along(stages.F[i, 0], end_velocity(chain, stages, i, 0)) + stages.q[i, 0] * stages.omega[i, 0]
         add_powers(loads, i, motion_at(chain, stages, i), by_loads)
         out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads[0], chain.h * by_loads[1]
+        if is_viscous(chain.elastic):
+            for j in range(N + 1):
+                rate = stages.omega[i, j + 1] - stages.omega[i, j]
+                out[i, 2] += viscosity(chain.elastic, j) * rate * rate / chain.span[j]

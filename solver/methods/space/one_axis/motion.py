@@ -15,7 +15,7 @@ from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Stages, State
 from solver.methods.space.segments.chain import STAGES
 from solver.methods.space.segments.motion import differentiate
-from solver.physics.elasticity import moment
+from solver.physics.elasticity import is_viscous, moment, viscosity
 
 
 @kernel
@@ -79,7 +79,9 @@ def largest_turn(phi: Array) -> float:
 
 
 @kernel
-def bend_joints(chain: Chain, phi: Array, q: Array) -> None:
-    """Write the moments q of all joints (N + 1,) for angles phi (N + 2,)."""
+def bend_joints(chain: Chain, phi: Array, omega: Array, q: Array) -> None:
+    """Write the moments q of all joints (N + 1,) for angles phi (N + 2,) and their rates omega."""
     for i in range(len(q)):
         q[i] = moment(chain.elastic, i, (phi[i + 1] - phi[i]) / chain.span[i])
+        if is_viscous(chain.elastic):
+            q[i] += viscosity(chain.elastic, i) * (omega[i + 1] - omega[i]) / chain.span[i]

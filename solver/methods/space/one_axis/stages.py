@@ -33,7 +33,7 @@ def begin_step(state: State, nodes: Array, dt: float, stages: Stages) -> None:
 def join_stages(chain: Chain, stages: Stages) -> None:
     """Write the moments of the joints at all stages, whose motion is known."""
     for i in range(STAGES):
-        bend_joints(chain, stages.phi[i], stages.q[i])
+        bend_joints(chain, stages.phi[i], stages.omega[i], stages.q[i])
 
 
 @kernel

@@ -25,7 +25,8 @@ from solver.kernels.vectors import add_matrix, add_vector, matrix, tangent_by_ro
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.methods.space.segments.joints import joint_tangents, share
 from solver.methods.space.segments.opening import opening_tangents
-from solver.physics.elasticity import stretches
+from solver.methods.space.segments.viscosity import rate_tangents
+from solver.physics.elasticity import is_viscous, stretches
 from solver.physics.ends import LOAD, LOAD_LAB, RATE, RATE_LAB, Kinds
 from solver.physics.loads.load import Point, add_forces, add_tangents, point, take_force, take_tangents
 from solver.physics.loads.load import Tangents as LoadTangent
@@ -54,7 +55,8 @@ class Tangents(NamedTuple):
 
     Segments (N, 3, 3): translation's `M` by acceleration, `C` by velocity, `K` by place, `E` by rotation (with the sign
     of a load); rotation's `spin` by the rate of rotation. Orientations (N + 2, 3, 3): rotation's `stiff`, `before`,
-    `behind` by the rotation of the orientation itself, the one before and the one behind; `R` the rotations. `ahead`,
+    `behind` by the rotation of the orientation itself, the one before and the one behind, and `stiff_t`, `before_t`,
+    `behind_t` by their rates, as the rod's viscosity has them; `R` the rotations. `ahead`,
     `back` (N + 1, 2, 3, 3) of the joints, and `opens` (N + 1, 3, 3, 3), what e t is by a rotation of the orientation
     before and of the one behind, and by F; their transposes, with minus, are what F does to these orientations.
     Ends (2, 3, 3): `turn`, what a rotation of the end's frame does to the condition on its translation.
@@ -69,6 +71,9 @@ class Tangents(NamedTuple):
     stiff: Array
     before: Array
     behind: Array
+    stiff_t: Array
+    before_t: Array
+    behind_t: Array
     R: Array
     ahead: Array
     back: Array
@@ -81,7 +86,7 @@ class Tangents(NamedTuple):
         """Zeros for N = `intervals`."""
         N = intervals
         segments, orientations, joints = (N, 3, 3), (N + 2, 3, 3), (N + 1, 2, 3, 3)
-        shapes = [segments] * 5 + [orientations] * 4 + [joints] * 2 + [(N + 1, 3, 3, 3), (2, 3, 3), (STAGES, N + 2, 2)]
+        shapes = [segments] * 5 + [orientations] * 7 + [joints] * 2 + [(N + 1, 3, 3, 3), (2, 3, 3), (STAGES, N + 2, 2)]
         return cls(*(np.zeros(shape) for shape in shapes))
 
 
@@ -289,6 +294,8 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     tangents.E[:] = 0.0
     add_tangents(loads, i, motion_at(stages, i), LoadTangents(tangents, h))
     _end_tangents(chain, driven, stages, i, tangents, swing)
+    if is_viscous(chain.elastic):
+        rate_tangents(chain, stages.bend[i], tangents.stiff_t, tangents.before_t, tangents.behind_t)
     if stretches(chain.elastic):
         opening_tangents(chain, stages, i, tangents.stiff, tangents.before, tangents.behind, tangents.opens)
 

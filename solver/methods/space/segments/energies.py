@@ -13,7 +13,8 @@ from solver.measures.energies import Energies
 from solver.methods.space.segments.balances import Motion, motion_at
 from solver.methods.space.segments.chain import STAGES, Chain
 from solver.methods.space.segments.opening import tension
-from solver.physics.elasticity import strain_energy, stretch_energy, stretches
+from solver.methods.space.segments.viscosity import dissipated
+from solver.physics.elasticity import is_viscous, strain_energy, stretch_energy, stretches
 from solver.physics.loads.load import add_energies, add_powers
 from solver.physics.loads.registry import Loads
 
@@ -67,6 +68,8 @@ def stage_powers(reference: Reference, ends: Array, out: Array) -> None:
             work += stages.right[i, N, k] * stages.omega[i, N + 1, k] - stages.left[i, 0, k] * stages.omega[i, 0, k]
         add_powers(loads, i, motion_at(stages, i), by_loads)
         out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads[0], chain.h * by_loads[1]
+        if is_viscous(chain.elastic):
+            out[i, 2] += dissipated(chain, stages.omega[i], stages.bend[i])
 
 
 @kernel

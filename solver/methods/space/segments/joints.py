@@ -133,6 +133,15 @@ def largest_turn(before: Array, after: Array) -> float:
 
 
 @inner
+def directions_on(theta: Any) -> Any:
+    """B and B^t."""
+    x, x_t = on_neighbours(theta, (1.0, 0.0, 0.0))
+    y, y_t = on_neighbours(theta, (0.0, 1.0, 0.0))
+    z, z_t = on_neighbours(theta, (0.0, 0.0, 1.0))
+    return (x_t, y_t, z_t), (x, y, z)  # the columns of B are the rows of B^t
+
+
+@inner
 def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back: Array) -> None:
     """Write B and the tangents of B q and B^t q by Theta.
 

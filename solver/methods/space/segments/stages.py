@@ -12,8 +12,9 @@ from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.methods.space.segments.joints import bend_joints
 from solver.methods.space.segments.motion import spin_steadily
 from solver.methods.space.segments.opening import add_levers, pull_joints
+from solver.methods.space.segments.viscosity import resist_rates
 from solver.physics.contact.forces import touching
-from solver.physics.elasticity import stretches
+from solver.physics.elasticity import is_viscous, stretches
 from solver.physics.ends import LOAD, RATE
 from solver.physics.loads.registry import Loads
 
@@ -29,6 +30,9 @@ def join_stages(chain: Chain, stages: Stages) -> None:
         for i in range(STAGES):
             pull_joints(chain, stages.R[i], stages.F[i], stages.bend[i], stages.moment[i], stages.left[i],
                         stages.right[i])  # fmt: skip
+    if is_viscous(chain.elastic):
+        for i in range(STAGES):
+            resist_rates(chain, stages.omega[i], stages.bend[i], stages.moment[i], stages.left[i], stages.right[i])
 
 
 @kernel

@@ -107,15 +107,15 @@ class OneAxisMethod(RadauMethod):
         r, V = centres[0] + 0.5 * h * T, centres[1] + swing
         return np.append(state.base[0], r), np.append(state.base[1], V)
 
-    def _pass(self, part: float, cubic: Array, parabola: Array) -> None:
-        before, stages, then = self.trial, self.stages, self._then
+    def _interpolate(self, part: float, cubic: Array, parabola: Array) -> None:
+        before, stages, then = self.trial, self.stages, self._within
         then.phi[:] = before.phi + part * self._step * before.omega + cubic @ stages.theta
         then.omega[:] = before.omega + cubic @ stages.theta_t
         then.base[0] = before.base[0] + cubic @ stages.shift
         then.base[1] = before.base[1] + cubic @ (stages.base[:, 1] - before.base[1])
         then.F[:] = parabola @ stages.F
         T = directions(self.chain.swing * then.phi)
-        follow_segments(self.chain, T, then.omega, then.alpha, then.base, *self._centres_then)
+        follow_segments(self.chain, T, then.omega, then.alpha, then.base, *self._centres_within)
 
     def _twisted(self, weights: Array) -> tuple[float, float]:
         start, end = (float(self._axis.about(weights @ self.stages.omega[:, frame])[2]) for frame in (0, -1))
@@ -132,7 +132,7 @@ class OneAxisMethod(RadauMethod):
                 shift = axis.in_material(weights @ (V / stages.T[:, frame]))
             end.follow(shift, axis.about(weights @ stages.omega[:, frame]))
 
-    def _go_on(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
+    def _extrapolate(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
         departed = np.matmul(weights, theta, out=self.stages.theta_t)  # which is not known yet
         extrapolate(self.trial, self.state, self._last_dt, tableau.C, dt, departed, self.stages.theta)
 

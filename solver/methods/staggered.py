@@ -24,7 +24,7 @@ from solver.methods.space.segments.chain import Chain, Residuals, Stages, State
 from solver.methods.space.segments.energies import energies, stage_powers, twist
 from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
-from solver.methods.space.segments.motion import Passing, extrapolate, follow_segments, look_back
+from solver.methods.space.segments.motion import Interpolation, extrapolate, follow_segments, look_back
 from solver.methods.space.segments.opening import measure_openings, pull_joints, shift_segments
 from solver.methods.space.segments.viscosity import resistance_at_nodes
 from solver.methods.status import CONVERGED
@@ -84,8 +84,8 @@ class StaggeredMethod(RadauMethod):
         shift_segments(R, self.state.omega, self.state.alpha, self.state.opening, *self._centres)
         self._nodes, self._strain = np.zeros((2, N + 1, 3)), np.zeros(len(chain.elastic.compliance))
         self._place_nodes()
-        self._passing, self._R_then = Passing.empty(N), np.zeros_like(R)
-        self._joints_then, self._nodes_then = np.zeros((N + 1, 3)), np.zeros((2, N + 1, 3))
+        self._interpolation, self._R_within = Interpolation.empty(N), np.zeros_like(R)
+        self._joints_within, self._nodes_within = np.zeros((N + 1, 3)), np.zeros((2, N + 1, 3))
 
     @classmethod
     def of(cls, scene: Scene) -> StaggeredMethod:
@@ -227,18 +227,18 @@ class StaggeredMethod(RadauMethod):
         """R (N + 2, 3, 3), the joints' rotation vectors (N + 1, 3), and the nodes' places and velocities (2, N + 1, 3)
         that are shown."""
         if self._ago > 0.0:
-            return self._R_then, self._joints_then, self._nodes_then
+            return self._R_within, self._joints_within, self._nodes_within
         return self._R, self._joints, self._nodes
 
-    def _pass(self, part: float, cubic: Array, parabola: Array) -> None:
-        before, R, then, centres = self.trial, self._R_then, self._then, self._centres_then
-        look_back(self.chain, before, self.stages, part, self._step, cubic, parabola, self._passing, then, R,
+    def _interpolate(self, part: float, cubic: Array, parabola: Array) -> None:
+        before, R, then, centres = self.trial, self._R_within, self._within, self._centres_within
+        look_back(self.chain, before, self.stages, part, self._step, cubic, parabola, self._interpolation, then, R,
                   centres)  # fmt: skip
         if len(self._strain):
             then.opening[:] = before.opening + np.tensordot(cubic, self.stages.opening - before.opening, 1)
             shift_segments(R, then.omega, then.alpha, then.opening, *centres)
-        self._joints_then[:] = self._bend(then.quaternion)[0]
-        place_nodes(self.chain, R, then.omega, then.base, then.opening, centres[0], centres[1], *self._nodes_then)
+        self._joints_within[:] = self._bend(then.quaternion)[0]
+        place_nodes(self.chain, R, then.omega, then.base, then.opening, centres[0], centres[1], *self._nodes_within)
 
     def _twisted(self, weights: Array) -> tuple[float, float]:
         start, end = weights @ self.stages.omega[:, [0, -1], 2]
@@ -306,7 +306,7 @@ class StaggeredMethod(RadauMethod):
         if self.contact.touching and not self._guess_keeps_apart(dt):
             self._guess_standstill(dt)
 
-    def _go_on(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
+    def _extrapolate(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
         extrapolate(self.trial, theta, self._last_dt, self.state, tableau.C, weights, ratio, self.stages.theta)
 
     def _guess_keeps_apart(self, dt: float) -> bool:

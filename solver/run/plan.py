@@ -57,7 +57,7 @@ DEAR, FAR_OFF = 2.5, 10.0
 has the longer ones."""
 CHEAP = 0.1
 """Part of MOST_WORK that an attempt may always take."""
-HOPELESS = {"kappa": 4.0}
+WORTH = {"kappa": 4.0}
 """How many times MOST_WORK all that a quantity needs may be, as its error last fell, for it to be refined; the others
 are refined as long as their errors fall."""
 LEAST_FALL = 1.3
@@ -66,12 +66,12 @@ LEAST_FALL = 1.3
 
 class Excess(NamedTuple):
     """The errors of a quantity in what there is, over the tolerance, infinite where nothing tells them: by the `mesh`
-    and by the `steps`; their sum `before` the last attempt; and see HOPELESS."""
+    and by the `steps`; their sum `before` the last attempt; and see WORTH."""
 
     mesh: float = inf
     steps: float = inf
     before: float = inf
-    hopeless: float = inf
+    worth: float = inf
 
     @property
     def total(self) -> float:
@@ -148,7 +148,7 @@ def _growth(complete: Sequence[Attempt], by: Trial) -> float | None:
     return None
 
 
-def following(history: Sequence[Attempt], errors: Sequence[Excess], first_mesh: int,
+def next_trial(history: Sequence[Attempt], errors: Sequence[Excess], first_mesh: int,
               most_intervals: int) -> Trial | None:  # fmt: skip
     """What to try next; None if what there is must be, or is, enough. Nothing is tried twice.
 
@@ -156,13 +156,13 @@ def following(history: Sequence[Attempt], errors: Sequence[Excess], first_mesh: 
     if not history:
         return Trial(first_mesh, 0)
     tried = {(attempt.mesh, attempt.steps) for attempt in history}
-    for trial in _wishes(history, errors, most_intervals):
+    for trial in _candidates(history, errors, most_intervals):
         if trial is None or trial not in tried:
             return trial
     return None
 
 
-def _wishes(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals: int) -> Iterator[Trial | None]:
+def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals: int) -> Iterator[Trial | None]:
     """What might come next, what is wanted most first."""
     complete = [attempt for attempt in history if attempt.complete]
     if not complete:
@@ -227,7 +227,7 @@ def _steps_are_dear(complete: Sequence[Attempt], errors: Sequence[Excess]) -> bo
     """Whether shorter steps took several times the work, as where they follow waves, and more of them would be wanted
     for what is not soon given up."""
     growth = _growth(complete, Trial(0, 1)) or 1.0
-    return growth >= DEAR and any(excess.steps > FAR_OFF for excess in errors if excess.hopeless == inf)
+    return growth >= DEAR and any(excess.steps > FAR_OFF for excess in errors if excess.worth == inf)
 
 
 def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Trial]:
@@ -269,7 +269,7 @@ def _may_do(history: Sequence[Attempt], excess: Excess, trial: Trial, most_inter
     if expected(complete, trial) <= CHEAP * MOST_WORK:
         return True
     fall = excess.before / excess.total
-    return fall >= LEAST_FALL and _work(history) + _all_of(complete, excess, trial) <= excess.hopeless * MOST_WORK
+    return fall >= LEAST_FALL and _work(history) + _all_of(complete, excess, trial) <= excess.worth * MOST_WORK
 
 
 def _all_of(complete: Sequence[Attempt], excess: Excess, trial: Trial) -> float:

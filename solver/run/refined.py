@@ -23,8 +23,8 @@ from solver.run.plan import (
     Excess,
     Trial,
     allowance,
-    following,
     longest_step,
+    next_trial,
     step_tolerance,
     strides_of,
     to_come,
@@ -165,7 +165,7 @@ class Refined(Run):
 
     def _first_frame(self) -> Frame | None:
         if not self._decided:
-            self._go_on()
+            self._advance_attempt()
         return self._next_frame(0.0) if self._decided else None
 
     def _next_frame(self, output: float) -> Frame | None:
@@ -178,7 +178,7 @@ class Refined(Run):
         self.t = frame.t
         return frame
 
-    def _go_on(self) -> None:
+    def _advance_attempt(self) -> None:
         """Take a step of the attempt under way; where it ends, decide what follows."""
         try:
             frame = self._under_way.advance()
@@ -221,7 +221,7 @@ class Refined(Run):
             self._excesses = [tuple(excess) for excess in self._together.excesses(self._errors)]
             apart = max(excess.mesh for excess in self._errors) * (self._scene.numerics.tolerance or 1.0)
             self._history[-1] = tuple(self._attempts[-1]._replace(apart=apart))
-        then = following(self._attempts, self._errors, self._attempts[0].mesh, self._most)
+        then = next_trial(self._attempts, self._errors, self._attempts[0].mesh, self._most)
         if then is None:
             self._decided, self.errors_of_frames = True, self._together.errors()
             self.remarks = Remarks(*self._noticed[chosen(self._attempts).finest])  # type: ignore[arg-type]

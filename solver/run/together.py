@@ -12,7 +12,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.run.accuracy import QUANTITIES, errors_of, excess, sizes
 from solver.run.first_mesh import first_intervals
-from solver.run.plan import FAR_FROM_IT, HOPELESS, Excess, intervals_of, step_tolerance
+from solver.run.plan import FAR_FROM_IT, WORTH, Excess, intervals_of, step_tolerance
 from solver.run.recording import (
     BALANCE,
     CURVATURE,
@@ -140,11 +140,11 @@ class Together:
         if self._diagonal:
             of_steps = np.minimum(of_steps, 0.5 * of_mesh)
             of_mesh = of_mesh - of_steps
-        hopeless = [HOPELESS.get(name, np.inf) for name in QUANTITIES]
+        worth = [WORTH.get(name, np.inf) for name in QUANTITIES]
         # how an error falls says nothing as long as the meshes do not show the motion
         totals = [np.inf if most == np.inf and target * previous.mesh > FAR_FROM_IT else previous.total
-                  for previous, most in zip(before, hopeless, strict=True)]  # fmt: skip
-        return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, hopeless, strict=True)]
+                  for previous, most in zip(before, worth, strict=True)]  # fmt: skip
+        return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, worth, strict=True)]
 
     @cached_property
     def _unseen(self) -> dict[str, Array | float]:

@@ -159,7 +159,7 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
     return float(np.sqrt(largest))
 
 
-class Passing(NamedTuple):
+class Interpolation(NamedTuple):
     """What a state within a step is made from, of all orientations (N + 2, ...): see `Stages`."""
 
     theta: Array
@@ -169,7 +169,7 @@ class Passing(NamedTuple):
     S: Array
 
     @classmethod
-    def empty(cls, intervals: int) -> Passing:
+    def empty(cls, intervals: int) -> Interpolation:
         """Zeros for N = `intervals`."""
         n = intervals + 2
         return cls(*(np.zeros((n, *shape)) for shape in ((3,), (3,), (3,), (4,), (3, 3))))
@@ -177,7 +177,7 @@ class Passing(NamedTuple):
 
 @kernel
 def look_back(chain: Chain, before: State, stages: Stages, part: float, dt: float, cubic: Array, parabola: Array,
-              passing: Passing, then: State, R: Array, centres: Array) -> None:  # fmt: skip
+              within: Interpolation, then: State, R: Array, centres: Array) -> None:  # fmt: skip
     """Write state, R (N + 2, 3, 3) and centres (3, N, 3) after a part of the step of dt that began with `before`.
 
     `cubic` and `parabola` (3,): see `tableau.within`. Accelerations are not known there, and 0.
@@ -185,11 +185,11 @@ def look_back(chain: Chain, before: State, stages: Stages, part: float, dt: floa
     a, b, c = cubic[0], cubic[1], cubic[2]
     for i in range(len(then.omega)):
         for k in range(3):
-            passing.theta[i, k] = a * stages.theta[0, i, k] + b * stages.theta[1, i, k] + c * stages.theta[2, i, k]
-            passing.theta_t[i, k] = (a * stages.theta_t[0, i, k] + b * stages.theta_t[1, i, k]
+            within.theta[i, k] = a * stages.theta[0, i, k] + b * stages.theta[1, i, k] + c * stages.theta[2, i, k]
+            within.theta_t[i, k] = (a * stages.theta_t[0, i, k] + b * stages.theta_t[1, i, k]
                                      + c * stages.theta_t[2, i, k])  # fmt: skip
-    _spin(before.omega, part, dt, passing.steady, passing.S)
-    _turn(passing.theta, passing.theta_t, passing.theta_tt, before.omega, before.quaternion, passing.steady, passing.S,
+    _spin(before.omega, part, dt, within.steady, within.S)
+    _turn(within.theta, within.theta_t, within.theta_tt, before.omega, before.quaternion, within.steady, within.S,
           then.quaternion, R, then.omega, then.alpha)  # fmt: skip
     then.alpha[:] = 0.0
     for k in range(3):

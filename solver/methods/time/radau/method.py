@@ -110,7 +110,7 @@ class RadauMethod(ABC):
             return NOTHING_AHEAD
         part = 1.0 - ago / self._step
         cubic, parabola, gained = tableau.within(part)
-        self._pass(part, cubic, parabola)
+        self._interpolate(part, cubic, parabola)
         weights = self._step * gained
         return Ahead(self._flowed(weights), self._twisted(weights))
 
@@ -146,7 +146,7 @@ class RadauMethod(ABC):
         """Write what is given at an end at the stages: `values` (3, 6) of its conditions, `dead` lab loads (3, 6)."""
 
     @abstractmethod
-    def _go_on(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
+    def _extrapolate(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
         """Guess theta of the stages of a step of dt, `ratio` as long as the last one, whose `theta` goes on."""
 
     @abstractmethod
@@ -155,9 +155,9 @@ class RadauMethod(ABC):
         at the stages into `_powers`."""
 
     @abstractmethod
-    def _pass(self, part: float, cubic: Array, parabola: Array) -> None:
-        """Write what the rod was like after a part of the last step into `_then`, by the weights (3,) of the stages: of
-        what begins with the step, and of forces, which may jump there."""
+    def _interpolate(self, part: float, cubic: Array, parabola: Array) -> None:
+        """Write what the rod was like after a part of the last step into `_within`, by the weights (3,) of the stages:
+        of what begins with the step, and of forces, which may jump there."""
 
     @abstractmethod
     def _twisted(self, weights: Array) -> tuple[float, float]:
@@ -166,7 +166,7 @@ class RadauMethod(ABC):
     @property
     def _shown(self) -> tuple[Record, NDArray[Any]]:
         """The state that is shown, and the places, velocities and accelerations of its segments' centres."""
-        return (self._then, self._centres_then) if self._ago > 0.0 else (self.state, self._centres)
+        return (self._within, self._centres_within) if self._ago > 0.0 else (self.state, self._centres)
 
     def _flowed(self, weights: Array) -> Array:
         """The energy (4,) that flowed in a step."""
@@ -204,7 +204,7 @@ class RadauMethod(ABC):
         self._last: tuple[Array, ...] = tuple(np.zeros_like(series) for series in unknown)
         self._centres: NDArray[Any] = np.zeros_like(self.stages.r)
         """Positions, velocities and accelerations of the segments' centres, of the state."""
-        self._then, self._centres_then = type(state).empty(N), np.zeros_like(self._centres)
+        self._within, self._centres_within = type(state).empty(N), np.zeros_like(self._centres)
         """The same within the last step, where somebody looks back."""
 
     def _drive(self, t: float, dt: float) -> None:
@@ -222,7 +222,7 @@ class RadauMethod(ABC):
             ratio = dt / self._last_dt
             weights = tableau.extrapolation(ratio)
             theta, shift, force = self._last
-            self._go_on(dt, ratio, weights, theta)
+            self._extrapolate(dt, ratio, weights, theta)
             stages.shift[:] = weights @ shift - shift[-1]
             by_stage = STAGES, -1
             np.matmul(tableau.quadratic_extrapolation(ratio), force.reshape(by_stage), out=stages.F.reshape(by_stage))

@@ -29,6 +29,11 @@ from solver.measures.spherical import angle, half_area
 
 FLAT = 1e-10
 """Part of its size by which a curve may leave a plane and is taken to lie in it."""
+MEET, ALIGNED = 0.02, 0.1
+"""Part of the segments beside them within which a curve's ends meet, and the angle (rad) of their tangents within which
+it is taken to go on there: a mesh closes no ring better, and the tangents of one that is given by points differ."""
+OPEN, KINKED, CLOSED = 0, 1, 2
+"""Kinds of a curve: with ends apart, with ends that meet at an angle, closed."""
 SMALL_TANGENT = 0.1
 """Below it eight terms of the arctangent's series are exact to rounding: 0.1^16 / 17 = 6e-18."""
 
@@ -39,31 +44,36 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
     `r` (n >= 2, 3): the vertices, lab frame, m. The rays leave r[0] along -`start_tangent` and r[-1]
     along `end_tangent` (3,), of any length > 0. Right-handed crossings count positive. Where two
     parts of the curve touch exactly the writhe jumps by 2; of a curve in a plane, where parts of it and
-    rays may cross, the value is that in the middle of the jumps, 0.
+    rays may cross, the value is that in the middle of the jumps, 0. A curve that is smoothly closed, as a ring is, has
+    no rays: they would lie on each other and on the curve.
 
     Raises ValueError for another shape or a zero tangent; NaN in gives NaN out.
     """
     first, last = _unit(start_tangent), _unit(end_tangent)
     vertices = _columns(r, 2)
-    if is_plane(np.ascontiguousarray(vertices.T), np.array([first, last])):
+    r, tangents = np.ascontiguousarray(vertices.T), np.array([first, last])
+    if is_plane(r, tangents):
         return 0.0
+    if kind_of(r, tangents) != OPEN:
+        return -(_segment_pairs(vertices, True) + _rays(r, tangents)) / pi
     columns, quarter = shorten(vertices, first, last)
-    quarter += _segment_pairs(columns, False) + _rays(np.ascontiguousarray(columns.T), first, last)
+    quarter += _segment_pairs(columns, False) + _rays(np.ascontiguousarray(columns.T), tangents)
     return -quarter / pi
 
 
 def writhe_shares(r: Array, start_tangent: Array, end_tangent: Array) -> tuple[float, float]:
     """The parts of `writhe` (turns) that the pairs of segments have in it, and those with a ray."""
-    if is_plane(r, np.array([start_tangent, end_tangent])):
+    tangents = np.array([start_tangent, end_tangent])
+    if is_plane(r, tangents):
         return 0.0, 0.0
-    return -_segment_pairs(_columns(r, 2), False) / pi, share_of_rays(r, start_tangent, end_tangent)
+    closed = kind_of(r, tangents) != OPEN
+    return -_segment_pairs(_columns(r, 2), closed) / pi, share_of_rays(r, start_tangent, end_tangent)
 
 
 def share_of_rays(r: Array, start_tangent: Array, end_tangent: Array) -> float:
     """The part of `writhe` (turns) that the pairs with a ray have in it."""
-    if is_plane(r, np.array([start_tangent, end_tangent])):
-        return 0.0
-    return -float(_rays(r, _unit(start_tangent), _unit(end_tangent))) / pi
+    tangents = np.array([_unit(start_tangent), _unit(end_tangent)])
+    return 0.0 if is_plane(r, tangents) else -float(_rays(r, tangents)) / pi
 
 
 @kernel
@@ -90,6 +100,15 @@ def is_plane(r: Array, tangents: Array) -> bool:
     for i in range(n + 2):
         farthest = max(farthest, abs(dot(normal, _beside(r, tangents, size, i))))
     return bool(farthest <= FLAT * size * length and not isnan(total))
+
+
+@kernel
+def kind_of(r: Array, tangents: Array) -> int:
+    """Whether a polygon `r` (n, 3) with the unit `tangents` (2, 3) at its ends is OPEN, KINKED or CLOSED."""
+    beside = norm(minus(vector(r, 1), vector(r, 0))) + norm(minus(vector(r, -1), vector(r, -2)))
+    if len(r) < 4 or not norm(minus(vector(r, -1), vector(r, 0))) <= 0.5 * MEET * beside:
+        return OPEN
+    return CLOSED if norm(minus(vector(tangents, 1), vector(tangents, 0))) <= ALIGNED else KINKED
 
 
 @inner
@@ -129,25 +148,32 @@ def _unit(direction: ArrayLike) -> Vector:
 
 
 @kernel
-def _rays(r: Array, first: Vector, last: Vector) -> float:
-    """Half the signed area of all pairs with a ray of the polygon `r` (n, 3): with the one that arrives along `first`,
-    with the one that leaves along `last`, and of these two."""
-    from_start = minus((0.0, 0.0, 0.0), first)
+def _rays(r: Array, tangents: Array) -> float:
+    """Half the signed area of all pairs with a ray of the polygon `r` (n, 3): with the one that arrives along the first
+    of the unit `tangents` (2, 3), with the one that leaves along the last, and of these two. Where ends meet the rays
+    touch each other; of a closed curve they shrink to a point, through which it goes along its tangent: what is left is
+    the pair of the segments that meet there."""
+    kind, first, last = kind_of(r, tangents), vector(tangents, 0), vector(tangents, 1)
+    if kind == CLOSED:
+        ahead = minus(vector(r, 1), vector(r, 0))
+        return -half_area(minus(vector(r, -1), vector(r, -2)), last, ahead) - half_area(last, first, ahead)
     across = minus(vector(r, -1), vector(r, 0))
-    return _ray(r, vector(r, -1), last) - _ray(r, vector(r, 0), from_start) - half_area(across, last, first)
+    apart = 0.0 if kind == OPEN else 2.0 * norm(across)
+    total = _ray(r, vector(r, -1), last, apart) - _ray(r, vector(r, 0), minus((0.0, 0.0, 0.0), first), apart)
+    return total - half_area(across, last, first) if kind == OPEN else total
 
 
 @inner
-def _ray(r: Array, start: Vector, along: Vector) -> float:
+def _ray(r: Array, start: Vector, along: Vector, apart: float) -> float:
     """Half the signed area of all segments of `r` (n, 3) with the ray from one of its ends.
 
-    The quadrilateral's two corners at infinity are one, so it is a triangle. The segment that
-    touches the ray lies in a plane with it and adds nothing.
+    The quadrilateral's two corners at infinity are one, so it is a triangle. A segment that touches the ray, less than
+    `apart` from its start, lies in a plane with it and adds nothing.
     """
     total = 0.0
     for i in range(len(r) - 1):
         a, d = minus(start, vector(r, i)), minus(start, vector(r, i + 1))
-        if norm(a) > 0.0 and norm(d) > 0.0:
+        if norm(a) > apart and norm(d) > apart:
             total += half_area(a, along, d)
     return total
 

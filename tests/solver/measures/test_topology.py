@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from solver.measures.topology import writhe, writhe_closed
+from solver.measures.topology import share_of_rays, writhe, writhe_closed
 from solver.run.linking import LinkingNumber
 
 Array = NDArray[np.float64]
@@ -199,3 +199,34 @@ def test_where_a_rod_leaves_a_plane_whose_rays_cross_tw_and_wr_remain_lk():
     assert linking.of(np.pi, 1.0, 0.0) == 1.0
     assert linking.of(np.pi, 1.01, -1.01) == 0.0
     assert linking.of(2 * np.pi, 1.5, -1.0) == 0.5
+
+
+def ring(points: int, lifted: float = 0.0, kink: float = 0.0) -> tuple[Array, Array, Array]:
+    """A ring whose ends meet, and the tangents there; `lifted` out of its plane, and opened by an angle at its ends."""
+    angle = np.linspace(kink, 2.0 * np.pi - kink, points)
+    height = lifted * (np.sin(2.0 * angle) + 0.5 * np.sin(3.0 * angle))
+    r = np.column_stack([np.cos(angle), np.sin(angle), height])
+    r -= np.outer(np.linspace(0.0, 1.0, points), r[-1] - r[0])
+    tangent = np.array([0.0, np.cos(kink), 3.5 * lifted + kink])
+    return r, tangent, tangent * [1.0, 1.0, 1.0 if kink == 0.0 else -1.0]
+
+
+@pytest.mark.parametrize("points", [17, 65, 257])
+def test_a_ring_has_the_writhe_of_the_closed_curve_however_its_ends_are_rounded(points: int) -> None:
+    """Its rays lay on each other and on it, and rounding made them cross it from one step to the next."""
+    r, first, last = ring(points, 0.3)
+    along = 1e-7 * first  # through the joint it goes along its tangent
+    expected = writhe_closed(np.vstack([r[0] + along, r[1:-1], r[0] - along]))
+    assert abs(expected) > 0.003
+    random = np.random.default_rng(points)
+    for size in (0.0, 1e-17, 1e-13, 1e-10):
+        moved = r + size * random.normal(size=r.shape)
+        assert writhe(moved, first, last) == pytest.approx(expected, abs=1e-6)
+        assert abs(share_of_rays(moved, first / np.linalg.norm(first), last / np.linalg.norm(last))) < 0.02
+
+
+def test_rays_of_ends_that_meet_at_an_angle_touch_and_do_not_cross() -> None:
+    r, first, last = ring(65, 0.3, 0.2)
+    values = [writhe(r + size * np.random.default_rng(1).normal(size=r.shape), first, last)
+              for size in (0.0, 1e-17, 1e-13, 1e-10)]  # fmt: skip
+    assert values == pytest.approx([values[0]] * 4, abs=1e-8)

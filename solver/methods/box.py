@@ -174,6 +174,11 @@ class BoxMethod:
         """Its steps end at every frame: `Numerics` sees to that."""
         return NOTHING_AHEAD
 
+    @property
+    def orientations(self) -> Array | None:
+        """Of the nodes."""
+        return self.state.quaternion
+
     def fields(self) -> Fields:
         """The state along the rod."""
         Y, quaternion = self.state.Y, self.state.quaternion

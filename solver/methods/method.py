@@ -83,6 +83,11 @@ class Method(Protocol):
         """Show the rod as it was `ago` (s) before the end of the last step, until the next one is tried: as `fields`,
         `energies`, `twist`, `centreline` and `smallest_gap` see it. Say what came afterwards."""
 
+    @property
+    def orientations(self) -> Array | None:
+        """At the end of the last step, quaternions (., 4) of which the first and the last are the ends'; None where the
+        rod stays in a plane or straight."""
+
     def fields(self) -> Fields:
         """The state along the rod."""
 

@@ -67,6 +67,11 @@ class OneAxisMethod(RadauMethod):
         """The largest rotation (rad) of the trial within a joint."""
         return float(largest_turn(self.stages.phi[-1]))
 
+    @property
+    def orientations(self) -> Array | None:
+        """None: see `Method`."""
+        return None
+
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
         axis, (r, V), (state, _) = self._axis, self._nodes(), self._shown

@@ -157,6 +157,11 @@ class StaggeredMethod(RadauMethod):
         by_contact = min(self.contact.step_limit, self._dt_max if self.contact.touching else inf)
         return min(by_contact, self.applied.longest_step(self._nodes[0], self._nodes[1]))
 
+    @property
+    def orientations(self) -> Array | None:
+        """Of the ends and the segments."""
+        return self.state.quaternion
+
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
         (state, _), (R, _, nodes) = self._shown, self._shape

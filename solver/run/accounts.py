@@ -42,12 +42,24 @@ class Accounts:
         self._lost_at_rest = max(MADE_OF_NOTHING, LOST_AT_REST * (1.0 if pulled else min(bent, 1.0)) ** 2) * self._unit
         self._turnover, self._there = 0.0, 0.0
         self._linking = LinkingNumber()
+        self._swings = scene.topology and not (scene.start.holds_tangent() and scene.end.holds_tangent())
+        """Whether the linking number changes by how the ends' tangents move."""
+        self._follow_ends()
 
     def after_step(self, dt: float, iterations: int, flowed: Array) -> None:
         """Enter the step just taken, and the energy (4,) that flowed in it: see `Method.take_step`."""
         self._totals += flowed
         self._settled = False
         self._dt, self._iterations = dt, iterations
+        self._follow_ends()
+
+    def _follow_ends(self) -> None:
+        if self._swings and (orientations := self._method.orientations) is not None:
+            self._linking.follow(self._turned(), orientations)
+
+    def _turned(self) -> float:
+        """By how much the end has turned about its tangent more than the start (rad), as integrated."""
+        return float(self._method.end.travel[ABOUT_A3] - self._method.start.travel[ABOUT_A3])
 
     def frame(self, t: float, ago: float = 0.0) -> Frame:
         """The frame at time t, `ago` (s) before the end of the last step.
@@ -77,7 +89,7 @@ class Accounts:
             **{f"energy_{name}": value for name, value in energy._asdict().items()}, energy_contact=contact,
             work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
             energy_balance=self._balance,
-            Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr, ahead), min_gap=method.smallest_gap(),
+            Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr, ahead, fields.orientation), min_gap=method.smallest_gap(),
             contacts=method.pressing(), dt=self._dt, newton_iterations=self._iterations,
         )  # fmt: skip
 
@@ -104,7 +116,7 @@ class Accounts:
             self._missing += change
         self._t, self._balance = t, balance
 
-    def _linking_number(self, t: float, Tw: float, Wr: float, ahead: Ahead) -> float:
+    def _linking_number(self, t: float, Tw: float, Wr: float, ahead: Ahead, orientation: Array) -> float:
         """NaN where nobody asks."""
         if not self._scene.topology:
             return nan
@@ -112,4 +124,7 @@ class Accounts:
         for end, still in zip((self._method.start, self._method.end), ahead.twisted, strict=True):
             exact = end.prescribed(ABOUT_A3, t)
             turned.append(float(end.travel[ABOUT_A3]) - still if exact is None else exact)
-        return self._linking.of(turned[1] - turned[0], Tw, Wr)
+        swept = 0.0
+        if self._swings and self._method.orientations is not None:
+            swept = self._linking.swept_since(self._turned() - (ahead.twisted[1] - ahead.twisted[0]), orientation)
+        return self._linking.of(turned[1] - turned[0], Tw, Wr, swept)

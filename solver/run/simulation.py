@@ -29,7 +29,8 @@ class Simulation(Run):
     """Motion, by steps in time."""
 
     def __init__(self, scene: Scene, statistics: Statistics | None = None, goes_on: bool = False) -> None:
-        """`goes_on`: energy that went nowhere is a remark, and does not end the run by `energy_lost`."""
+        """`goes_on`: energy that went nowhere is a remark, and does not end the run by `energy_lost`; energy that came
+        from nowhere ends it at its last frame only, if it is much then."""
         super().__init__(scene, statistics)
         self._goes_on = goes_on
         self._method = discretized(scene)
@@ -81,11 +82,11 @@ class Simulation(Run):
         frame = self._accounts.frame(output, ago)
         if self.remarks.axial_stiffness:
             self.remarks.stretched(self._method.strain() * float(self._scene.rod.length))
-        made = self._accounts.made
+        made, last = self._accounts.made, output == self._outputs[-1]
         detail = f"{abs(made):.2g} of all that changed hands"
-        if made > LARGEST_MADE:
+        if made > LARGEST_MADE and (last or not self._goes_on):
             raise RunFailed(Outcome.ENERGY_MADE, self.t, self.statistics.steps, detail)
-        if output == self._outputs[-1]:  # much of what was at first may be little of all
+        if last:  # much of what was at first may be little of all
             if self._accounts.lost > LARGEST_MADE:
                 self.remarks.energy_lost = self._accounts.lost
             if made < -LARGEST_MADE and not self._goes_on:

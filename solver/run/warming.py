@@ -10,6 +10,7 @@ from operator import itemgetter
 import numpy as np
 
 from solver.kernels.kernel import compile_apart
+from solver.measures.holonomy import swept
 from solver.measures.topology import writhe_of_rod
 from solver.methods.registry import METHODS, discretized
 from solver.scene.contact import Contact
@@ -70,4 +71,5 @@ def exercise(method: str, touching: bool, linear_solver: str = Numerics.linear_s
     fields = moving.fields()
     moving.energies(), moving.twist(), moving.smallest_gap()
     writhe_of_rod(LEAVES_ITS_PLANE, fields.orientation)
+    swept(fields.orientation, fields.orientation, 0.0)
     moving.compile()

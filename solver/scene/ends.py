@@ -85,6 +85,11 @@ class End:
         """No force, no moment."""
         return cls((FREE, FREE, FREE), (FREE, FREE, FREE))
 
+    def holds_tangent(self) -> bool:
+        """Whether the tangent stays as it is at all times."""
+        conditions = [condition for component in self.rotation[:2] for condition in component]
+        return all(condition.kind != "load" and _is_rest(condition.kind, condition.curve) for condition in conditions)
+
     def keeps(self, view: View) -> bool:
         """Whether the end asks for no motion and no load but along the motion about an axis, at all times."""
         moves = view.moves

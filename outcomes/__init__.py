@@ -71,9 +71,10 @@ class Outcome(StrEnum):
     )
     ROD_STRETCHED = (
         "rod_stretched",
-        "the rod was no longer as long as it is by more than 10 %: its ends pull or press it so far, or the box method "
-        "did not keep the length of an interval",
-        "keep the ends nearer to each other than 1.1 times the rod's length; to a straight rod that is to buckle, give "
+        "the rod was no longer as long as it is by more than 10 %: its ends or its loads pull or press it so far, or the "
+        "box method did not keep the length of an interval",
+        "keep the ends nearer to each other than 1.1 times the rod's length; where a load or the weight pulls it, give "
+        "a larger rod.axial_stiffness; to a straight rod that is to buckle, give "
         "a small load across it, which says to which side; by the box method, use more intervals, a smaller dt_max or "
         "increment_tolerance, or the method staggered or a tolerance",
         "solver",
@@ -103,8 +104,9 @@ class Outcome(StrEnum):
     SINGULAR_SYSTEM = (
         "singular_system",
         "the linear system has no single solution",
-        "check that the end conditions leave no motion undetermined; a straight rod that is held along its axis at "
-        "both ends needs the method staggered",
+        "check that the end conditions leave no motion undetermined: in statics a floor or an obstacle holds only what "
+        "is in it at the start, so let a rod that rests on one begin a little below its surface; by the box method, a "
+        "straight rod that is held along its axis at both ends needs the method staggered",
         "solver",
     )
     EQUILIBRIUM_LOST = (

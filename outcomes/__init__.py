@@ -71,7 +71,7 @@ class Outcome(StrEnum):
     )
     ROD_STRETCHED = (
         "rod_stretched",
-        "the rod was no longer as long as it is by more than 10 %: its ends or its loads pull or press it so far, or the "
+        "the rod was no longer as long as it is by more than 10 %: its ends or loads pull or press it so far, or the "
         "box method did not keep the length of an interval",
         "keep the ends nearer to each other than 1.1 times the rod's length; where a load or the weight pulls it, give "
         "a larger rod.axial_stiffness; to a straight rod that is to buckle, give "

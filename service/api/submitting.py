@@ -35,7 +35,7 @@ ANSWERS: dict[int | str, dict[str, Any]] = {
 
 
 @router.post("", status_code=202, response_model=JobDocument, openapi_extra=CASE_BODY,
-             responses={**ANSWERS, **problems(400, 409, 413, 415, 422)})
+             responses={**ANSWERS, **problems(400, 404, 409, 413, 415, 422)})
 async def submit(
     request: Request, parts: InParts, caller: Submitter, idempotency_key: IdempotencyKey = None,
     prefer: Annotated[str | None, Header(alias="Prefer", description="`wait=SECONDS`, up to 60")] = None,

@@ -26,7 +26,7 @@ from solver.methods.space.segments.fields import bending_at_nodes, orientations_
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
 from solver.methods.space.segments.motion import Interpolation, extrapolate, follow_segments, look_back
 from solver.methods.space.segments.opening import measure_openings, pull_joints, shift_segments
-from solver.methods.space.segments.viscosity import resistance_at_nodes
+from solver.methods.space.segments.viscosity import resist_at_nodes
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
@@ -172,14 +172,15 @@ class StaggeredMethod(RadauMethod):
         omega_lab = np.concatenate([omega[:1], between, omega[-1:]])[:, :, 0]
         joints = self._bend(state.quaternion)
         pull_joints(self.chain, R, state.F, *joints)
-        resisting = np.zeros((len(self.s), 3))
-        if len(self.chain.elastic.viscosity):
-            resistance_at_nodes(self.chain, state.omega, joints[0], resisting)
+        viscous = len(self.chain.elastic.viscosity) > 0
+        bend = joints[0].copy() if viscous else joints[0]
         bending_at_nodes(self.chain, *joints)
         kappa, q, *_ = joints
+        if viscous:
+            resist_at_nodes(self.chain, state.omega, bend, q)
         return Fields(
             v=rotate_back(orientation, nodes[1]), omega=rotate_back(orientation, omega_lab),
-            f=rotate_back(orientation, state.F), kappa=kappa - self._offset, q=q + resisting,
+            f=rotate_back(orientation, state.F), kappa=kappa - self._offset, q=q,
             strain=state.opening[0] / self.chain.span,
             r=nodes[0].copy(), orientation=orientation,
         )  # fmt: skip

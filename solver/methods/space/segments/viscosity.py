@@ -34,8 +34,8 @@ def resist_rates(chain: Chain, omega: Array, bend: Array, moment: Array, left: A
 
 
 @kernel
-def resistance_at_nodes(chain: Chain, omega: Array, bend: Array, q: Array) -> None:
-    """Write what it adds to q (N + 1, 3) in the frames of the nodes: see `fields.bending_at_nodes`."""
+def resist_at_nodes(chain: Chain, omega: Array, bend: Array, q: Array) -> None:
+    """Add what they add to q (N + 1, 3) in the frames of the nodes: see `fields.bending_at_nodes`."""
     last = len(bend) - 1
     for a in range(last + 1):
         resisting = transform(viscosity(chain.elastic, a), _rate(chain, omega, bend, a))
@@ -57,7 +57,8 @@ def dissipated(chain: Chain, omega: Array, bend: Array) -> float:
 def rate_tangents(chain: Chain, bend: Array, stiff: Array, before: Array, behind: Array) -> None:
     """Write the tangents of rotation's balances by the rates of rotation, (N + 2, 3, 3) each: see `balances.Tangents`.
 
-    Of what B and Theta_t change by a rotation nothing is in them: as little as the rod bends within D / K.
+    They leave out how B and Theta_t change with the rotation itself: that is small where joints turn little within the
+    retardation time, and else Newton's iteration takes more steps.
     """
     stiff[:], before[:], behind[:] = 0.0, 0.0, 0.0
     for a in range(len(bend)):

@@ -47,12 +47,14 @@ class Reference:
     records: Any
 
     def __init__(self, records: tuple[Any, ...]) -> None:
-        likeness = _likeness(records)
-        if likeness not in _LAYOUTS:
+        likeness, parts = list[Any](), list[Any]()
+        _take_apart(records, likeness, parts)
+        kinds = tuple(likeness)
+        if kinds not in _LAYOUTS:
             kind: Any = numba.typeof(records)  # type: ignore[no-untyped-call]
-            _LAYOUTS[likeness] = Referred(kind), Struct("=" + _format(kind))
-        self._numba_type_, layout = _LAYOUTS[likeness]
-        self._memory = np.frombuffer(layout.pack(*_parts(records)), np.uint8)
+            _LAYOUTS[kinds] = Referred(kind), Struct("=" + _format(kind))
+        self._numba_type_, layout = _LAYOUTS[kinds]
+        self._memory = np.frombuffer(layout.pack(*parts), np.uint8)
         self.address = self._memory.ctypes.data
 
 
@@ -103,13 +105,6 @@ _LAYOUTS: dict[Any, tuple[Referred, Struct]] = {}
 """The type of the reference to records, and how they lie in memory, by their likeness: numba needs some ms to tell."""
 
 
-def _likeness(value: Any) -> Any:
-    """What is the same for records that have the same type."""
-    if isinstance(value, tuple):
-        return type(value), *map(_likeness, value)
-    return (value.dtype, value.ndim, value.flags.num) if isinstance(value, np.ndarray) else type(value)
-
-
 def _format(kind: Any) -> str:
     """How a value of one of numba's types lies in memory, as `struct` has it."""
     if isinstance(kind, types.BaseTuple):
@@ -125,14 +120,21 @@ def _format(kind: Any) -> str:
     return f"{size}x" if isinstance(kind, types.NoneType) else f"{size}s"
 
 
-def _parts(value: Any) -> list[Any]:
-    """What `struct` writes of records; of an array an address that nobody owns."""
-    if isinstance(value, tuple):
-        return [part for record in value for part in _parts(record)]
+def _take_apart(value: Any, likeness: list[Any], parts: list[Any]) -> None:
+    """Add what is the same for records that have the same type; and what `struct` writes of them, of an array an
+    address that nobody owns."""
     if isinstance(value, np.ndarray):
+        likeness += (value.dtype, value.ndim, value.flags.num)
         address, _ = value.__array_interface__["data"]  # `ctypes.data` takes three times as long
-        return [0, 0, value.size, value.itemsize, address, *value.shape, *value.strides]
-    return [] if value is None else [np.asarray(value).tobytes()]
+        parts += (0, 0, value.size, value.itemsize, address, *value.shape, *value.strides)
+    elif isinstance(value, tuple):
+        likeness += (type(value), len(value))
+        for record in value:
+            _take_apart(record, likeness, parts)
+    else:
+        likeness.append(type(value))
+        if value is not None:
+            parts.append(np.asarray(value).tobytes())
 
 
 @infer_getattr

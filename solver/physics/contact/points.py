@@ -45,6 +45,12 @@ class Points(NamedTuple):
     checked: Array
     closing: float = inf
 
+    @classmethod
+    def none(cls) -> Points:
+        """Those of a scene without contact: one, that meets nobody."""
+        shares, (places, of_rod) = np.zeros((2, 1, REACH)), (np.zeros((5, 1, 3)), np.zeros((2, 1)))
+        return cls(np.zeros(1, dtype=np.int64), *shares, *of_rod, 1.0, *places)
+
 
 @inlined
 def neighbours(points: Points, skip: float) -> int:

@@ -38,6 +38,8 @@ TIME_TO_TOUCH = 0.2
 """Part of the time to closure, gap / closing speed, that the next step may take; a gap below half the distance counts
 as that much, for what is held by a stiff force does not close at its speed."""
 
+NO_LAW = Law.of(Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0), 1.0)
+
 
 class SelfContact:
     """The contact of one rod through its run; without `contact` it proves itself absent and costs nothing.
@@ -52,8 +54,7 @@ class SelfContact:
         self.present = contact is not None
         """Whether the scene has contact at all."""
         self._nodes, self._stages = len(s), stages
-        settings = contact or Contact(0.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, float(s[-1]))
-        points, self._law = _points_and_law(settings, rod, s, ends, hardness)
+        points, self._law = _points_and_law(contact, rod, s, ends, hardness) if contact else (Points.none(), NO_LAW)
         # pairs that press, and those whose links may meet
         self._reach = max(self._law.cutoff, links_reach(points))
         self._farthest = (1.0 + SKIN[1]) * self._reach

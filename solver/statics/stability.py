@@ -24,22 +24,12 @@ below it the energy stays the same, as where a rod spins about its own axis or a
 
 def negative_modes(equations: Equations) -> int:
     """Directions of falling energy at the point that `equations` looked at last; loads are held as they are."""
-    return _count(equations, _least(equations))
+    return _count(equations, NEUTRAL)
 
 
 def neutral_modes(equations: Equations, falling: int) -> int:
     """Directions in which the energy stays the same, besides those in which it is `falling`."""
-    return max(_count(equations, -_least(equations)) - falling, 0)
-
-
-def _least(equations: Equations) -> float:
-    """NEUTRAL, and as much as the spin of a rod that is straight by nature costs because its kappa0 is shifted by what
-    the mesh makes of the initial shape."""
-    natural = equations.chain.elastic.kappa0 - equations.offset
-    if natural[:, :2].any():
-        return NEUTRAL
-    shift, bend = (float(np.abs(x).max()) for x in (equations.offset, equations.stages.bend[0]))
-    return NEUTRAL + shift * bend / equations.chain.h * float(equations.s[-1]) ** 2
+    return max(_count(equations, -NEUTRAL) - falling, 0)
 
 
 def _count(equations: Equations, softest: float) -> int:

@@ -48,8 +48,9 @@ class Points(NamedTuple):
     @classmethod
     def none(cls) -> Points:
         """Those of a scene without contact: one, that meets nobody."""
-        shares, (places, of_rod) = np.zeros((2, 1, REACH)), (np.zeros((5, 1, 3)), np.zeros((2, 1)))
-        return cls(np.zeros(1, dtype=np.int64), *shares, *of_rod, 1.0, *places)
+        (weights, slopes), (mass, diameter) = np.zeros((2, 1, REACH)), np.zeros((2, 1))
+        p, t, w, start, checked = np.zeros((5, 1, 3))
+        return cls(np.zeros(1, dtype=np.int64), weights, slopes, mass, diameter, 1.0, p, t, w, start, checked)
 
 
 @inlined

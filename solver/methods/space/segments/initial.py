@@ -14,7 +14,7 @@ from solver.physics.elasticity import elasticity_of
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.section import Section, sample
 from solver.scene.initial import Initial
-from solver.scene.layout import nodes_at_rest
+from solver.scene.layout import natural_part, nodes_at_rest
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 
@@ -47,9 +47,11 @@ def chain_of(rod: Rod, section: Section, entrained: Array, s: Array) -> Chain:
 
 
 def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
-    """The state at t = 0, and by how much the joints' curvature (N + 1, 3) differs from the centreline's own.
+    """The state at t = 0, and by how much the joints' curvature (N + 1, 3) differs from the centreline's own, as far as
+    that is the natural one.
 
-    kappa0 is shifted by as much, so that a rod whose natural shape is its initial one starts without stress.
+    kappa0 is shifted by as much, so that a rod whose natural shape is its initial one starts without stress. That of a
+    straight one is not: a curvature of its own, however small, turns a rod that nothing else keeps from spinning.
     """
     state = State.empty(len(s) - 1)
     r, quaternion, kappa = nodes_at_rest(initial, np.linspace(0.0, s[-1], 2 * len(s) - 1))
@@ -62,6 +64,6 @@ def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
     state.base[2] = np.cross(spin, np.cross(spin, arm))
     bend, moment, left, right = (np.zeros((len(s), 3)) for _ in range(4))
     bend_joints(chain, state.quaternion, bend, moment, left, right)
-    offset = np.asarray(bend / chain.span[:, None] - kappa[::2])
+    offset = natural_part(chain.elastic.kappa0, kappa[::2]) * (bend / chain.span[:, None] - kappa[::2])
     chain.elastic.kappa0[:] += offset
     return state, offset

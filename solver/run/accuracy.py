@@ -15,6 +15,7 @@ from solver.run.recording import (
     JUDGED_KAPPA,
     JUDGED_R,
     KINETIC,
+    STRETCHING,
     TORSION,
     TWIST,
     WRITHE,
@@ -24,7 +25,7 @@ from solver.scene.scene import Scene
 
 QUANTITIES = ("r", "kappa", "energies", "Tw_Wr")
 """`r`: the largest error of a node, in rod lengths; `kappa`: rms along the rod, relative to its largest rms;
-`energies`: of bending, torsion and motion, relative to their largest sum; `Tw_Wr`: of either, in turns."""
+`energies`: of bending, torsion, stretching and motion, relative to their largest sum; `Tw_Wr`: of either, in turns."""
 WHERE_IT_COUNTS = 0.95
 """Part of the frames in which kappa and Tw, Wr must keep the tolerance: where a moment jumps, no mesh resolves it at
 once, and where a plane curve crosses itself Wr is that of either side."""
@@ -118,6 +119,7 @@ def _rms(field: Array) -> Array:
 
 
 def _energies(columns: Columns) -> Array:
-    """Of bending, torsion and motion, (frames, 3)."""
+    """Of bending, torsion, stretching and motion, (frames, 4)."""
     numbers = columns.numbers[:, 0]
-    return np.stack([numbers[:, BENDING], numbers[:, TORSION], numbers[:, KINETIC] + numbers[:, ADDED_MASS]], axis=-1)
+    motion = numbers[:, KINETIC] + numbers[:, ADDED_MASS]
+    return np.stack([*(numbers[:, strain] for strain in (BENDING, TORSION, STRETCHING)), motion], axis=-1)

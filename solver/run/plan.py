@@ -57,6 +57,8 @@ DEAR, FAR_OFF = 2.5, 10.0
 has the longer ones."""
 CHEAP = 0.1
 """Part of MOST_WORK that an attempt may always take."""
+ENOUGH = 0.5
+"""Part of MOST_WORK after which runs that fail at the same time are no longer tried on finer meshes."""
 WORTH = {"kappa": 4.0}
 """How many times MOST_WORK all that a quantity needs may be, as its error last fell, for it to be refined; the others
 are refined as long as their errors fall."""
@@ -182,8 +184,11 @@ def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_inter
     again = _steps_again(complete)
     if again and _is_for(history, again, most_intervals):
         yield again
+    if not history[-1].complete:
+        yield _beyond_failures(history, most_intervals)
+        return
     for excess in sorted(errors, key=lambda excess: -excess.total):
-        if excess.total <= 1.0 or not history[-1].complete:
+        if excess.total <= 1.0:
             return
         for trial in _finer(_finest(complete), excess, len(chosen(history).meshes), diagonal=is_diagonal(history)):
             if _may_do(history, excess, trial, most_intervals):
@@ -220,7 +225,16 @@ def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], errors
         finer = Trial(finer.mesh, steps[-2])
     if mesh > 0 and not _is_for(history, finer, most_intervals):
         yield Trial(mesh - 1, steps[-1])
-    yield finer if finer.mesh <= mesh + 2 and intervals_of(finer.mesh) <= most_intervals else None
+    once = finer.mesh == mesh + 1 and intervals_of(finer.mesh) <= most_intervals
+    yield finer if once else _beyond_failures(history, most_intervals)
+
+
+def _beyond_failures(history: Sequence[Attempt], most_intervals: int) -> Trial | None:
+    """A mesh finer than the last one, which failed: a limp rope whips too sharply for it, and for coarser ones, which
+    came to their end by being farther from the motion."""
+    last = history[-1]
+    finer = Trial(last.mesh + 1, last.steps)
+    return finer if not last.complete and not last.slow and _is_for(history, finer, most_intervals) else None
 
 
 def _steps_are_dear(complete: Sequence[Attempt], errors: Sequence[Excess]) -> bool:
@@ -249,7 +263,7 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> T
         return Trial(last.mesh, max(last.steps - 2, LOOSEST)) if last.steps > LOOSEST else None
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
-    same = same and _work(history) > CHEAP * MOST_WORK  # a rope may be too limp for three coarse meshes
+    same = same and _work(history) > ENOUGH * MOST_WORK  # a rope may be too limp for several coarse meshes
     if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > LAST_PART * MOST_WORK:
         return None
     return Trial(last.mesh + 1, last.steps)

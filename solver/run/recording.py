@@ -46,7 +46,7 @@ JUDGED_R, JUDGED_KAPPA = slice(0, 3), slice(3, 6)
 OMEGA, FORCE = column("omega"), column("f")
 TWIST, WRITHE, BALANCE = number("Tw"), number("Wr"), number("energy_balance")
 CURVATURE, STEP = number("max_curvature"), number("dt")
-BENDING, TORSION = number("energy_bending"), number("energy_torsion")
+BENDING, TORSION, STRETCHING = (number(f"energy_{name}") for name in ("bending", "torsion", "stretching"))
 KINETIC, ADDED_MASS = number("energy_kinetic"), number("energy_added_mass")
 
 

@@ -57,13 +57,16 @@ def slow(mesh: int, steps: int) -> Attempt:
         ([ran(0, 0), ran(0, 1), ran(1, 0), slow(2, 0)], Excess(9.0, 0.1, 9.0), None),
         ([failed(0, 0.5)], Excess(), Trial(1, 0)),
         ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2)], Excess(), Trial(3, 0)),
-        ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2, 0.2 * MOST_WORK)], Excess(), None),
+        ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2, 0.6 * MOST_WORK)], Excess(), None),
         ([slow(0, 0)], Excess(), Trial(0, -2)),
         ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK)], Excess(), Trial(1, -5)),
         ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK), ran(1, -5)], Excess(9.0, 9.0), None),
         ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK), ran(2, -5)], Excess(inf, 9.0), Trial(1, -4)),
         ([ran(2, -4, 3 * MOST_WORK), ran(2, -5), ran(1, -4)], Excess(9.0, 9.0), None),
         ([ran(0, 0), ran(0, 1), failed(1, 0.2)], Excess(inf, 0.1), Trial(2, 0)),
+        ([ran(0, 0), ran(0, 1), failed(1, 0.2), failed(2, 0.2), failed(3, 0.2)], Excess(inf, 0.1), Trial(4, 0)),
+        ([ran(0, 0), ran(0, 1), failed(1, 0.2), failed(2, 0.2, MOST_WORK)], Excess(inf, 0.1), None),
+        ([ran(0, 0), ran(0, 1), ran(1, 0), failed(2, 0.2)], Excess(9.0, 0.1), Trial(3, 0)),
     ],
 )
 def test_what_follows(history: list[Attempt], excess: Excess, then: Trial | None) -> None:

@@ -26,6 +26,7 @@ from solver.scene.scene import Scene
 QUANTITIES = ("r", "kappa", "energies", "Tw_Wr")
 """`r`: the largest error of a node, in rod lengths; `kappa`: rms along the rod, relative to its largest rms;
 `energies`: of bending, torsion, stretching and motion, relative to their largest sum; `Tw_Wr`: of either, in turns."""
+ENERGIES = QUANTITIES.index("energies")
 WHERE_IT_COUNTS = 0.95
 """Part of the frames in which kappa and Tw, Wr must keep the tolerance: where a moment jumps, no mesh resolves it at
 once, and where a plane curve crosses itself Wr is that of either side."""

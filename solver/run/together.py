@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from solver.arrays import Array
-from solver.run.accuracy import QUANTITIES, errors_of, excess, sizes
+from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, excess, sizes
 from solver.run.first_mesh import first_intervals
 from solver.run.plan import FAR_FROM_IT, WORTH, Excess, intervals_of, step_tolerance
 from solver.run.recording import (
@@ -89,14 +89,13 @@ class Together:
         value, error = self._of_frames(slice(first, last))
         magnitudes = [np.linalg.norm(value.along[..., rows], axis=-1).max(axis=-1) for rows in (OMEGA, FORCE)]
         rows = self._recorded[self._chosen.finest]
-        lost = self._unfollowed * np.maximum.accumulate([abs(number_of(row, BALANCE)) for row in rows[: here.stop]])
         frames = []
         for k in here:
             beside = slice(max(k - BESIDE, 1) - first, min(k + BESIDE + 1, last) - first) if k > 0 else slice(0, 1)
             largest = [float(magnitude[beside].max()) for magnitude in magnitudes]
             columns = Columns(value.along[k - first], value.numbers[k - first])
             along, numbers = error.along[beside].max(axis=0), error.numbers[beside].max(axis=0)
-            frames.append(self._frame(float(rows[k][0]), columns, Columns(along, numbers), largest, float(lost[k])))
+            frames.append(self._frame(float(rows[k][0]), columns, Columns(along, numbers), largest, float(self._lost[k])))
         return Piece(i, tuple(frames))
 
     def _frame(self, t: float, value: Columns, error: Columns, largest: Sequence[float],
@@ -121,7 +120,12 @@ class Together:
         """The errors of the quantities of a tolerance (frames, 4), relative; see `accuracy`."""
         size, none = self._sizes(), np.zeros((0, len(QUANTITIES)))
         pieces = (errors_of(self._of_frames(here, judged=True)[1], size) for here in self._pieces())
-        return np.concatenate([none, *pieces])
+        return self._with_lost(np.concatenate([none, *pieces]), size)
+
+    def _with_lost(self, errors: Array, size: Array) -> Array:
+        """Errors of `QUANTITIES` (frames, 4) whose energies are as uncertain as the energy is that went nowhere."""
+        errors[:, ENERGIES] = np.maximum(errors[:, ENERGIES], self._lost[: len(errors)] / size[ENERGIES])
+        return errors
 
     def excesses(self, before: Sequence[Excess]) -> list[Excess]:
         """Of each quantity the errors of the finest mesh and of its steps, over the tolerance; `before`: those before
@@ -136,7 +140,7 @@ class Together:
             steps.append(errors_of(self._of_steps(series, here, judged=True), size))
         unknown = np.full(len(QUANTITIES), np.inf)
         of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else unknown
-        of_steps = excess(target, np.concatenate(steps)) if len(series) > 1 else unknown
+        of_steps = excess(target, self._with_lost(np.concatenate(steps), size)) if len(series) > 1 else unknown
         if self._diagonal:
             of_steps = np.minimum(of_steps, 0.5 * of_mesh)
             of_mesh = of_mesh - of_steps
@@ -152,6 +156,12 @@ class Together:
         rows = self._recorded[self._chosen.finest]
         dt = float(np.mean([number_of(row, STEP) for row in rows]))
         return unseen(self._scene.rod, self.s, 1.0, dt)
+
+    @cached_property
+    def _lost(self) -> Array:
+        """The energy (J) that the finest attempt had lost by each frame in waves that no attempt follows."""
+        balances = [abs(number_of(row, BALANCE)) for row in self._recorded[self._chosen.finest]]
+        return np.asarray(self._unfollowed * np.maximum.accumulate(balances))
 
     @cached_property
     def _unfollowed(self) -> float:

@@ -24,6 +24,10 @@ order 4 would, where order 2 shows in the meshes. Three such errors are more tha
 LEAST, LEAST_IF_CLEAN = 0.02, 0.005
 """Part of the finest mesh's own error that the extrapolated one is never told to be below; and where order 2 shows."""
 
+ORDER, HARDLY, MOST_ALIKE = 4.0, 1.5, 30.0
+"""Power of the number of steps with which their error is taken to fall; how much more than 1 that of shorter ones is,
+for their difference to be taken as it is; and how many times the difference the error may be, at the most."""
+
 
 def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, Array]:
     """The solution and its error at the nodes of the finest of up to three meshes, which come coarsest first.
@@ -69,6 +73,13 @@ def error_of_steps(series: Sequence[Array], shorter: bool, nodes: int) -> Array:
         return nowhere_small(WARY / 3.0 * apart, nodes)
     fall = _rms(series[-2] - series[-3]) / np.maximum(_rms(apart), 1e-300)
     return nowhere_small(np.clip(1.0 / np.maximum(fall - 1.0, 1e-3), 1.0 / 3.0, 1.0) * apart, nodes)
+
+
+def alike(before: float, work: float) -> float:
+    """By how much the error of steps is more than their difference says, where steps that might be shorter hardly are:
+    something else keeps both short. `work`: of the shorter ones, and of those `before`."""
+    more = max(work / max(before, 1.0), 1.0) ** ORDER - 1.0
+    return min(max(HARDLY / max(more, HARDLY / MOST_ALIKE), 1.0), MOST_ALIKE)
 
 
 def nowhere_small(error: Array, nodes: int) -> Array:

@@ -32,7 +32,7 @@ from solver.run.recording import (
     number,
     number_of,
 )
-from solver.run.richardson import error_of_steps, extrapolate
+from solver.run.richardson import alike, error_of_steps, extrapolate
 from solver.run.series import Attempt, chosen, is_diagonal, step_series
 from solver.run.verify import VerifiedFrame, of_waves, unseen
 from solver.scene.scene import Scene
@@ -218,7 +218,7 @@ class Together:
         columns = [self._columns(k, here, judged) for k in series]
         along, numbers = zip(*(_aligned(attempt, columns[-1], judged) for attempt in columns), strict=True)
         longer = self.finest.steps - self._attempts[series[-1]].steps
-        part = FALL ** -max(longer, 0)
+        part = FALL ** -max(longer, 0) * alike(*(self._attempts[i].work for i in series[-2:]))
         return Columns(*(part * error_of_steps(values, longer < 0, n) for values, n in ((along, nodes), (numbers, 1))))
 
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from solver.run.richardson import error_of_steps, extrapolate
+from solver.run.richardson import alike, error_of_steps, extrapolate
 
 MESHES = (16, 32, 64)
 
@@ -63,3 +63,9 @@ def test_the_error_of_the_steps_is_a_third_of_the_difference_only_where_it_falls
     assert told.max() < 0.5 * np.abs(falling[-1] - falling[-2]).max()
     stuck = [exact(16), exact(16) + 0.01, exact(16) + 0.02]
     assert error_of_steps(stuck, shorter=False, nodes=17) == pytest.approx(0.01)
+
+
+def test_steps_that_hardly_differ_say_less_of_their_error_than_their_difference_is() -> None:
+    assert alike(1e5, 2e5) == 1.0
+    assert alike(1e5, 1.1e5) == pytest.approx(1.5 / (1.1**4 - 1.0))
+    assert alike(1e5, 1e5) == alike(1e5, 0.9e5) == 30.0

@@ -58,7 +58,7 @@ class RodSpec(Spec):
     shear_modulus: Annotated[Positive | None, means("G; this or `torsional_stiffness`, not both", "Pa")] = None
     density: Annotated[
         Positive | None,
-        means("this, or both `mass_per_length` and `inertia_per_length`, or one of them beside it", "kg/m³"),
+        means("of a solid section; this or `mass_per_length`, or one beside the other's inertia", "kg/m³"),
     ] = None
     bending_stiffness: Annotated[Bending | None, means("EJ: one profile, or the two EJ1 and EJ2", "N m²")] = None
     torsional_stiffness: Annotated[PositiveProfile | None, means("GJ: profile", "N m²")] = None
@@ -95,7 +95,7 @@ class RodSpec(Spec):
     mass_per_length: Annotated[PositiveProfile | None, means("profile", "kg/m")] = None
     inertia_per_length: Annotated[
         tuple[PositiveProfile, PositiveProfile, PositiveProfile] | None,
-        means("three profiles, about a1, a2, a3", "kg m"),
+        means("three profiles, about a1, a2, a3; without it that of a solid section", "kg m"),
     ] = None
     kappa0: Annotated[
         StressFree,
@@ -112,10 +112,10 @@ class RodSpec(Spec):
             present = [name for name in (general, direct) if getattr(self, name) is not None]
             if len(present) != 1:
                 raise refusal(general, getattr(self, general), f"or {direct} must be given, and not both")
-        direct_mass = self.mass_per_length is not None and self.inertia_per_length is not None
-        if direct_mass == (self.density is not None):
-            rule = "must be given, or both mass_per_length and inertia_per_length in its place"
-            raise refusal("density", self.density, rule)
+        if self.density is None and self.mass_per_length is None:
+            raise refusal("density", None, "must be given, or mass_per_length in its place")
+        if None not in (self.density, self.mass_per_length, self.inertia_per_length):
+            raise refusal("density", self.density, "must not be given beside mass_per_length and inertia_per_length")
         if self.twist_stretch_coupling != 0.0 and self.axial_stiffness is None:
             rule = "must be 0 without axial_stiffness: only a rod that can stretch has it"
             raise refusal("twist_stretch_coupling", self.twist_stretch_coupling, rule)
@@ -141,6 +141,8 @@ class RodSpec(Spec):
         direct: dict[str, Any] = {"stiffness": self._stiffness(solid)}
         if self.mass_per_length is not None:
             direct["mass"] = curve(self.mass_per_length)
+            if self.density is None:
+                direct["inertia"] = Rod.solid_inertia(direct["mass"], solid.diameter)
         if self.inertia_per_length is not None:
             direct["inertia"] = curves(self.inertia_per_length)
         direct["laws"] = self._laws()

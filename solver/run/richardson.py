@@ -78,7 +78,7 @@ def error_of_steps(series: Sequence[Array], shorter: bool, nodes: int) -> Array:
 def alike(before: float, work: float) -> float:
     """By how much the error of steps is more than their difference says, where steps that might be shorter hardly are:
     something else keeps both short. `work`: of the shorter ones, and of those `before`."""
-    more = max(work / max(before, 1.0), 1.0) ** ORDER - 1.0
+    more: float = max(work / max(before, 1.0), 1.0) ** ORDER - 1.0
     return min(max(HARDLY / max(more, HARDLY / MOST_ALIKE), 1.0), MOST_ALIKE)
 
 

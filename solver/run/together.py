@@ -95,7 +95,8 @@ class Together:
             largest = [float(magnitude[beside].max()) for magnitude in magnitudes]
             columns = Columns(value.along[k - first], value.numbers[k - first])
             along, numbers = error.along[beside].max(axis=0), error.numbers[beside].max(axis=0)
-            frames.append(self._frame(float(rows[k][0]), columns, Columns(along, numbers), largest, float(self._lost[k])))
+            errors, lost = Columns(along, numbers), float(self._lost[k])
+            frames.append(self._frame(float(rows[k][0]), columns, errors, largest, lost))
         return Piece(i, tuple(frames))
 
     def _frame(self, t: float, value: Columns, error: Columns, largest: Sequence[float],

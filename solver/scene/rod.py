@@ -61,6 +61,15 @@ class Rod:
         kappa0 = np.stack([p(view.s) for p in self.kappa0], axis=1)
         return bool(np.abs(kappa0[:, ~view.turns]).max() * self.length <= NONE) and answer(self.laws, view)
 
+    @staticmethod
+    def solid_inertia(mass: Profile, diameter: Profile) -> Profiles:
+        """Of a solid circular section: m D^2/16 about a diameter, m D^2/8 about the axis."""
+
+        def times(factor: float) -> Profile:
+            return lambda s: factor * mass(s) * diameter(s) ** 2
+
+        return times(1.0 / 16.0), times(1.0 / 16.0), times(1.0 / 8.0)
+
     @classmethod
     def circular(
         cls,
@@ -87,13 +96,12 @@ class Rod:
         def second_moment(factor: float) -> Profile:
             return lambda s: factor * pi / 64 * (width(s) ** 2) ** 2
 
-        bending, torsion = second_moment(youngs_modulus), second_moment(2 * shear_modulus)
-        about_diameter, about_axis = second_moment(density), second_moment(2 * density)
+        bending, torsion, mass = second_moment(youngs_modulus), second_moment(2 * shear_modulus), area(density)
         return cls(
             length=length,
             stiffness=(bending, bending, torsion),
-            mass=area(density),
-            inertia=(about_diameter, about_diameter, about_axis),
+            mass=mass,
+            inertia=cls.solid_inertia(mass, width),
             diameter=width,
             kappa0=kappa0,
         )

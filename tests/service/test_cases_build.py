@@ -89,6 +89,17 @@ def test_properties_given_directly_take_the_place_of_moduli():
     assert rod.kappa0[1](s).tolist() == [1.0] * 3
 
 
+def test_a_mass_per_length_is_enough():
+    raw = load_case("elastica")
+    del raw["rod"]["density"]
+    raw["rod"]["mass_per_length"] = 1500.0 * pi / 4 * 1e-4
+    rods = [build_scene(parse_case(case)).rod for case in (raw, load_case("elastica"))]
+    s = np.array([0.5])
+    assert rods[0].mass(s) == pytest.approx(rods[1].mass(s))
+    for mine, solid in zip(rods[0].inertia, rods[1].inertia, strict=True):
+        assert mine(s) == pytest.approx(solid(s))
+
+
 def test_one_bending_stiffness_serves_both_axes():
     raw = load_case("elastica")
     del raw["rod"]["youngs_modulus"]

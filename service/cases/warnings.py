@@ -18,6 +18,7 @@ from solver import End, Scene
 from solver.kernels.rotation import matrix_of
 from solver.physics.axial import has_to_stretch
 from solver.physics.ends import travel
+from solver.physics.loads.solids import Floor, Given
 from solver.scene.layout import nodes_at_rest
 from solver.scene.view import View
 
@@ -31,6 +32,8 @@ SHORTENED = 1e-4
 """Part of its length by which a straight rod may be pressed shorter."""
 SHEARED = 0.5
 """Shear strain of a rod's surface beyond that of any material but rubber."""
+TURNED_OVER = 4.0 * pi
+"""Rotation (rad) of an end about an axis across the rod, beyond which it is likely to be in degrees."""
 GREENHILL = 8.987
 """A straight rod with clamped ends buckles at the twist moment GREENHILL EJ/L (Greenhill 1883)."""
 
@@ -38,7 +41,8 @@ GREENHILL = 8.987
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
-            *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_frames(spec)]  # fmt: skip
+            *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_begins_inside(scene),
+            *_degrees(scene), *_frames(spec)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -125,6 +129,31 @@ def _obstacles(spec: CaseSpec) -> Iterator[FieldError]:
         rule = (f"leave {interval:.3g} m from node to node, more than the radius of {radius:.3g} m of "
                 f"/loads/obstacles/{smallest}, which could pass between them")
         yield FieldError("/numerics/intervals", intervals, rule)
+
+
+def _begins_inside(scene: Scene) -> Iterator[FieldError]:
+    """A rod that begins so deep in something solid that it will be thrown out."""
+    r, _, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, 201))
+    solids, count = [load for load in scene.loads if isinstance(load, Given)], 0
+    for solid in solids:
+        where = "/loads/floor" if isinstance(solid, Floor) else f"/loads/obstacles/{count}"
+        count += not isinstance(solid, Floor)
+        deepest = float(np.max(solid.depth(r)))
+        if deepest > _widest(scene):
+            rule = f"has the rod in it at t = 0, by {deepest:.3g} m: it would throw the rod out"
+            yield FieldError(where, None, rule)
+
+
+def _degrees(scene: Scene) -> Iterator[FieldError]:
+    """An end that is turned over several times."""
+    for name, end in (("start", scene.start), ("end", scene.end)):
+        for i in (0, 1):
+            condition = end.rotation[i][0]
+            largest = float(np.max(np.abs(condition.curve(_times(scene)))))
+            if condition.kind == "position" and largest > TURNED_OVER:
+                turns = largest / (2 * pi)
+                rule = f"is an angle in rad, of {turns:.3g} turns about an axis across the rod: is it in degrees?"
+                yield FieldError(f"/ends/{name}/theta{i + 1}", largest, rule)
 
 
 def _travel(end: End, R: Any, t: float) -> float:

@@ -109,3 +109,24 @@ def test_an_obstacle_that_fits_between_nodes_is_named(intervals: int, warned: bo
     warnings = told({"loads.obstacles": balls, "numerics.intervals": intervals})
     assert [warning.pointer for warning in warnings] == ["/numerics/intervals"] * warned
     assert all("radius of 0.02 m of /loads/obstacles/1" in warning.rule for warning in warnings)
+
+
+BAR = {"start": [0.0, -1.0, 0.5], "end": [0.0, 1.0, 0.5], "radius": 0.1, "stiffness": 50.0}
+
+
+@pytest.mark.parametrize(("loads", "pointer"), [
+    ({"loads.floor": {"stiffness": 50.0, "height": 0.3}}, "/loads/floor"),
+    ({"loads.floor": {"stiffness": 50.0, "height": -0.01}}, ""),
+    ({"loads.floor": {"stiffness": 50.0, "height": -2.0}, "loads.obstacles": [BAR | {"start": [9, 9, 9], "end": None},
+                                                                               BAR]}, "/loads/obstacles/1"),
+    ({"loads.obstacles": [BAR | {"radius": 0.005}]}, ""),
+])  # fmt: skip
+def test_a_rod_that_begins_in_something_solid_is_pointed_out(loads: dict[str, Any], pointer: str):
+    assert [warning.pointer for warning in told({"numerics.intervals": 1000, **loads})] == [pointer] * bool(pointer)
+
+
+@pytest.mark.parametrize(("angle", "warned"), [(90.0, True), (6.28, False)])
+def test_an_angle_that_is_likely_in_degrees_is_pointed_out(angle: float, warned: bool):
+    swing = {"t": [0.0, 1.0], "value": [0.0, angle], "interpolation": "smoothstep"}
+    warnings = told({"ends.start": {"preset": "clamp", "theta2": swing}})
+    assert [warning.pointer for warning in warnings] == ["/ends/start/theta2"] * warned

@@ -52,6 +52,11 @@ class Floor:
             raise ValueError(f"floor normal must be finite and not zero, got {self.normal}")
         _check("floor", self, "stiffness", "slip")
 
+    def depth(self, r: Array) -> Array:
+        """How deep (m) below its surface places r (n, 3) are; negative outside."""
+        normal = np.array(self.normal) / np.linalg.norm(self.normal)
+        return np.asarray(self.height - r @ normal)
+
 
 @dataclass(frozen=True)
 class Obstacle:
@@ -75,6 +80,12 @@ class Obstacle:
         require_finite("obstacle start", self.start)
         require_finite("obstacle end", self.end)
         _check("obstacle", self, "radius", "stiffness", "slip")
+
+    def depth(self, r: Array) -> Array:
+        """How deep (m) below its surface places r (n, 3) are; negative outside."""
+        away, axis = r - np.array(self.start), np.array(self.end) - np.array(self.start)
+        part = np.clip(away @ axis / max(float(axis @ axis), SMALLEST), 0.0, 1.0)
+        return np.asarray(self.radius - np.linalg.norm(away - part[:, None] * axis, axis=1))
 
 
 Given = Floor | Obstacle

@@ -176,3 +176,10 @@ def test_to_a_tolerance_the_first_mesh_is_no_coarser_than_an_obstacle() -> None:
     ball = Obstacle((0.5, 0.0, -0.5), (0.5, 0.0, -0.5), 0.012, STIFFNESS)
     scene = Scene(ROD, lying(0.0), End.free(), End.free(), 1.0, 1.0, gravity=(0.0, 0.0, -G), loads=(ball,))
     assert intervals_of(first_mesh(scene, pressed=False)) == 128
+
+
+def test_depth_is_that_of_a_place_below_the_surface() -> None:
+    places = np.array([[0.0, 0.0, 0.0], [-0.6, 0.0, 0.0]])
+    assert_allclose(FLOOR.depth(places), [0.1, 0.46], atol=1e-12)
+    assert_allclose(BAR.depth(places), [0.2 - 0.1 * np.sin(np.arctan(0.25)), 0.2 - 0.5], atol=1e-12)
+    assert_allclose(BALL.depth(np.array([[0.1, 0.05, 0.4]])), [0.15], atol=1e-12)

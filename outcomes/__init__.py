@@ -113,7 +113,8 @@ class Outcome(StrEnum):
         "equilibrium_lost",
         "statics: the branch of equilibria could not be followed",
         "where a symmetric rod buckles, add a small load that says to which side; look for ends that ask for more "
-        "than the rod's length; or let a damped dynamic run come to rest",
+        "than the rod's length, or leave it free to swing or fall as a whole, as one pin does: then begin with a shape "
+        "near its equilibrium; or let a damped dynamic run come to rest",
         "solver",
     )
     PATH_TURNED_BACK = (

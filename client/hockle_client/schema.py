@@ -368,7 +368,7 @@ class RodSpec(TypedDict):
     """G; this or `torsional_stiffness`, not both; in Pa"""
 
     density: NotRequired[Union[float, None]]
-    """this, or both `mass_per_length` and `inertia_per_length`, or one of them beside it; in kg/m³"""
+    """of a solid section; this or `mass_per_length`, or one beside the other's inertia; in kg/m³"""
 
     bending_stiffness: NotRequired[Union[Union[Union[float, ProfileTable], Sequence[Union[float, ProfileTable]]], None]]
     """EJ: one profile, or the two EJ1 and EJ2; in N m²"""
@@ -406,7 +406,7 @@ class RodSpec(TypedDict):
     """profile; in kg/m"""
 
     inertia_per_length: NotRequired[Union[Sequence[Union[float, ProfileTable]], None]]
-    """three profiles, about a1, a2, a3; in kg m"""
+    """three profiles, about a1, a2, a3; without it that of a solid section; in kg m"""
 
     kappa0: NotRequired[Union[Sequence[Union[float, ProfileTable]], Literal["initial"]]]
     """curvature and twist that are free of stress: three profiles, or `"initial"` for those of the initial

@@ -34,6 +34,8 @@ ROUNDING = 1e-7
 LARGEST_CORRECTION = 1.0
 MOST_STEPS = 5000
 """Steps from one frame to the next after which a branch is given up."""
+AT_ONCE = 200
+"""Steps in which a branch that does not begin with what it is to let go will not begin with it."""
 AHEAD = 3e-6
 """How far ahead of a corner of a schedule the branch's direction is taken."""
 FIRST_CROSSING, CROSSING, PRESSED_CROSSING = 1e-6, 1e-3, 0.1
@@ -97,6 +99,8 @@ class Path:
         if self._left(stop) > REACHED:
             if self._idle == MOST_STEPS:
                 raise self._failure(Outcome.EQUILIBRIUM_LOST, f"{MOST_STEPS} steps did not reach the next frame")
+            if self._idle == AT_ONCE and self._equations.letting_go and abs(self.point.q) < REACHED:
+                raise self._failure(Outcome.EQUILIBRIUM_LOST)
             self._step(self._left(stop))
             self._idle += 1
             if self.point.q < -REACHED and not self._equations.letting_go:

@@ -229,6 +229,14 @@ def test_a_rod_without_a_single_equilibrium_ends_by_name() -> None:
     assert failure.value.outcome == Outcome.SINGULAR_SYSTEM
 
 
+def test_a_rod_that_falls_about_its_pin_ends_soon_and_says_so() -> None:
+    run = simulate(static(start=End.pin(), end=End.free(), gravity=(0.0, -9.81, 0.0)))
+    with pytest.raises(RunFailed, match="leave it free to swing") as failure:
+        list(run)
+    assert failure.value.outcome == Outcome.EQUILIBRIUM_LOST
+    assert run.statistics.steps <= 200
+
+
 @pytest.mark.parametrize("clamped", ["start", "end"])
 def test_at_a_clamp_the_moment_is_the_one_that_acts_there_and_curvature_goes_with_it(clamped: str) -> None:
     force, torque = np.array([0.3, 0.1, 0.0]) * EJ, np.array([0.0, 0.0, GJ])

@@ -102,10 +102,13 @@ class DatasetWriter:
         sync(self._path.parent)
         return published
 
-    def _history(self, intervals: int) -> str:
+    def _history(self, run: Run) -> str:
         """How the values came about."""
+        intervals = len(run.s) - 1
         history = f"simulated by hockle with {intervals} intervals"
         if self._spec.numerics.tolerance is not None:
+            if run.accuracy is None or run.accuracy.unknown:
+                return f"{history}; nothing tells the errors"
             return f"{history} and with fewer; the values are extrapolated (Richardson, order 2), with their errors"
         if not self._spec.numerics.verify:
             return history
@@ -115,7 +118,7 @@ class DatasetWriter:
     def _attributes(self, outcome: str, message: str, run: Run) -> dict[str, Any]:
         """The global attributes: CF, ACDD, what a reader needs to run the case again, and what the run noticed."""
         now = datetime.now(UTC).isoformat(timespec="seconds")
-        spec, history, statistics = self._spec, self._history(len(run.s) - 1), run.statistics
+        spec, history, statistics = self._spec, self._history(run), run.statistics
         return {
             "Conventions": "CF-1.11, ACDD-1.3",
             "title": spec.title or spec.name,

@@ -50,6 +50,11 @@ class Accuracy:
     beyond: dict[str, int]
 
     @property
+    def unknown(self) -> bool:
+        """Whether nothing tells the errors."""
+        return bool(np.isnan(self.errors["r"]))
+
+    @property
     def met(self) -> bool:
         """Whether every quantity keeps the tolerance in all frames."""
         return not any(self.beyond.values())
@@ -62,7 +67,7 @@ class Accuracy:
 
     def sentence(self) -> str:
         """What a user is to read."""
-        if np.isnan(self.errors["r"]):
+        if self.unknown:
             return "Nothing tells the errors: only one run came that far."
         errors = ", ".join(f"{_words(name)} {error:.1e}" for name, error in self.errors.items())
         if self.met:

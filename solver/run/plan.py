@@ -38,7 +38,7 @@ IN_CONTACT = 6.0
 """How many times more work an iteration is where strands press on each other."""
 FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
-LAST_PART = 4.0
+LAST_PART = 2.5
 """MOST_WORK that a run with the longest steps may take, where no other came to its end."""
 PATIENCE, MOST_PATIENCE = 8.0, 2.5
 """How many times the work that is expected of it the first run on a second mesh, or with other steps, may take; and

@@ -17,4 +17,5 @@ def test_what_is_beyond_the_tolerance_is_counted_by_quantity() -> None:
 def test_errors_that_nothing_tells_are_not_within_the_tolerance() -> None:
     accuracy = judge(1e-3, np.full((3, 4), np.nan))
     assert not accuracy.met
+    assert accuracy.unknown
     assert accuracy.sentence() == "Nothing tells the errors: only one run came that far."

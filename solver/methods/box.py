@@ -34,7 +34,7 @@ from solver.physics.loads.applied import AppliedLoads
 from solver.physics.loads.registry import Loads
 from solver.physics.section import Section, sample
 from solver.scene.initial import Initial
-from solver.scene.layout import natural_part, nodes_at_rest
+from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 
 STRETCH_FEEDBACK, OF_WAVES = 1.0, 5.0
@@ -64,8 +64,7 @@ class BoxMethod:
         self.applied = AppliedLoads(scene, self.section, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self.state, correction = _initial_state(scene.initial, self.s, self.section)
-        kappa0 = self.section.elastic.kappa0
-        kappa0 += natural_part(kappa0, self.state.Y[:, KAPPA : KAPPA + 3] - correction) * correction
+        self.section.elastic.kappa0[:] += correction
         self.contact = SelfContact(scene.contact, scene.rod, self.s, 1, foreseen(scene))
         self.trial = State.empty(len(self.s))
         self._scheme = Scheme.of(numerics.rho_inf)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import chain, pairwise
 from math import hypot, pi
 from typing import Any
@@ -14,9 +14,10 @@ from service.cases.errors import FieldError
 from service.cases.initial import Straight
 from service.cases.quantities import ScheduleTable
 from service.cases.size import tables_in
-from solver import End, Scene
+from solver import Curve, End, Scene
 from solver.kernels.rotation import matrix_of
-from solver.physics.axial import has_to_stretch
+from solver.physics.axial import LARGEST_STRAIN, has_to_stretch
+from solver.physics.elasticity import Stretch
 from solver.physics.ends import travel
 from solver.physics.loads.solids import Floor, Given
 from solver.scene.layout import nodes_at_rest
@@ -42,7 +43,7 @@ def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
             *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_begins_inside(scene),
-            *_degrees(scene), *_frames(spec)]  # fmt: skip
+            *_degrees(scene), *_stretched(scene), *_frames(spec)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -154,6 +155,26 @@ def _degrees(scene: Scene) -> Iterator[FieldError]:
                 turns = largest / (2 * pi)
                 rule = f"is an angle in rad, of {turns:.3g} turns about an axis across the rod: is it in degrees?"
                 yield FieldError(f"/ends/{name}/theta{i + 1}", largest, rule)
+
+
+def _stretched(scene: Scene) -> Iterator[FieldError]:
+    """A rod that loads, or its weight, would stretch by more than the theory bears."""
+    s = np.linspace(0.0, scene.rod.length, 11)
+    stiffness = min((float(np.min(law.EA(s))) for law in scene.rod.laws if isinstance(law, Stretch)), default=np.inf)
+    ends = ([c[0].curve for c in end.translation if c[0].kind == "load"] for end in (scene.start, scene.end))
+    vectors: list[Iterable[Curve]] = [*(load.force for load in scene.points), *ends]
+    weight = float(np.mean(scene.rod.mass(s))) * scene.rod.length * hypot(*scene.gravity)
+    strain = max([weight, *(_largest(vector, scene) for vector in vectors)]) / stiffness
+    if strain > LARGEST_STRAIN:
+        rule = (f"is so small that loads or the weight may stretch the rod by {strain:.2g} of its length, more than "
+                f"the {LARGEST_STRAIN:g} up to which a run goes on")  # fmt: skip
+        yield FieldError("/rod/axial_stiffness", stiffness, rule)
+
+
+def _largest(vector: Iterable[Curve], scene: Scene) -> float:
+    """The largest length of a vector in time."""
+    components = [np.asarray(curve(_times(scene))) for curve in vector]
+    return float(np.max(np.linalg.norm(components, axis=0))) if components else 0.0
 
 
 def _travel(end: End, R: Any, t: float) -> float:

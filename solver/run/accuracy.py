@@ -35,6 +35,9 @@ STANDS_OUT = 3.0
 SMALL_BEND = 1e-4
 """Total curvature (rad) that counts as none, so that a straight rod's rounding errors are not to be resolved."""
 
+KAPPA_ALONE = (" All but the curvature keep it, which is not resolved where waves run along the rod, or where a limp "
+               "or a taut one bends within less than an interval.")  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Accuracy:
@@ -74,7 +77,8 @@ class Accuracy:
             return f"Estimated errors: {errors}; the tolerance of {self.target:g} is kept."
         beyond = ", ".join(f"{_words(name)} in {count}" for name, count in self.beyond.items() if count)
         frames = f"of {self.frames} frames {beyond}"
-        return f"Estimated errors: {errors}; beyond the tolerance of {self.target:g} are, {frames}."
+        alone = KAPPA_ALONE if not any(count for name, count in self.beyond.items() if name != "kappa") else ""
+        return f"Estimated errors: {errors}; beyond the tolerance of {self.target:g} are, {frames}.{alone}"
 
 
 def _words(name: str) -> str:

@@ -130,3 +130,13 @@ def test_an_angle_that_is_likely_in_degrees_is_pointed_out(angle: float, warned:
     swing = {"t": [0.0, 1.0], "value": [0.0, angle], "interpolation": "smoothstep"}
     warnings = told({"ends.start": {"preset": "clamp", "theta2": swing}})
     assert [warning.pointer for warning in warnings] == ["/ends/start/theta2"] * warned
+
+
+@pytest.mark.parametrize(("pull", "warned"), [(-785.0, True), (-100.0, False)])
+def test_a_rod_that_loads_stretch_beyond_the_theory_is_pointed_out(pull: float, warned: bool):
+    """By 785 N of 2400 N."""
+    jumper = {"preset": "pin", "frame": "lab", "f1": 0.0, "f2": 0.0, "f3": -pull}
+    rod = PRESSED["rod"] | {"axial_stiffness": 2400.0}
+    warnings = _warned(PRESSED | {"rod": rod, "ends": {"start": "pin", "end": jumper}})
+    assert [warning.pointer for warning in warnings] == ["/rod/axial_stiffness"] * warned
+    assert all("by 0.33 of its length" in warning.rule for warning in warnings)

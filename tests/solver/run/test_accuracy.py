@@ -14,6 +14,13 @@ def test_what_is_beyond_the_tolerance_is_counted_by_quantity() -> None:
     assert "beyond the tolerance of 0.001 are, of 2 frames kappa in 2, Tw, Wr in 1." in accuracy.sentence()
 
 
+def test_where_the_curvature_alone_is_beyond_the_tolerance_the_user_reads_that_the_rest_is_not() -> None:
+    within, alone, far = [1e-4, 2e-4, 0.0, 0.0], [1e-4, 2.0, 0.0, 0.0], [2e-3, 0.0, 0.0, 0.0]
+    assert "All but the curvature keep it" in judge(1e-3, np.array([within, alone])).sentence()
+    assert "All but" not in judge(1e-3, np.array([alone, far])).sentence()
+    assert "All but" not in judge(1e-3, np.array([within])).sentence()
+
+
 def test_errors_that_nothing_tells_are_not_within_the_tolerance() -> None:
     accuracy = judge(1e-3, np.full((3, 4), np.nan))
     assert not accuracy.met

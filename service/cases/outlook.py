@@ -78,7 +78,7 @@ def kind_of(scene: Scene) -> str:
     driven, frequency = Driven.of(scene), _frequency(scene)
     urged = Urged.of(scene, driven)
     overdamped = scene.damping > MUCH * frequency
-    if driven.turned > TURN and not overdamped:
+    if driven.turned > TURN:
         return "wound up"
     if scene.contact is not None and urged.bent > TIED and not overdamped:
         return "lies on itself"

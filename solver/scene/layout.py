@@ -58,10 +58,10 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
 
 def natural_part(kappa0: Array, kappa: Array) -> Array:
     """Which part (n, 1), from 0 to 1, of curvatures kappa (n, 3) is natural: all where they are kappa0, and where they
-    are next to none beside kappa0."""
-    little = LITTLE * np.mean(np.sum(kappa0**2, axis=1)) + SMALLEST
+    are next to none beside kappa0; nothing of a rod that is straight by nature."""
+    little = LITTLE * np.mean(np.sum(kappa0**2, axis=1))
     along, square = np.sum(kappa0 * kappa, axis=1), np.sum(kappa**2, axis=1)
-    return np.asarray(np.clip((along + little) / (square + little), 0.0, 1.0)[:, None])
+    return np.asarray(np.clip((along + little) / (square + little + SMALLEST), 0.0, 1.0)[:, None])
 
 
 def across(a: Array, b: Array) -> Array:

@@ -43,4 +43,4 @@ def test_as_much_of_a_curvature_is_natural_as_is_free_of_stress() -> None:
     kappa0 = np.array([[0.0, 2.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [3.0, -1.0, 0.0], [0.0, 1.0, 0.0]])
     assert natural_part(kappa0, kappa)[:, 0] == pytest.approx([1.0, 0.0, 0.5, 0.0, 1.0], abs=0.01)
     assert natural_part(kappa, kappa) == pytest.approx(np.ones((5, 1)))
-    assert natural_part(0.0 * kappa, kappa)[:4] == pytest.approx(np.zeros((4, 1)))
+    assert not natural_part(0.0 * kappa, kappa).any()

@@ -20,8 +20,6 @@ SLOPES = np.array([[-147.0, 360.0, -450.0, 400.0, -225.0, 72.0, -10.0],
                    [2.0, -24.0, -35.0, 80.0, -30.0, 8.0, -1.0],
                    [-1.0, 9.0, -45.0, 0.0, 45.0, -9.0, 1.0]]) / 60.0  # fmt: skip
 """Row i: the weights of seven values one apart by which the derivative at the i-th of them is right to order 6."""
-LITTLE, SMALLEST = 0.01, 1e-300
-"""Of the mean square of kappa0: the square of a curvature that counts as next to none."""
 REACH = 3
 """On how many neighbours to each side a derivative rests."""
 
@@ -54,14 +52,6 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     kappa = np.einsum("nij,ni->nj", R, across(tangent, bend))
     kappa[:, 2] = derivative(h, angle)[::every] if angle.any() else 0.0
     return path[::every].copy(), quaternion_of(R), kappa
-
-
-def natural_part(kappa0: Array, kappa: Array) -> Array:
-    """Which part (n, 1), from 0 to 1, of curvatures kappa (n, 3) is natural: all where they are kappa0, and where they
-    are next to none beside kappa0; nothing of a rod that is straight by nature."""
-    little = LITTLE * np.mean(np.sum(kappa0**2, axis=1))
-    along, square = np.sum(kappa0 * kappa, axis=1), np.sum(kappa**2, axis=1)
-    return np.asarray(np.clip((along + little) / (square + little + SMALLEST), 0.0, 1.0)[:, None])
 
 
 def across(a: Array, b: Array) -> Array:

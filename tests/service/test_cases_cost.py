@@ -129,6 +129,7 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"loads__floor": {"stiffness": 1.0}}, "on a floor"),
     ({"loads__obstacles": [{"start": [0, 0, -9], "radius": 1.0, "stiffness": 1.0}]}, "on a floor"),
     ({"ends__end": moved(theta3=True)}, "wound up"),
+    ({"ends__end": moved(theta3=True), "loads__damping": 1e3}, "wound up"),
     ({"contact": {}, "initial": RING}, "lies on itself"),
     (PINNED | {"loads__gravity": LYING}, "let go between pins"),
     (PINNED | {"loads__point": pushed(15.0)}, "followed by the frames"),

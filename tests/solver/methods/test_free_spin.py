@@ -7,7 +7,7 @@ import pytest
 
 from solver import Curve, DistributedLoad, End, Initial, Numerics, Rod, Scene, simulate
 from solver.arrays import Array
-from solver.scene.layout import natural_part
+from solver.methods.space.segments.initial import natural_part
 
 LENGTH, WIDTH = 0.5, 0.3
 """Of a catenary, m, and its parameter."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from solver.run.accuracy import judge
+from solver.run.accuracy import ENERGIES, errors_of, judge
+from solver.run.recording import JUDGED, NUMBERS, STRETCHING, Columns
 
 
 def test_what_is_beyond_the_tolerance_is_counted_by_quantity() -> None:
@@ -26,3 +27,9 @@ def test_errors_that_nothing_tells_are_not_within_the_tolerance() -> None:
     assert not accuracy.met
     assert accuracy.unknown
     assert accuracy.sentence() == "Nothing tells the errors: only one run came that far."
+
+
+def test_what_stretching_stores_is_one_of_the_energies() -> None:
+    error = Columns(np.zeros((1, 3, len(JUDGED))), np.zeros((1, 1, len(NUMBERS))))
+    error.numbers[0, 0, STRETCHING] = 3.0
+    assert errors_of(error, np.array([1.0, 1.0, 6.0, 1.0]))[0, ENERGIES] == 0.5

@@ -22,17 +22,17 @@ from solver import (
     simulate,
 )
 from solver.run import plan
-from solver.run.accuracy import QUANTITIES, errors_of, sizes
+from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN, first_intervals
 from solver.run.plan import FIRST_INTERVALS, Trial
-from solver.run.recording import Columns, columns_of, row_of
+from solver.run.recording import BALANCE, Columns, columns_of, number_of, row_of
 from solver.run.refined import Refined
 from solver.run.series import Attempt
 from solver.run.together import Together
 from solver.run.under_way import UnderWay
 from solver.scene.ends import FREE
 from tests.solver.bent import bent_cantilever
-from tests.solver.scenes import EJ, LENGTH
+from tests.solver.scenes import EJ, LENGTH, energy
 from validation.error_bars import missed, misses
 
 NUMERICS = Numerics(method="staggered")
@@ -235,3 +235,16 @@ def test_the_coarsest_mesh_has_a_node_at_a_point_load_if_few_enough_have() -> No
     assert first_intervals(loaded()) == first_intervals(loaded(0.5, 0.25)) == FIRST_INTERVALS
     assert [first_intervals(loaded(*places)) for places in ((0.4,), (1 / 3, 0.5), (0.4, 0.25), (0.1, 0.4142))] \
         == [20, 18, 20, FIRST_INTERVALS]  # fmt: skip
+
+
+def test_energies_are_as_uncertain_as_what_went_nowhere() -> None:
+    run = Refined(tolerated(1e-2))
+    frames = list(run)
+    together = run._together
+    lost = max(abs(number_of(row, BALANCE)) for row in together._recorded[together._chosen.finest])
+    largest = max(energy(frame) for frame in frames)
+    assert lost > 0.0
+    assert run.errors_of_frames[-1, ENERGIES] >= 0.9 * together._unfollowed * lost / largest
+    for row in together._recorded[together._chosen.finest]:
+        row[1 + BALANCE] = 0.5 * largest  # as if it had lost so much
+    assert run._together.errors()[-1, ENERGIES] >= 0.4 * run._together._unfollowed

@@ -14,9 +14,12 @@ from solver.physics.elasticity import elasticity_of
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.section import Section, sample
 from solver.scene.initial import Initial
-from solver.scene.layout import natural_part, nodes_at_rest
+from solver.scene.layout import nodes_at_rest
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
+
+LITTLE, SMALLEST = 0.01, 1e-300
+"""Of the mean square of kappa0: the square of a curvature that counts as next to none."""
 
 
 def segments_of(rod: Rod, s: Array) -> Section:
@@ -67,3 +70,11 @@ def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
     offset = natural_part(chain.elastic.kappa0, kappa[::2]) * (bend / chain.span[:, None] - kappa[::2])
     chain.elastic.kappa0[:] += offset
     return state, offset
+
+
+def natural_part(kappa0: Array, kappa: Array) -> Array:
+    """Which part (n, 1), from 0 to 1, of curvatures kappa (n, 3) is natural: all where they are kappa0, and where they
+    are next to none beside kappa0; nothing of a rod that is straight by nature."""
+    little = LITTLE * np.mean(np.sum(kappa0**2, axis=1))
+    along, square = np.sum(kappa0 * kappa, axis=1), np.sum(kappa**2, axis=1)
+    return np.asarray(np.clip((along + little) / (square + little + SMALLEST), 0.0, 1.0)[:, None])

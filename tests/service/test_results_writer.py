@@ -12,6 +12,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 from threading import Event, Thread
+from types import SimpleNamespace
 from typing import Any, get_args
 
 import netCDF4
@@ -36,6 +37,7 @@ from service.results.formats import as_data
 from service.results.query import opened
 from service.results.schema import stored_variables
 from solver import VerifiedFrame
+from solver.run.accuracy import judge
 from tests.service.frames import ended, frames, nodes, small_spec
 
 ROOT = Path(__file__).parents[2]
@@ -430,3 +432,16 @@ def test_a_verified_dataset_has_error_bars(path: Path):
     with opened(path) as source:
         told = as_data(subset(source, ["Tw_error"]))["variables"]["Tw_error"]
     assert told["long_name"] == "estimated error of Tw"
+
+
+@pytest.mark.parametrize(("error", "words"), [(np.nan, "nothing tells the errors"), (1e-4, "extrapolated")])
+def test_the_history_says_extrapolated_only_where_several_runs_came_to_their_end(path: Path, error: float, words: str):
+    fixed, spec = (small_spec(numerics=numerics, **{"output.fields": ["r"]})
+                   for numerics in ({"intervals": 10, "dt_max": 0.1}, {"tolerance": 1e-3}))  # fmt: skip
+    run = SimpleNamespace(**vars(ended(fixed)), accuracy=judge(1e-3, np.full((3, 4), error)))
+    with DatasetWriter(path, spec) as writer:
+        for frame in verified_frames(fixed, 3):
+            writer.append(frame)
+        writer.publish("completed", "", run)
+    with open_dataset(path) as dataset:
+        assert words in dataset.attrs["history"]

@@ -147,8 +147,8 @@ class Together:
             of_mesh = of_mesh - of_steps
         worth = [WORTH.get(name, np.inf) for name in QUANTITIES]
         # how an error falls says nothing as long as the meshes do not show the motion
-        totals = [np.inf if most == np.inf and target * previous.mesh > FAR_FROM_IT else previous.total
-                  for previous, most in zip(before, worth, strict=True)]  # fmt: skip
+        totals = [np.inf if most == np.inf and target * max(previous.mesh, now) > FAR_FROM_IT else previous.total
+                  for previous, now, most in zip(before, of_mesh, worth, strict=True)]  # fmt: skip
         return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, worth, strict=True)]
 
     @cached_property

@@ -24,8 +24,8 @@ from solver import (
 from solver.run import plan
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN, first_intervals
-from solver.run.plan import FIRST_INTERVALS, Trial
-from solver.run.recording import BALANCE, Columns, columns_of, number_of, row_of
+from solver.run.plan import FIRST_INTERVALS, Excess, Trial
+from solver.run.recording import BALANCE, NUMBERS, WIDTH, Columns, R, columns_of, number_of, row_of
 from solver.run.refined import Refined
 from solver.run.series import Attempt
 from solver.run.together import Together
@@ -129,6 +129,20 @@ def test_a_run_with_longer_steps_alone_makes_frames_of_unknown_error() -> None:
     together = Together(scene, [slow, slow._replace(steps=-2, t=4.0, complete=True)], [np.array([]), np.array(rows)])
     assert len(together.piece(0).frames) == len(rows) == 17
     assert np.isnan(together.errors()[:, 0]).all()
+
+
+@pytest.mark.parametrize(("off", "is_told"), [(0.01, True), (1.0, False)])
+def test_how_the_error_falls_is_not_told_where_meshes_do_not_show_the_motion(off: float, is_told: bool) -> None:
+    scene = tolerated(1e-3)
+    coarse = np.array([row_of(frame) for frame in simulate(replace(scene, numerics=replace(NUMERICS, intervals=16)))])
+    fine = np.array([row_of(frame) for frame in simulate(replace(scene, numerics=replace(NUMERICS, intervals=32)))])
+    start = 1 + len(NUMBERS)
+    fine[1:, start:] += off * LENGTH * (np.arange(fine.shape[1] - start) % WIDTH == R.start)  # r_1 of all nodes
+    attempts = [Attempt(mesh, 0, 1.0, 4.0, complete=True, slow=False) for mesh in (0, 1)]
+    before = [Excess(mesh=0.5, steps=0.5)] * len(QUANTITIES)  # all was well before
+    of_r = Together(scene, attempts, [coarse, fine]).excesses(before)[QUANTITIES.index("r")]
+    assert of_r.mesh > 1.0
+    assert (of_r.before == 1.0) == is_told
 
 
 def test_a_run_that_fails_on_every_mesh_gives_the_frames_until_then_and_fails_by_name() -> None:

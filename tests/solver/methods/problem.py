@@ -78,6 +78,8 @@ class Problem:
     work: Work
     contact: SelfContact
     h: float
+    applied: AppliedLoads
+    """Kept: kernels call a user's loads back by an address in `loads`."""
 
     @property
     def c0(self) -> float:
@@ -196,7 +198,8 @@ def problem(
     old.rate[:] = natural[:9] * random.normal(size=(n, 9))
     old.aux[:] = np.concatenate([natural[:6], natural[:9]]) * random.normal(size=(n, 15))
     new.Y[:] = old.Y + 0.1 * natural * random.normal(size=(n, 12))
-    records = AppliedLoads(scene, section, s).records
+    applied = AppliedLoads(scene, section, s)
+    records = applied.records
     for name, (force, moment) in loads.items():
         kind = type(getattr(records, name))
         records = records._replace(**{name: kind(True, force[None].copy(), moment[None].copy())})
@@ -214,4 +217,4 @@ def problem(
     touching = SelfContact(contact, scene.rod, s, stages=1)
     if contact is not None:
         touching.prepare(total_bending(old.Y, float(s[1])), old.r, old.Y, dt)
-    return Problem(old, new, section, records, ends, scheme, dt, work, touching, h)
+    return Problem(old, new, section, records, ends, scheme, dt, work, touching, h, applied)

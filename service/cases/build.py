@@ -14,9 +14,9 @@ from service.cases.ends import build_end
 from service.cases.errors import CaseError, FieldError
 from service.cases.initial import InitialSpec
 from service.cases.rod import RodSpec
-from solver import Curve, Initial, Rod, Scene, Vector, check_end
+from solver import Initial, Rod, Scene, Vector, check_end
 from solver.run.plan import FIRST_INTERVALS
-from solver.scene.layout import nodes_at_rest, sampled
+from solver.scene.layout import curvature_of, nodes_at_rest
 
 Part = TypeVar("Part")
 KEPT = 64
@@ -35,7 +35,7 @@ def build_scene(spec: CaseSpec) -> Scene:
     initial = _part("/initial", lambda: _initial(spec.initial, spec.rod.length))
     if spec.rod.kappa0 == "initial":
         intervals = spec.numerics.intervals or FIRST_INTERVALS
-        kappa0 = _part("/initial", lambda: _curvature(spec.initial, spec.rod.length, sampled(intervals)))
+        kappa0 = _part("/initial", lambda: _curvature(spec.initial, spec.rod.length, intervals))
         rod = replace(rod, kappa0=kappa0)
     return _part("", lambda: _scene(spec, rod, initial))
 
@@ -58,10 +58,7 @@ def _initial(spec: InitialSpec, length: float) -> Initial:
 @lru_cache(KEPT)
 def _curvature(spec: InitialSpec, length: float, intervals: int) -> Vector:
     """Curvature and twist of the initial shape."""
-    s = np.linspace(0.0, length, intervals + 1)
-    _, _, kappa = nodes_at_rest(_initial(spec, length), s)
-    bend1, bend2, twist = (Curve.table(s, column, "cubic") for column in kappa.T)
-    return bend1, bend2, twist
+    return curvature_of(_initial(spec, length), length, intervals)
 
 
 def _scene(spec: CaseSpec, rod: Rod, initial: Initial) -> Scene:

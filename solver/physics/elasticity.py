@@ -24,6 +24,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import by_type, inlined, inner, kernel
 from solver.kernels.vectors import add, dot, minus, plus, stiffness, times, transform, vector_product
 from solver.kernels.vectors import vector as line
+from solver.scene.cells import Cells
 from solver.scene.curve import Curve
 from solver.scene.rod import Profile, Rod
 from solver.scene.view import View
@@ -152,6 +153,17 @@ def elasticity_of(rod: Rod, s: Array) -> Elasticity:
         raise ValueError("stiffness must be positive definite along the rod: the coupling must be smaller")
     kappa0 = np.ascontiguousarray(np.stack([profile(s) for profile in rod.kappa0], axis=1))
     return Elasticity(K, kappa0, compliance, by_tension, softening, locking, time[:, None, None] * K[: len(time)])
+
+
+def elasticity_over(elastic: Elasticity, cells: Cells) -> Elasticity:
+    """What `elastic` at their points counts for in cells; of K that by which they bend as much under a moment, the
+    inverse of the mean of 1/K. kappa0 is that of the cells' own points."""
+    if len(cells.crossed) == 0:
+        return elastic
+    mean = Elasticity(*(cells.mean(values) if len(values) else values for values in elastic))
+    flexibility = cells.mean(np.asarray(np.linalg.inv(elastic.K), dtype=np.float64))
+    mean.K[cells.crossed] = np.linalg.inv(flexibility[cells.crossed])
+    return mean._replace(kappa0=elastic.kappa0[: len(mean.K)])
 
 
 def _coupled(g: Array, compliance: Array, GJ: Array) -> Array:

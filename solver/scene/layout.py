@@ -8,6 +8,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.kernels.rotation import quaternion_of
 from solver.kernels.vectors import vector_product
+from solver.scene.curve import Curve, Vector
 from solver.scene.initial import Initial
 
 ALONG = 1e-6
@@ -52,6 +53,13 @@ def nodes_at_rest(initial: Initial, s: Array) -> tuple[Array, Array, Array]:
     kappa = np.einsum("nij,ni->nj", R, across(tangent, bend))
     kappa[:, 2] = derivative(h, angle)[::every] if angle.any() else 0.0
     return path[::every].copy(), quaternion_of(R), kappa
+
+
+def curvature_of(initial: Initial, length: float, intervals: int) -> Vector:
+    """Curvature and twist of a shape along the rod, as a mesh of `intervals` sees it."""
+    s = np.linspace(0.0, length, sampled(intervals) + 1)
+    bend1, bend2, twist = (Curve.table(s, column, "cubic") for column in nodes_at_rest(initial, s)[2].T)
+    return bend1, bend2, twist
 
 
 def across(a: Array, b: Array) -> Array:

@@ -13,11 +13,33 @@ from solver.scene.curve import Curve
 from solver.scene.view import NONE, View, answer
 
 Profile = Callable[[Array], Array]
-"""A property along the rod: maps arclengths s (n,) in m to values (n,). A `Curve` is one."""
+"""A property along the rod: maps arclengths s (n,) in m to values (n,). A `Curve` is one.
+
+Where it has `corners`, arclengths between which it is smooth, as a table's points, what lies between the nodes of a
+mesh counts as well; without them it is taken to be smooth.
+"""
 
 Profiles = tuple[Profile, Profile, Profile]
 
 NO_CURVATURE: Profiles = (Curve.constant(0.0), Curve.constant(0.0), Curve.constant(0.0))
+
+
+def corners_of(*profiles: Profile) -> tuple[float, ...]:
+    """The arclengths between which all of them are smooth."""
+    return tuple(sorted({corner for profile in profiles for corner in getattr(profile, "corners", ())}))
+
+
+class Derived:
+    """A property that follows by a `law` from others at the same place."""
+
+    def __init__(self, law: Callable[..., Array], *profiles: Profile) -> None:
+        self._law, self._profiles = law, profiles
+        self.corners = corners_of(*profiles)
+        """See `Profile`."""
+
+    def __call__(self, s: Array) -> Array:
+        """Its values at arclengths s (n,)."""
+        return self._law(*(profile(s) for profile in self._profiles))
 
 
 @dataclass(frozen=True)
@@ -42,7 +64,8 @@ class Rod:
     def __post_init__(self) -> None:
         if not (np.isfinite(self.length) and self.length > 0):
             raise ValueError(f"length must be > 0 m, got {self.length}")
-        s = np.linspace(0.0, self.length, 201)
+        corners = [s for s in (*self.corners, *corners_of(*self.kappa0)) if 0.0 < s < self.length]
+        s = np.union1d(np.linspace(0.0, self.length, 201), corners)
         named = [("diameter", self.diameter), ("mass", self.mass)]
         named += [(f"stiffness[{i}]", p) for i, p in enumerate(self.stiffness)]
         named += [(f"inertia[{i}]", p) for i, p in enumerate(self.inertia)]
@@ -56,6 +79,12 @@ class Rod:
                 wrong = values[~np.isfinite(values)][0]
                 raise ValueError(f"kappa0[{i}] must be finite everywhere along the rod, got {wrong}")
 
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Of its section properties, all but `kappa0`: see `Profile`."""
+        of_laws = (value for law in self.laws for value in getattr(law, "__dict__", {}).values())
+        return corners_of(*self.stiffness, self.mass, *self.inertia, self.diameter, *of_laws)
+
     def keeps(self, view: View) -> bool:
         """Whether the rod is free of stress along the motion about an axis."""
         kappa0 = np.stack([p(view.s) for p in self.kappa0], axis=1)
@@ -66,7 +95,7 @@ class Rod:
         """Of a solid circular section: m D^2/16 about a diameter, m D^2/8 about the axis."""
 
         def times(factor: float) -> Profile:
-            return lambda s: factor * mass(s) * diameter(s) ** 2
+            return Derived(lambda mass, diameter: factor * mass * diameter**2, mass, diameter)
 
         return times(1.0 / 16.0), times(1.0 / 16.0), times(1.0 / 8.0)
 
@@ -91,10 +120,10 @@ class Rod:
                 raise ValueError(f"{name} must be > 0, got {value}")
 
         def area(factor: float) -> Profile:
-            return lambda s: factor * pi / 4 * width(s) ** 2
+            return Derived(lambda width: factor * pi / 4 * width**2, width)
 
         def second_moment(factor: float) -> Profile:
-            return lambda s: factor * pi / 64 * (width(s) ** 2) ** 2
+            return Derived(lambda width: factor * pi / 64 * (width**2) ** 2, width)
 
         bending, torsion, mass = second_moment(youngs_modulus), second_moment(2 * shear_modulus), area(density)
         return cls(

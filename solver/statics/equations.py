@@ -91,7 +91,7 @@ class Equations:
         self.applied = loads_on_segments(scene, self.s, times=1)
         self.loads = self.applied.records
         self.chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
-        state, self.offset = lay_out(scene.initial, self.chain, self.s)
+        state, self.offset = lay_out(scene, self.chain, self.s)
         self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
         self.stages, self.tangents = Stages.empty(N), Tangents.empty(N)
         self._driven, self._residuals = Driven.empty(N), Residuals.empty(N)

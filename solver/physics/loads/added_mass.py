@@ -7,7 +7,6 @@ u_n = u - (u . T) T, u the velocity relative to the current; what is left of the
 
 from __future__ import annotations
 
-from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,7 +28,7 @@ class Record(NamedTuple):
 def of(scene: Scene, samples: Samples) -> Source:
     """The added mass of a scene's fluid."""
     fluid = scene.fluid
-    area, ratio = 0.25 * pi * samples.section.diameter**2, fluid.density * fluid.added_mass if fluid else 0.0
+    area, ratio = samples.section.area, fluid.density * fluid.added_mass if fluid else 0.0
     current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)], dtype=float)
     return Source(Record(ratio > 0.0, ratio * area, current))
 

@@ -11,6 +11,7 @@ from solver.arrays import Array
 from solver.physics.loads.load import Samples, Source
 from solver.scene.curve import Curve
 from solver.scene.loads import DistributedLoad, PointLoad
+from solver.scene.rod import corners_of
 from solver.scene.scene import Scene
 
 
@@ -36,16 +37,16 @@ class GivenLoads(Source):
         acting = [load for load in loads if self._has_lever(load, samples)
                   or any(not _is_zero(c) for c in self._part(load))]  # fmt: skip
         super().__init__(kind(bool(acting), *arrays))
-        self._distributed = [(load, np.stack([p(samples.s) for p in self._part(load)], axis=1))
-                             for load in acting if isinstance(load, DistributedLoad)]  # fmt: skip
+        self._distributed = [(self._target(load), np.stack([samples.mean(p) for p in self._part(load)], axis=1),
+                              load.schedule) for load in acting if isinstance(load, DistributedLoad)]  # fmt: skip
         self._points = [(self._target(load)[..., k], samples.weights(load.s), curve)
                         for load in acting if isinstance(load, PointLoad)
                         for k, curve in enumerate(self._part(load)) if not curve.is_zero]  # fmt: skip
         for load in acting:
-            if isinstance(load, PointLoad) and self._has_lever(load, samples):  # a3 x f: a moment along material axes
-                levers = samples.levers(load.s)
-                self._points += [(self.record.moment[..., 0], -levers, load.force[1]),
-                                 (self.record.moment[..., 1], levers, load.force[0])]  # fmt: skip
+            if self._has_lever(load, samples):  # a3 x f: a moment along material axes
+                (first, along_1), (second, along_2), _ = levers_of(load, samples)
+                self._points += [(self.record.moment[..., 0], -second, along_2),
+                                 (self.record.moment[..., 1], first, along_1)]  # fmt: skip
         self._density = np.zeros((n, 3))
         self.steady = all(is_steady(load) for load in acting)
         self.corners = tuple(corner for load in acting for curve in _schedules(load) for corner in curve.corners)
@@ -56,8 +57,8 @@ class GivenLoads(Source):
         """Write the loads at time t."""
         self.record.force[i] = 0.0
         self.record.moment[i] = 0.0
-        for load, density in self._distributed:
-            self._target(load)[i] += np.multiply(density, load.schedule.value(t), out=self._density)
+        for target, density, schedule in self._distributed:
+            target[i] += np.multiply(density, schedule.value(t), out=self._density)
         for target, density, curve in self._points:
             target[i] += np.multiply(density, curve.value(t), out=self._density[:, 0])
 
@@ -67,8 +68,7 @@ class GivenLoads(Source):
 
     def _has_lever(self, load: DistributedLoad | PointLoad, samples: Samples) -> bool:
         """Whether the moment that its force has about a segment's middle is of this kind; see also `levers`."""
-        turns = samples.rigid and not self._following and load.frame == "material"
-        return turns and isinstance(load, PointLoad) and load.pulls
+        return samples.rigid and not self._following and load.frame == "material" and turns_segments(load)
 
     def _part(self, load: DistributedLoad | PointLoad) -> Any:
         return load.force if self._acts_by_force(load) else load.moment
@@ -91,6 +91,19 @@ def nodes_act(s: Array) -> tuple[Array, Array]:
 def points_within(scene: Scene) -> list[PointLoad]:
     """The point loads of a scene, but for those at its ends."""
     return [load for load in scene.points if load.s not in (0.0, scene.rod.length)]
+
+
+def turns_segments(load: DistributedLoad | PointLoad) -> bool:
+    """Whether its force acts beside the middles of segments: in a point, or by a density that is not even."""
+    return load.pulls if isinstance(load, PointLoad) else len(corners_of(*load.force)) > 0
+
+
+def levers_of(load: DistributedLoad | PointLoad, samples: Samples) -> list[tuple[Array, Curve]]:
+    """Of each component of its force how far (n,) from their middles it acts on rigid segments, times its density, and
+    how that goes in time."""
+    if isinstance(load, PointLoad):
+        return [(samples.levers(load.s), component) for component in load.force]
+    return [(samples.arms(component), load.schedule) for component in load.force]
 
 
 def is_steady(load: DistributedLoad | PointLoad) -> bool:

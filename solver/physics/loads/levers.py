@@ -1,7 +1,7 @@
-"""What point forces within the rod do besides acting on a rigid segment: they turn it, for they act beside its middle.
+"""What forces within the rod do besides acting on a rigid segment: they turn it, for they act beside its middle.
 
-A force F (lab) at a way l from the middle along the segment has the moment l T x F about it. Where a method knows no
-rigid segments there are none, see `Samples.weights`.
+A force F (lab) at a way l from the middle along the segment has the moment l T x F about it: a point force, or a part
+of a density that is not even. Where a method knows no rigid segments there are none, see `Samples.weights`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ import numpy as np
 
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import lever, lever_by_rotation, times, vector
-from solver.physics.loads.given import is_steady, points_within
+from solver.physics.loads.given import is_steady, levers_of, points_within, turns_segments
 from solver.physics.loads.load import GIVEN, Point, Samples, Source, Tangents
+from solver.scene.loads import DistributedLoad, PointLoad
 from solver.scene.scene import Scene
 
 
@@ -25,11 +26,12 @@ class Record(NamedTuple):
 
 
 class Levers(Source):
-    """The levers of a scene's point forces that keep their direction."""
+    """The levers of a scene's forces that keep their direction."""
 
     def __init__(self, scene: Scene, samples: Samples) -> None:
-        loads = [load for load in points_within(scene) if samples.rigid and load.frame == "lab" and load.pulls]
-        self._loads = [(load, samples.levers(load.s)) for load in loads]
+        given: list[DistributedLoad | PointLoad] = [*scene.distributed, *points_within(scene)]
+        loads = [load for load in given if samples.rigid and load.frame == "lab" and turns_segments(load)]
+        self._levers = [levers_of(load, samples) for load in loads]
         super().__init__(Record(bool(loads), np.zeros((samples.times, len(samples.s), 3))))
         self._arm = np.zeros(len(samples.s))
         self.steady = all(is_steady(load) for load in loads)
@@ -39,9 +41,9 @@ class Levers(Source):
     def set_time(self, t: float, i: int) -> None:
         """Write the levers at time t."""
         self.record.arm[i] = 0.0
-        for load, levers in self._loads:
-            for k, component in enumerate(load.force):
-                self.record.arm[i, :, k] += np.multiply(levers, component.value(t), out=self._arm)
+        for of_load in self._levers:
+            for k, (levers, curve) in enumerate(of_load):
+                self.record.arm[i, :, k] += np.multiply(levers, curve.value(t), out=self._arm)
 
 
 of = Levers

@@ -30,6 +30,8 @@ from solver.kernels.dispatch import dispatched, for_each, has_variant
 from solver.kernels.kernel import by_type, inner
 from solver.kernels.vectors import dot
 from solver.physics.section import Section
+from solver.scene.cells import Cells
+from solver.scene.rod import Profile, corners_of
 
 ON_NODE = 1e-9
 """Part of a segment by which a point may be beside a node and is still taken to be there."""
@@ -113,6 +115,19 @@ class Samples:
     lengths: Array
     times: int
     rigid: bool = False
+
+    def mean(self, profile: Profile) -> Array:
+        """What a density along the rod counts for (n,) in the segments, or around the nodes."""
+        return self._cells(profile).mean_of(profile)
+
+    def arms(self, profile: Profile) -> Array:
+        """How far (n,) from their middles a density acts on rigid segments, times its mean."""
+        return self._cells(profile).arms_of(profile)
+
+    def _cells(self, profile: Profile) -> Cells:
+        half = 0.5 * self.lengths
+        edges = np.append(self.centres - half, self.centres[-1] + half[-1])
+        return Cells.at(self.s, edges, corners_of(profile))
 
     def weights(self, at: float) -> Array:
         """Densities (n,) in 1/m that act like a unit point load at arclength `at`, together with its `levers`.

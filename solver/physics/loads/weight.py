@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,7 +23,7 @@ def of(scene: Scene, samples: Samples) -> Source:
     """The weight of a scene's rod in its fluid."""
     mass = samples.section.mass.copy()
     if scene.fluid:
-        mass -= scene.fluid.density * 0.25 * pi * samples.section.diameter**2
+        mass -= scene.fluid.density * samples.section.area
     return Source(Record(any(scene.gravity), np.outer(mass, np.array(scene.gravity, dtype=float))))
 
 

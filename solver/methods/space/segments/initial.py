@@ -10,12 +10,12 @@ from solver.arrays import Array
 from solver.kernels.rotation import rotate_back
 from solver.methods.space.segments.chain import Chain, State
 from solver.methods.space.segments.joints import bend_joints
-from solver.physics.elasticity import elasticity_of
+from solver.physics.elasticity import elasticity_of, elasticity_over
 from solver.physics.loads.applied import AppliedLoads
-from solver.physics.section import Section, sample
-from solver.scene.initial import Initial
-from solver.scene.layout import nodes_at_rest
-from solver.scene.rod import Rod
+from solver.physics.section import Section, sample_over
+from solver.scene.cells import around_nodes, between_nodes
+from solver.scene.layout import curvature_of, nodes_at_rest
+from solver.scene.rod import Profiles, Rod, corners_of
 from solver.scene.scene import Scene
 
 LITTLE, SMALLEST = 0.01, 1e-300
@@ -23,8 +23,8 @@ LITTLE, SMALLEST = 0.01, 1e-300
 
 
 def segments_of(rod: Rod, s: Array) -> Section:
-    """The section at the centres of the segments between nodes `s` (N + 1,), with the inertia of whole segments."""
-    section = sample(rod, 0.5 * (s[1:] + s[:-1]))
+    """The section of the segments between nodes `s` (N + 1,), with the inertia of whole segments."""
+    section = sample_over(rod, between_nodes(s, rod.corners))
     return section._replace(inertia=section.inertia + np.outer(section.mass, _across(s)))
 
 
@@ -46,17 +46,25 @@ def chain_of(rod: Rod, section: Section, entrained: Array, s: Array) -> Chain:
     span = np.full(len(s), h)
     span[0] = span[-1] = 0.5 * h
     wet = section.inertia + np.outer(entrained, _across(s))
-    return Chain(h, section.mass, wet, section.inertia, span, elasticity_of(rod, s))
+    joints = around_nodes(s, rod.corners)
+    elastic = elasticity_over(elasticity_of(rod, joints.points), joints)
+    return Chain(h, section.mass, wet, section.inertia, span, elastic._replace(kappa0=_in_joints(rod.kappa0, rod, s)))
 
 
-def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
+def _in_joints(curvature: Profiles, rod: Rod, s: Array) -> Array:
+    """What a curvature along the rod counts for in the joints at `s` (n,), where the natural one has corners."""
+    joints = around_nodes(s, corners_of(*rod.kappa0))
+    return np.stack([joints.mean_of(component) for component in curvature], axis=1)
+
+
+def lay_out(scene: Scene, chain: Chain, s: Array) -> tuple[State, Array]:
     """The state at t = 0, and by how much the joints' curvature (N + 1, 3) differs from the centreline's own, as far as
     that is the natural one.
 
     kappa0 is shifted by as much, so that a rod whose natural shape is its initial one starts without stress. That of a
     straight one is not: a curvature of its own, however small, turns a rod that nothing else keeps from spinning.
     """
-    state = State.empty(len(s) - 1)
+    state, initial = State.empty(len(s) - 1), scene.initial
     r, quaternion, kappa = nodes_at_rest(initial, np.linspace(0.0, s[-1], 2 * len(s) - 1))
     state.quaternion[0], state.quaternion[1:-1], state.quaternion[-1] = quaternion[0], quaternion[1::2], quaternion[-1]
     spin = np.array(initial.angular_velocity, dtype=float)
@@ -67,7 +75,10 @@ def lay_out(initial: Initial, chain: Chain, s: Array) -> tuple[State, Array]:
     state.base[2] = np.cross(spin, np.cross(spin, arm))
     bend, moment, left, right = (np.zeros((len(s), 3)) for _ in range(4))
     bend_joints(chain, state.quaternion, bend, moment, left, right)
-    offset = natural_part(chain.elastic.kappa0, kappa[::2]) * (bend / chain.span[:, None] - kappa[::2])
+    own = kappa[::2]
+    if own.any() and (chain.elastic.kappa0 != np.stack([profile(s) for profile in scene.rod.kappa0], axis=1)).any():
+        own = _in_joints(curvature_of(initial, float(s[-1]), len(s) - 1), scene.rod, s)
+    offset = natural_part(chain.elastic.kappa0, own) * (bend / chain.span[:, None] - own)
     chain.elastic.kappa0[:] += offset
     return state, offset
 

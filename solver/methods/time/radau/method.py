@@ -188,7 +188,7 @@ class RadauMethod(ABC):
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
         chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
         self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
-        return chain, *lay_out(scene.initial, chain, self.s)
+        return chain, *lay_out(scene, chain, self.s)
 
     def _make_records(self, chain: Record, state: Record, kinds: tuple[Any, ...], coupling: Record = None) -> None:
         """All that the steps of a chain write, from its state at t = 0 on; `kinds`: the classes of these records."""

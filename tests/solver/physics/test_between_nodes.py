@@ -1,0 +1,92 @@
+"""What a rod has between the nodes of a mesh: loads, masses, necks and kinks that are narrower than an interval."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from solver import Curve, DistributedLoad, End, Frame, Initial, Numerics, Rod, Scene, simulate
+from solver.scene.rod import Profile
+
+LENGTH, EJ, FORCE = 1.0, 10.0, 0.5
+FLAT = Initial.straight((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), a1=(0.0, 1.0, 0.0))
+NONE = Curve.constant(0.0)
+PLACES = (0.2631, 0.5, 0.5937, 0.9687)
+WIDTH = 0.01
+
+
+def patch(middle: float, inside: float, outside: float = 0.0, width: float = WIDTH) -> Curve:
+    """The value inside a part of the rod, and outside."""
+    start, end = middle - 0.5 * width, middle + 0.5 * width
+    return Curve.table([start - 1e-9, start, end, end + 1e-9], [outside, inside, inside, outside])
+
+
+def cantilever(method: str = "static", intervals: int = 16, stiffness: Profile | None = None, **more: Any) -> Scene:
+    bending: Profile = stiffness or Curve.constant(EJ)
+    constant = Curve.constant
+    inertia = constant(1e-6), constant(1e-6), constant(2e-6)
+    rod = Rod(LENGTH, (bending, bending, constant(EJ)), constant(0.1), inertia, constant(0.02))
+    static = method == "static"
+    numerics = Numerics(method="staggered" if static else method, intervals=intervals)
+    scene = Scene(rod, FLAT, End.clamp(), End.free(), t_end=4.0, output_interval=4.0, damping=4.0, numerics=numerics)
+    return replace(scene, **more, analysis="static" if static else "dynamic")
+
+
+def last(scene: Scene) -> Frame:
+    *_, frame = simulate(scene)
+    return frame
+
+
+def load(middle: float, frame: Any = "lab") -> DistributedLoad:
+    across = patch(middle, FORCE / WIDTH)
+    # in the rod's frame a1 is e2 and a2 is e3
+    return DistributedLoad((NONE, NONE, across) if frame == "lab" else (NONE, across, NONE), frame=frame)
+
+
+@pytest.mark.parametrize("frame", ["lab", "material"])
+@pytest.mark.parametrize("method", ["static", "staggered", "box"])
+@pytest.mark.parametrize("middle", PLACES)
+def test_a_narrow_load_acts_with_all_its_force_where_it_is(method: str, middle: float, frame: str) -> None:
+    rest = last(cantilever(method, distributed=(load(middle, frame),)))
+    deflection = FORCE * middle**2 * (3.0 * LENGTH - middle) / (6.0 * EJ)
+    at_root = np.linalg.norm(rest.f[0])
+    assert at_root == pytest.approx(FORCE, rel=2e-3)
+    # where no segments are, it acts on a node
+    assert rest.r[-1, 2] == pytest.approx(deflection, rel=0.1 if method == "box" else 0.02)
+
+
+@pytest.mark.parametrize("method", ["static", "staggered", "box"])
+@pytest.mark.parametrize("middle", PLACES)
+def test_a_narrow_mass_weighs_what_it_weighs(method: str, middle: float) -> None:
+    scene = cantilever(method, gravity=(0.0, 0.0, -1.0))
+    heavy = replace(scene, rod=replace(scene.rod, mass=patch(middle, 100.0, 0.1)))
+    assert np.linalg.norm(last(heavy).f[0]) == pytest.approx(0.1 + 99.9 * WIDTH, rel=2e-3)
+
+
+@pytest.mark.parametrize("method", ["static", "staggered"])
+@pytest.mark.parametrize("middle", PLACES[:-1])
+def test_a_narrow_neck_gives_way(method: str, middle: float) -> None:
+    loads = (DistributedLoad((NONE, NONE, Curve.constant(FORCE)), frame="lab"),)
+    stiff, neck = (last(cantilever(method, stiffness=EJ_, distributed=loads)).r[-1, 2]
+                   for EJ_ in (None, patch(middle, 0.01 * EJ, EJ)))  # fmt: skip
+    arm = LENGTH - middle
+    expected = 0.5 * FORCE * arm**2 * (99.0 / EJ) * WIDTH * arm  # what the neck turns by, times the way to the tip
+    assert neck - stiff == pytest.approx(expected, rel=0.12)
+
+
+@pytest.mark.parametrize("middle", PLACES[:-1])
+def test_a_natural_kink_turns_by_its_angle(middle: float) -> None:
+    scene = cantilever()
+    kinked = replace(scene, rod=replace(scene.rod, kappa0=(NONE, patch(middle, 0.1 / WIDTH), NONE)))
+    rest = last(kinked)
+    along = rest.r[-1] - rest.r[-2]
+    assert abs(np.arctan2(np.linalg.norm(along[1:]), along[0])) == pytest.approx(0.1, rel=1e-6)
+
+
+def test_a_narrow_load_is_told_from_none_by_a_tolerance() -> None:
+    scene = replace(cantilever("staggered", distributed=(load(0.5),)), numerics=Numerics("staggered", tolerance=1e-3))
+    frame = last(scene)
+    assert frame.r[-1, 2] == pytest.approx(FORCE * 0.25 * 2.5 / (6.0 * EJ), rel=2e-3)

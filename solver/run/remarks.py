@@ -75,7 +75,7 @@ class Remarks:
             )
         if self.turning_loads:
             sentences.append(
-                "Forces turn with the rod, or have no potential: negative_modes is counted with them held as they "
+                "Loads turn with the rod, or have no potential: negative_modes is counted with them held as they "
                 "are, and says neither that the rod stays there nor that it leaves. A dynamic run shows it."
             )
         return sentences

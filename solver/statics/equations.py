@@ -95,6 +95,8 @@ class Equations:
         self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
         self.stages, self.tangents = Stages.empty(N), Tangents.empty(N)
         self._driven, self._residuals = Driven.empty(N), Residuals.empty(N)
+        self._moments = np.zeros((2, 3))
+        """On the ends, material, of the point that was looked at last."""
         _lay_down(self.chain, state.quaternion, self.start.base, self.start.F, self.stages)
         R = self.stages.R[0]
         self.ends = (StaticEnd(scene.start, R[0]), StaticEnd(scene.end, R[-1]))
@@ -191,6 +193,7 @@ class Equations:
         self._driven.dead[0, side] = dead
         inner = self.stages.left[0, 0] if side == 0 else self.stages.right[0, -1]
         loaded = np.where(end.held, 0.0, values)
+        self._moments[side] = loaded[3:] + follower[3:]
         self._follower(side)[:] = follower[:3] + (loaded[:3] if end.follows else 0.0)
         force = dead[:3] + R @ self._follower(side) + (0.0 if end.follows else loaded[:3])
         across = end.axes.T @ (sign * (point.F[frame] - force)) / self._unit(X)
@@ -221,11 +224,12 @@ class Equations:
         return float(self.compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
 
     def loads_turn(self) -> bool:
-        """Whether loads have no potential, of the point that was looked at last: what turns with the rod, or depends on
-        the place in a way that no energy does."""
+        """Whether loads have no potential, of the point that was looked at last: what turns with the rod, as a moment
+        on an end that is free about more than one axis, or depends on the place in a way that no energy does."""
         K = self.tangents.K
         skew = np.abs(K - np.swapaxes(K, 1, 2)).max() > SKEW * np.abs(K).max()
-        return bool(skew or self.tangents.E.any() or self._driven.values[0, :, :3].any())
+        moments = [self._moments[side].any() and end.held[3:].sum() < 2 for side, end in enumerate(self.ends)]
+        return bool(skew or self.tangents.E.any() or self._driven.values[0, :, :3].any() or any(moments))
 
     def _follower(self, side: int) -> Array:
         """Forces (3,) that follow an end's frame."""

@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import (
+    FIXED,
     FREE,
     Condition,
     Curve,
@@ -48,6 +49,8 @@ from tests.solver.statics.resting import PRESSED, ZERO, ramp, static
     (PRESSED["pin and clamp"], False),
     (PRESSED["following"], True), (PRESSED["current"], True),
     ({"end": End((FREE, FREE, (Condition("load", ramp(-15.0 * EJ)),)), (FREE, FREE, FREE))}, True),
+    ({"end": End((FREE, FREE, FREE), (FREE, (Condition("load", ramp(EJ)),), FREE))}, True),
+    ({"end": End((FREE, FREE, FREE), (FIXED, (Condition("load", ramp(EJ)),), FIXED))}, False),
 ])  # fmt: skip
 def test_of_forces_that_turn_with_the_rod_the_run_says_that_modes_prove_nothing(
     loads: dict[str, object], turning: bool

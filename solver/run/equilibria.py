@@ -77,6 +77,7 @@ class Equilibria(Run):
         statistics.steps += path.steps - steps
         statistics.failed_steps += path.failed - failed
         statistics.newton_iterations += path.iterations - iterations
+        self._follow_ends(path.point)
         return reached
 
     def _corners(self) -> list[float]:
@@ -88,6 +89,7 @@ class Equilibria(Run):
         """Of the initial shape."""
         equations = self._equations
         equations.residual(equations.start)
+        self._follow_ends(equations.start)
         self._linking.of(0.0, self._twist(equations.start), self._writhe(self._fields(equations.start)))
 
     def _frame(self, t: float) -> Frame:
@@ -130,10 +132,19 @@ class Equilibria(Run):
 
     def _linking_number(self, t: float, Tw: float, Wr: float) -> float:
         """NaN where the ends' relative rotation is not prescribed."""
-        turned = [end.spin(t) for end in self._equations.ends]
-        if turned[0] is None or turned[1] is None:
-            return nan
-        return self._linking.of(turned[1] - turned[0], Tw, Wr)
+        turned = self._turned(t)
+        return nan if turned is None else self._linking.of(turned, Tw, Wr)
+
+    def _follow_ends(self, point: Point) -> None:
+        """After each step of the path: what the ends' tangents have swept."""
+        ends, turned = (self._scene.start, self._scene.end), self._turned(self._equations.time(point.q))
+        if self._scene.topology and turned is not None and not all(end.holds_tangent() for end in ends):
+            self._linking.follow(turned, point.quaternion)
+
+    def _turned(self, t: float) -> float | None:
+        """The rotation (rad) of the end about a3 relative to that of the start, if both are prescribed."""
+        start, end = (end.spin(t) for end in self._equations.ends)
+        return None if start is None or end is None else end - start
 
     def _fields(self, point: Point) -> Fields:
         """The state along the rod, at the nodes, of the point that was looked at last."""

@@ -260,3 +260,12 @@ def test_a_cantilever_comes_to_lie_on_a_solid_as_one_that_falls_there_does(solid
     assert np.abs(fallen.v).max() < 1e-6
     assert_allclose(lying.r, fallen.r, atol=1e-5)
     assert lying.negative_modes == 0
+
+
+def test_an_end_that_is_swung_changes_the_linking_number_by_what_its_tangent_sweeps() -> None:
+    """An arc, whose end is swung out of its plane."""
+    free, swing = (FREE, FREE, FREE), (Condition("position", ramp(1.5)),)
+    scene = static(rod=ARC_ROD, initial=ARC, end=End(free, (swing, FIXED, FIXED)), output_interval=0.05)
+    frames = list(simulate(scene))
+    assert abs(frames[-1].Lk - frames[0].Lk) > 0.1
+    assert max(abs(frame.Tw + frame.Wr - frame.Lk) for frame in frames) < 1e-9

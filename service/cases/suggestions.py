@@ -20,7 +20,10 @@ def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
     if not fault.unknown or not fault.pointer:  # a field that is named as what tells kinds apart has no pointer
         return fault
     *path, name = (part.replace("~1", "/").replace("~0", "~") for part in fault.pointer.split("/")[1:])
-    return with_suggestion(fault, name, fields_at(whole, path))
+    known = fields_at(whole, path)
+    if name in known:  # of the kinds that may stand there
+        return FieldError(fault.pointer, fault.value, f"{fault.rule} of this kind of {path[-1]}, but of another")
+    return with_suggestion(fault, name, known)
 
 
 def with_suggestion(fault: FieldError, name: str, names: Sequence[str]) -> FieldError:

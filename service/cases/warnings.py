@@ -12,11 +12,11 @@ import numpy as np
 from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
 from service.cases.initial import Straight
-from service.cases.quantities import ScheduleTable
+from service.cases.quantities import ProfileTable, ScheduleTable
 from service.cases.size import tables_in
 from solver import Curve, End, Scene
 from solver.kernels.rotation import matrix_of
-from solver.physics.axial import LARGEST_STRAIN, has_to_stretch
+from solver.physics.axial import LARGEST_STRAIN, distances, has_to_stretch
 from solver.physics.elasticity import Stretch
 from solver.physics.ends import travel
 from solver.physics.loads.solids import Floor, Given
@@ -35,6 +35,8 @@ SHEARED = 0.5
 """Shear strain of a rod's surface beyond that of any material but rubber."""
 TURNED_OVER = 4.0 * pi
 """Rotation (rad) of an end about an axis across the rod, beyond which it is likely to be in degrees."""
+BEYOND = 1.0 + 1e-6
+"""Part of the rod's length up to which a table ends at the rod's end."""
 GREENHILL = 8.987
 """A straight rod with clamped ends buckles at the twist moment GREENHILL EJ/L (Greenhill 1883)."""
 
@@ -43,7 +45,7 @@ def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
             *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_begins_inside(scene),
-            *_degrees(scene), *_stretched(scene), *_frames(spec)]  # fmt: skip
+            *_degrees(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -169,6 +171,22 @@ def _stretched(scene: Scene) -> Iterator[FieldError]:
         rule = (f"is so small that loads or the weight may stretch the rod by {strain:.2g} of its length, more than "
                 f"the {LARGEST_STRAIN:g} up to which a run goes on")  # fmt: skip
         yield FieldError("/rod/axial_stiffness", stiffness, rule)
+
+
+def _pulled_apart(scene: Scene) -> Iterator[FieldError]:
+    """Ends that come farther apart than the rod is long."""
+    apart, length = distances(scene), scene.rod.length
+    if apart is not None and float(apart.max()) > (1.0 + LARGEST_STRAIN) * length:
+        rule = f"come up to {apart.max():.3g} m apart, and the rod is {length:.3g} m long: it would be torn"
+        yield FieldError("/ends", None, rule)
+
+
+def _tables(spec: CaseSpec) -> Iterator[FieldError]:
+    """A profile that goes on beyond the rod."""
+    for where, table in tables_in(spec):
+        if isinstance(table, ProfileTable) and table.s[-1] > BEYOND * spec.rod.length:
+            rule = f"ends at {table.s[-1]:g} m, beyond the rod, which is {spec.rod.length:g} m long"
+            yield FieldError(f"{where}/s", table.s[-1], rule)
 
 
 def _largest(vector: Iterable[Curve], scene: Scene) -> float:

@@ -26,6 +26,12 @@ def test_an_unknown_field_is_told_with_the_one_that_was_meant(setting: str, mean
     assert f"is not a known field: did you mean {meant}?" in str(refusal(setting, value))
 
 
+def test_a_field_of_another_kind_is_told_as_that():
+    [error] = refusal("initial", {"shape": "straight", "points": [[0, 0, 0], [0, 0, 1]]}).errors
+    rule = "is not a known field of this kind of initial, but of another"
+    assert (error.pointer, error.rule) == ("/initial/points", rule)
+
+
 def test_a_field_that_is_like_no_other_is_told_by_itself():
     [error] = refusal("rod.colour", "red").errors
     assert error.rule == "is not a known field"

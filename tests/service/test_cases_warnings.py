@@ -140,3 +140,17 @@ def test_a_rod_that_loads_stretch_beyond_the_theory_is_pointed_out(pull: float, 
     warnings = _warned(PRESSED | {"rod": rod, "ends": {"start": "pin", "end": jumper}})
     assert [warning.pointer for warning in warnings] == ["/rod/axial_stiffness"] * warned
     assert all("by 0.33 of its length" in warning.rule for warning in warnings)
+
+
+def test_a_profile_that_goes_on_beyond_the_rod_is_told():
+    table = {"s": [0.0, 500.0, 1000.0], "value": [1.0, 2.0, 1.0], "interpolation": "linear"}
+    [warning] = [w for w in told({"rod.mass_per_length": table, "rod.length": 1.0}) if w.pointer.endswith("/s")]
+    assert (warning.pointer, warning.value) == ("/rod/mass_per_length/s", 1000.0)
+    assert "beyond the rod" in warning.rule
+
+
+@pytest.mark.parametrize(("moved", "warned"), [(0.05, False), (0.5, True)])
+def test_ends_that_would_tear_the_rod_are_told(moved: float, warned: bool):
+    pulled = {"t": [0.0, 1.0], "value": [0.0, moved], "interpolation": "linear"}
+    found = told({"ends.start": "clamp", "ends.end": {"preset": "clamp", "x3": pulled}, "t_end": 2.0})
+    assert any("torn" in warning.rule for warning in found) == warned

@@ -153,6 +153,11 @@ def _power_coefficients(
     return np.vstack([np.zeros((4 - len(coefficients), len(x) - 1)), coefficients])
 
 
+def corners_of(*functions: object) -> tuple[float, ...]:
+    """The points between which all of them are smooth, as far as they have any."""
+    return tuple(sorted({corner for function in functions for corner in getattr(function, "corners", ())}))
+
+
 Vector = tuple[Curve, Curve, Curve]
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-import numpy as np
-
 from solver.scene.curve import Curve, Vector, constant_vector
 from solver.scene.rod import Profiles
 from solver.scene.view import View, at_all_times
@@ -26,7 +24,7 @@ class DistributedLoad:
 
     def keeps(self, view: View) -> bool:
         """Whether force and moment act along the motion about an axis."""
-        force, moment = (np.stack([p(view.s) for p in profiles], axis=1) for profiles in (self.force, self.moment))
+        force, moment = view.along(self.force), view.along(self.moment)
         return view.moved_by(force, self.frame) and view.turned_by(moment, self.frame)
 
 

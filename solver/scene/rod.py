@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 
 from solver.arrays import Array
-from solver.scene.curve import Curve
+from solver.scene.curve import Curve, corners_of
 from solver.scene.view import NONE, View, answer
 
 Profile = Callable[[Array], Array]
@@ -22,11 +22,6 @@ mesh counts as well; without them it is taken to be smooth.
 Profiles = tuple[Profile, Profile, Profile]
 
 NO_CURVATURE: Profiles = (Curve.constant(0.0), Curve.constant(0.0), Curve.constant(0.0))
-
-
-def corners_of(*profiles: Profile) -> tuple[float, ...]:
-    """The arclengths between which all of them are smooth."""
-    return tuple(sorted({corner for profile in profiles for corner in getattr(profile, "corners", ())}))
 
 
 class Derived:
@@ -87,7 +82,7 @@ class Rod:
 
     def keeps(self, view: View) -> bool:
         """Whether the rod is free of stress along the motion about an axis."""
-        kappa0 = np.stack([p(view.s) for p in self.kappa0], axis=1)
+        kappa0 = view.along(self.kappa0)
         return bool(np.abs(kappa0[:, ~view.turns]).max() * self.length <= NONE) and answer(self.laws, view)
 
     @staticmethod

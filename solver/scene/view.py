@@ -9,13 +9,14 @@ is in doubt, does not keep it.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.scene.curve import Vector
+from solver.scene.curve import Vector, corners_of
 
 NONE = 1e-10
 """Angle (rad) to the plane, or to the axis, that counts as none: what Newton's iteration leaves of a rotation."""
@@ -50,6 +51,11 @@ class View:
         """The material axes along which the rod may move."""
         return self.turns if self.index == 2 else np.asarray(~self.turns)
 
+    def along(self, profiles: Sequence[Callable[[Array], Array]]) -> Array:
+        """Values (m, 3) along the rod, also at four points of each piece between corners: see `at_all_times`."""
+        s = np.union1d(self.s, within_pieces(corners_of(*profiles)))
+        return np.stack([profile(s) for profile in profiles], axis=1)
+
     def moved_by(self, vectors: object, frame: str = "lab") -> bool:
         """Whether velocities or forces (..., 3) in a frame have none but the components along which it moves."""
         return self._none_but(self.moves, vectors, frame)
@@ -65,9 +71,14 @@ class View:
 
 def at_all_times(curves: Vector) -> Array:
     """Values (m, 3) of three curves at four points of each piece: a cubic that is zero there is zero."""
-    knots = np.unique([0.0, *(corner for curve in curves for corner in curve.corners)])
-    times = [knots, *(knots[:-1] + part * np.diff(knots) for part in (1 / 3, 2 / 3))]
-    return np.stack([curve(np.concatenate(times)) for curve in curves], axis=1)
+    times = within_pieces([0.0, *corners_of(*curves)])
+    return np.stack([curve(times) for curve in curves], axis=1)
+
+
+def within_pieces(corners: Sequence[float]) -> Array:
+    """The corners, and two points between each and the next."""
+    knots = np.unique(np.array(corners, dtype=float))
+    return np.concatenate([knots, *(knots[:-1] + part * np.diff(knots) for part in (1 / 3, 2 / 3))])
 
 
 def answer(part: object, view: View) -> bool:

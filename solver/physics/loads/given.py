@@ -9,9 +9,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.physics.loads.load import Samples, Source
-from solver.scene.curve import Curve
+from solver.scene.curve import Curve, corners_of
 from solver.scene.loads import DistributedLoad, PointLoad
-from solver.scene.rod import corners_of
 from solver.scene.scene import Scene
 
 

@@ -30,11 +30,13 @@ class Levers(Source):
 
     def __init__(self, scene: Scene, samples: Samples) -> None:
         given: list[DistributedLoad | PointLoad] = [*scene.distributed, *points_within(scene)]
-        loads = [load for load in given if samples.rigid and load.frame == "lab" and turns_segments(load)]
-        self._levers = [levers_of(load, samples) for load in loads]
-        super().__init__(Record(bool(loads), np.zeros((samples.times, len(samples.s), 3))))
+        turning = [(load, levers_of(load, samples)) for load in given
+                   if samples.rigid and load.frame == "lab" and turns_segments(load)]  # fmt: skip
+        turning = [(load, of_load) for load, of_load in turning if any(levers.any() for levers, _ in of_load)]
+        self._levers = [of_load for _, of_load in turning]
+        super().__init__(Record(bool(turning), np.zeros((samples.times, len(samples.s), 3))))
         self._arm = np.zeros(len(samples.s))
-        self.steady = all(is_steady(load) for load in loads)
+        self.steady = all(is_steady(load) for load, _ in turning)
         for i in range(samples.times):
             self.set_time(0.0, i)
 

@@ -31,7 +31,8 @@ from solver.kernels.kernel import by_type, inner
 from solver.kernels.vectors import dot
 from solver.physics.section import Section
 from solver.scene.cells import Cells
-from solver.scene.rod import Profile, corners_of
+from solver.scene.curve import corners_of
+from solver.scene.rod import Profile
 
 ON_NODE = 1e-9
 """Part of a segment by which a point may be beside a node and is still taken to be there."""

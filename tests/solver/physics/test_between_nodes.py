@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from solver import Curve, DistributedLoad, End, Frame, Initial, Numerics, Rod, Scene, simulate
+from solver.methods.space.one_axis.axis import axis_of
 from solver.scene.rod import Profile
 
 LENGTH, EJ, FORCE = 1.0, 10.0, 0.5
@@ -90,3 +91,14 @@ def test_a_narrow_load_is_told_from_none_by_a_tolerance() -> None:
     scene = replace(cantilever("staggered", distributed=(load(0.5),)), numerics=Numerics("staggered", tolerance=1e-3))
     frame = last(scene)
     assert frame.r[-1, 2] == pytest.approx(FORCE * 0.25 * 2.5 / (6.0 * EJ), rel=2e-3)
+
+
+@pytest.mark.parametrize("middle", [0.5781, 0.61])
+def test_a_narrow_load_or_kink_out_of_the_plane_leaves_no_plane(middle: float) -> None:
+    scene = cantilever("staggered", gravity=(0.0, 0.0, -1.0))
+    across = DistributedLoad((NONE, patch(middle, FORCE / WIDTH), NONE))
+    kinked = replace(scene.rod, kappa0=(NONE, patch(middle, 0.1 / WIDTH), NONE))
+    view = replace(scene, numerics=Numerics("staggered", intervals=16))
+    assert axis_of(view) is not None
+    assert axis_of(replace(view, distributed=(across,))) is None
+    assert axis_of(replace(view, rod=kinked)) is None

@@ -14,8 +14,9 @@ from solver.physics.elasticity import elasticity_of, elasticity_over
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.section import Section, sample_over
 from solver.scene.cells import around_nodes, between_nodes
+from solver.scene.curve import corners_of
 from solver.scene.layout import curvature_of, nodes_at_rest
-from solver.scene.rod import Profiles, Rod, corners_of
+from solver.scene.rod import Profiles, Rod
 from solver.scene.scene import Scene
 
 LITTLE, SMALLEST = 0.01, 1e-300

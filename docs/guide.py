@@ -52,12 +52,16 @@ def _call(method: str, path: str, operation: dict[str, Any]) -> tuple[str, ...]:
     return f"`{method.upper()} {path}`", ", ".join(query), ", ".join(good), first
 
 
+def _by_frames(kind: str) -> str:
+    return f" for {outlook.FRAMES} frames, and by their number for more" if kind == outlook.RINGING else ""
+
+
 def costs() -> str:
     """What the estimate of a case's cost counts."""
     def micro(rate: float) -> str:
         return f"{rate * 1e6:g}"
 
-    least = "; ".join(f"{kind}: {seconds:g}" for kind, seconds in outlook.SECONDS.items())
+    least = "; ".join(f"{kind}: {seconds:g}{_by_frames(kind)}" for kind, seconds in outlook.SECONDS.items())
     rows = [
         ("a step", f"{micro(cost.STEP)} + {micro(cost.STEP_NODE)} nodes"),
         ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes, {cost.ON_SOLIDS} times on solids"),

@@ -30,17 +30,18 @@ from solver.scene.curve import Vector
 from solver.scene.ends import End
 from solver.scene.layout import nodes_at_rest
 
-SLOWLY = "slow in space"
+SLOWLY, RINGING = "slow in space", "undamped"
 SECONDS = {
     "wound up": 12.0, "lies on itself": 12.0, "pulled taut": 10.0, "held straight and twisted": 3.5,
     "held straight and moved": 1.2, "held straight": 0.4, "on a floor": 4.2, "overdamped": 0.12,
     "in space and moved or let go": 4.0, "flying freely": 0.12, "settling in space": 0.18, SLOWLY: 0.36,
     "long and heavy in water": 0.8, "shaken in water": 0.45, "towed through water": 0.18, "in water": 0.36,
     "let go or loaded at once": 1.8, "let go and settling": 0.65, "let go gently": 0.5, "let go between pins": 0.9,
-    "snapping through": 5.0, "undamped": 0.25, "followed by the frames": 0.18,
+    "snapping through": 5.0, RINGING: 0.25, "followed by the frames": 0.18,
 }  # fmt: skip
 """CPU seconds at a tolerance of 1e-3, by what moves the rod; what is slow in space with a first mesh of 16 intervals: a
-finer one costs the more."""
+finer one costs the more; and undamped of FRAMES: what rings lasts through all of them."""
+FRAMES = 60
 TURN = 15.0
 """Rotation (rad) of the ends relative to each other from which on a rod is taken to buckle and wind itself up."""
 INTERVALS = 16
@@ -69,8 +70,11 @@ FIRST_FREQUENCY = 3.516
 def likely_seconds(scene: Scene) -> float:
     """CPU seconds at a tolerance of 1e-3, but for what very many frames or nodes cost."""
     kind = kind_of(scene)
-    finer = 2.0 ** first_mesh(scene, pressed=False) if kind == SLOWLY else 1.0
-    return SECONDS[kind] * finer
+    if kind == SLOWLY:
+        return SECONDS[kind] * 2.0 ** first_mesh(scene, pressed=False)
+    if kind == RINGING:
+        return SECONDS[kind] * max(scene.t_end / scene.output_interval / FRAMES, 1.0)
+    return SECONDS[kind]
 
 
 def kind_of(scene: Scene) -> str:
@@ -112,7 +116,7 @@ def kind_of(scene: Scene) -> str:
         return "let go and settling" if scene.damping > SETTLING * frequency else "let go or loaded at once"
     if distances(scene) is not None and urged.pushed > SNAPS * urged.bent:
         return "snapping through"
-    return "undamped" if scene.damping < UNDAMPED * frequency else "followed by the frames"
+    return RINGING if scene.damping < UNDAMPED * frequency else "followed by the frames"
 
 
 @dataclass(frozen=True)

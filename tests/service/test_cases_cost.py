@@ -196,3 +196,13 @@ def test_tables_that_would_not_fit_into_memory_are_refused_by_the_longest():
 def test_an_equilibrium_costs_the_same_whatever_dt_max_it_is_told():
     told = [parse_case(apply_settings(load_case("static-elastica"), {"numerics.dt_max": dt})) for dt in (5e-324, 0.1)]
     assert estimate(told[0]) == estimate(told[1])
+
+
+def test_what_rings_undamped_costs_by_the_frame():
+    ringing = apply_settings(load_case("cantilever-vibration"), {"numerics": {"tolerance": 1e-3}, "loads.damping": 0.0})
+    spec = parse_case(ringing)
+    many = parse_case(apply_settings(ringing, {"output.interval": spec.t_end / 600}))
+    few = parse_case(apply_settings(ringing, {"output.interval": spec.t_end / 60}))
+    assert outlook.kind_of(build_scene(few)) == outlook.RINGING
+    ratio = outlook.likely_seconds(build_scene(many)) / outlook.likely_seconds(build_scene(few))
+    assert ratio == pytest.approx(10.0)

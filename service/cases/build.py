@@ -14,9 +14,10 @@ from service.cases.ends import build_end
 from service.cases.errors import CaseError, FieldError
 from service.cases.initial import InitialSpec
 from service.cases.rod import RodSpec
-from solver import Initial, Rod, Scene, Vector, check_end
+from solver import Initial, Rod, Scene, check_end
 from solver.run.plan import FIRST_INTERVALS
 from solver.scene.layout import curvature_of, nodes_at_rest
+from solver.scene.rod import Profiles
 
 Part = TypeVar("Part")
 KEPT = 64
@@ -56,9 +57,11 @@ def _initial(spec: InitialSpec, length: float) -> Initial:
 
 
 @lru_cache(KEPT)
-def _curvature(spec: InitialSpec, length: float, intervals: int) -> Vector:
-    """Curvature and twist of the initial shape."""
-    return curvature_of(_initial(spec, length), length, intervals)
+def _curvature(spec: InitialSpec, length: float, intervals: int) -> Profiles:
+    """Curvature and twist of the initial shape, as profiles without corners: no joint has to look between its nodes for
+    what it is free of stress by, as it lies."""
+    bend1, bend2, twist = curvature_of(_initial(spec, length), length, intervals)
+    return bend1.__call__, bend2.__call__, twist.__call__
 
 
 def _scene(spec: CaseSpec, rod: Rod, initial: Initial) -> Scene:

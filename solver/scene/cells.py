@@ -23,14 +23,17 @@ APART = 1e-9
 SMOOTH = 0.01
 """Part of its largest value by which a property that is smooth in a cell may be beside that parabola."""
 
+NOWHERE = (np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(0, np.int64), np.zeros(0, np.int64))
+"""What there is besides own points where no cell is crossed."""
+
 
 class Cells(NamedTuple):
     """n parts of a rod, of which k are `crossed` (k,) by corners.
 
     `points`: where properties are looked at: at the cells' own (n,), within the crossed cells at m of Gauss's, and at
-    their starts, middles and ends (k,) each; `offsets` from the own point of their cell (m). Of Gauss's: `within` (m,),
-    the part of the crossed cell before them; `weights` (m,), which sum to 1 in each cell, whose points are those from
-    number `first` (k,) on.
+    their starts, middles and ends (k,) each; their `offsets` from the own point of their cell. Of Gauss's: `within`
+    (m,), the part of the crossed cell before them; `weights` (m,), which sum to 1 in each cell, whose points are those
+    from number `first` (k,) on.
     """
 
     points: Array
@@ -43,6 +46,8 @@ class Cells(NamedTuple):
     @classmethod
     def at(cls, s: Array, edges: Array, corners: Sequence[float]) -> Cells:
         """Those of own points `s` (n,) between `edges` (n + 1,), for properties that are smooth between `corners`."""
+        if not corners:
+            return cls(s, *NOWHERE)
         lengths = np.diff(edges)
         inside = np.array([corner for corner in corners if edges[0] < corner < edges[-1]])
         cell = np.searchsorted(edges, inside, side="right") - 1
@@ -83,6 +88,8 @@ class Cells(NamedTuple):
 
     def arms_of(self, profile: Profile) -> Array:
         """How far (n,) from their own points a density acts in the cells, times its mean."""
+        if len(self.crossed) == 0:
+            return np.zeros(len(self.points))
         return self.mean(np.asarray(profile(self.points), dtype=float) * self.offsets)
 
 

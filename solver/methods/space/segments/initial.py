@@ -49,13 +49,22 @@ def chain_of(rod: Rod, section: Section, entrained: Array, s: Array) -> Chain:
     wet = section.inertia + np.outer(entrained, _across(s))
     joints = around_nodes(s, rod.corners)
     elastic = elasticity_over(elasticity_of(rod, joints.points), joints)
-    return Chain(h, section.mass, wet, section.inertia, span, elastic._replace(kappa0=_in_joints(rod.kappa0, rod, s)))
+    if corners_of(*rod.kappa0):
+        elastic = elastic._replace(kappa0=_in_joints(rod.kappa0, rod, s))
+    return Chain(h, section.mass, wet, section.inertia, span, elastic)
 
 
 def _in_joints(curvature: Profiles, rod: Rod, s: Array) -> Array:
     """What a curvature along the rod counts for in the joints at `s` (n,), where the natural one has corners."""
     joints = around_nodes(s, corners_of(*rod.kappa0))
     return np.stack([joints.mean_of(component) for component in curvature], axis=1)
+
+
+def _has_steps(rod: Rod, chain: Chain, s: Array) -> bool:
+    """Whether the natural curvature of some joint at `s` (n,) is not that of its node."""
+    if not corners_of(*rod.kappa0):
+        return False
+    return bool((chain.elastic.kappa0 != np.stack([profile(s) for profile in rod.kappa0], axis=1)).any())
 
 
 def lay_out(scene: Scene, chain: Chain, s: Array) -> tuple[State, Array]:
@@ -77,7 +86,7 @@ def lay_out(scene: Scene, chain: Chain, s: Array) -> tuple[State, Array]:
     bend, moment, left, right = (np.zeros((len(s), 3)) for _ in range(4))
     bend_joints(chain, state.quaternion, bend, moment, left, right)
     own = kappa[::2]
-    if own.any() and (chain.elastic.kappa0 != np.stack([profile(s) for profile in scene.rod.kappa0], axis=1)).any():
+    if own.any() and _has_steps(scene.rod, chain, s):
         own = _in_joints(curvature_of(initial, float(s[-1]), len(s) - 1), scene.rod, s)
     offset = natural_part(chain.elastic.kappa0, own) * (bend / chain.span[:, None] - own)
     chain.elastic.kappa0[:] += offset

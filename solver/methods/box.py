@@ -25,6 +25,7 @@ from solver.methods.space.box.trial import Measured, mean_turning, measure_trial
 from solver.methods.time.generalized_alpha.guess import force_rate, guess, stretch_feedback
 from solver.methods.time.generalized_alpha.history import rescale_aux
 from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work, step
+from solver.physics.cells import around_nodes
 from solver.physics.contact.forces import Touch
 from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
@@ -33,7 +34,6 @@ from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.loads.registry import Loads
 from solver.physics.section import Section, sample_over
-from solver.scene.cells import around_nodes
 from solver.scene.initial import Initial
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene

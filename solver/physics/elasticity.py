@@ -24,7 +24,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import by_type, inlined, inner, kernel
 from solver.kernels.vectors import add, dot, minus, plus, stiffness, times, transform, vector_product
 from solver.kernels.vectors import vector as line
-from solver.scene.cells import Cells
+from solver.physics.cells import Cells
 from solver.scene.curve import Curve
 from solver.scene.rod import Profile, Rod
 from solver.scene.view import View

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.physics.cells import Cells
 from solver.physics.elasticity import Elasticity, elasticity_of, elasticity_over
-from solver.scene.cells import Cells
 from solver.scene.rod import Rod
 
 

@@ -29,8 +29,8 @@ from solver.arrays import Array
 from solver.kernels.dispatch import dispatched, for_each, has_variant
 from solver.kernels.kernel import by_type, inner
 from solver.kernels.vectors import dot
+from solver.physics.cells import Cells
 from solver.physics.section import Section
-from solver.scene.cells import Cells
 from solver.scene.curve import corners_of
 from solver.scene.rod import Profile
 

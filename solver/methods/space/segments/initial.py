@@ -10,10 +10,10 @@ from solver.arrays import Array
 from solver.kernels.rotation import rotate_back
 from solver.methods.space.segments.chain import Chain, State
 from solver.methods.space.segments.joints import bend_joints
+from solver.physics.cells import around_nodes, between_nodes
 from solver.physics.elasticity import elasticity_of, elasticity_over
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.section import Section, sample_over
-from solver.scene.cells import around_nodes, between_nodes
 from solver.scene.curve import corners_of
 from solver.scene.layout import curvature_of, nodes_at_rest
 from solver.scene.rod import Profiles, Rod

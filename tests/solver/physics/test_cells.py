@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solver import Curve
-from solver.scene.cells import around_nodes, between_nodes
+from solver.physics.cells import around_nodes, between_nodes
 
 S = np.linspace(0.0, 2.0, 17)
 RNG = np.random.default_rng(7)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from math import inf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
@@ -75,12 +76,13 @@ class StaticContact:
         move_points(touch, touch.pairs.members, moved, self._still[0])
         return float(allowed_fraction(touch, touch.pressing, 0))
 
-    def stiffness(self) -> Array:
-        """How the forces on the nodes change with their places (n, 3, n, 3), with the sign of a stiffness, N/m."""
+    def stiffness(self) -> tuple[Array, NDArray[np.bool_]]:
+        """How the forces on the nodes change with their places (n, 3, n, 3), with the sign of a stiffness, N/m; and
+        which pairs of nodes it couples (n, n)."""
         n = len(self._still[0])
-        S = np.zeros((n, 3, n, 3))
-        _stiffen(self._contact.touch, S)
-        return S
+        S, coupled = np.zeros((n, 3, n, 3)), np.zeros((n, n), np.bool_)
+        _stiffen(self._contact.touch, S, coupled)
+        return S, coupled
 
     def compile(self) -> None:
         """Have every kernel compiled that contact needs."""
@@ -103,7 +105,7 @@ class StaticContact:
 
 
 @kernel
-def _stiffen(touch: Touch, S: Array) -> None:
+def _stiffen(touch: Touch, S: Array, coupled: NDArray[np.bool_]) -> None:
     """Add the stiffness of the pairs that press: as one's place and tangent change from the other's by dp, dt_a and
     dt_b, the force on it changes by n (g . dp + k0 n . dt_a + k1 n . dt_b) + pull dp (see `pair_force`)."""
     points, pressing = touch.points, touch.pressing
@@ -119,6 +121,7 @@ def _stiffen(touch: Touch, S: Array) -> None:
                 a, e = ends[own // REACH], own % REACH
                 weight = points.weights[a, e] if own < REACH else -points.weights[a, e]
                 row = points.first[a] + e
+                coupled[row, column] = True
                 for p in range(3):
                     S[row, p, column, p] -= weight * share * pull
                     for q in range(3):

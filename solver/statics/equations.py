@@ -14,7 +14,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dgbtrf, dgbtrs
-from scipy.sparse import bsr_array, csc_array, csr_array
+from scipy.sparse import bsr_array, csr_array
 from scipy.sparse.linalg import SuperLU, splu
 
 from solver.arrays import Array
@@ -268,20 +268,20 @@ class Equations:
 
     def moved_nodes(self, z: Array) -> Array:
         """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point evaluated last."""
-        return np.asarray((self._placed() @ (z / self.units).ravel()).reshape(-1, 3))
+        return np.asarray((self._placed(self._moves()) @ (z / self.units).ravel()).reshape(-1, 3))
 
-    def _placed(self) -> csr_array:
-        """What takes a dimensionless displacement to that of the nodes: of the segments' ends, and of those of the rod
-        where their joints open."""
+    def _placed(self, moves: csr_array) -> csr_array:
+        """What takes a dimensionless displacement to that of the nodes: of the segments' ends, which is `moves`, and of
+        those of the rod where their joints open."""
         if not self._stretches:
-            return self._moves()
+            return moves
         opens, N = self.tangents.opens[[0, -1]] * np.array([-1.0, 1.0])[:, None, None, None], len(self.s) - 1
         data = np.zeros((4, 3, BLOCK))  # of each end's joint by the orientations before it and behind it
         data[0::2, :, PSI], data[1::2, :, PSI] = opens[:, 0], opens[:, 1]
         data[1::2, :, FORCE] = opens[:, 2] * self.units[6]
         starts = np.concatenate([[0], np.full(N, 2), [4]])
         shape = 3 * (N + 1), BLOCK * (N + 2)
-        return csr_array(self._moves() + bsr_array((data, np.array([0, 1, N, N + 1]), starts), shape=shape))
+        return csr_array(moves + bsr_array((data, np.array([0, 1, N, N + 1]), starts), shape=shape))
 
     def _moves(self) -> csr_array:
         """What takes a dimensionless displacement to that of the nodes (3 (N + 1), 9 (N + 2)), m: to that of either
@@ -303,9 +303,10 @@ class Equations:
 
     def _contact_tangent(self) -> csr_array:
         """What contact adds to the tangent (9 (N + 2), 9 (N + 2)), dimensionless."""
-        many = 3 * len(self.s)
-        S = csr_array(self.contact.stiffness().reshape(many, many) * self._rows[PSI.start])
-        return csr_array(self._moves().T @ (S @ self._placed()))
+        (S, coupled), moves, n = self.contact.stiffness(), self._moves(), len(self.s)
+        one, other = np.nonzero(coupled)
+        blocks = S[one, :, other] * self._rows[PSI.start], other, np.searchsorted(one, np.arange(n + 1))
+        return csr_array(moves.T @ (bsr_array(blocks, shape=(3 * n, 3 * n)) @ self._placed(moves)))
 
     def blocks(self) -> tuple[Array, Array, Array]:
         """Diagonal (N + 2, 9, 9) of the tangent, and the blocks before and behind it, dimensionless."""
@@ -404,7 +405,7 @@ class CoupledSolver:
         chain = bsr_array((data, columns, starts), shape=(BLOCK * n, BLOCK * n))
         self.singular = False
         try:
-            self._factors: SuperLU = splu(csc_array(chain) + csc_array(contact))
+            self._factors: SuperLU = splu((chain.tocsr() + contact).tocsc(), relax=1, panel_size=1)  # it is narrow
         except RuntimeError:  # as it says that a pivot vanished
             self.singular = True
 

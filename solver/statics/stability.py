@@ -96,7 +96,7 @@ def _all_together(equations: Equations, bands: Array, G: Array, W: Array) -> int
 def _by_place(equations: Equations) -> Array:
     """The stiffness of contact and loads by the places of the nodes (N + 1, 3, N + 1, 3)."""
     n = len(equations.s)
-    S = equations.contact.stiffness() if equations.contact.pressing else np.zeros((n, 3, n, 3))
+    S = equations.contact.stiffness()[0] if equations.contact.pressing else np.zeros((n, 3, n, 3))
     segments = np.arange(n - 1)
     for one in (0, 1):  # a segment's centre lies between its nodes
         for other in (0, 1):

@@ -39,6 +39,9 @@ SKEW = 1e-6
 SOFTEST = 1e-8
 """Stiffness (in EJ/L, shared by all segments) given to every rotation in the iteration, which does not change what it
 converges to: a rod that may spin freely about its own axis has one state, the nearest."""
+SOFTEST_PLACE = 1e-12
+"""Likewise of the largest stiffness of loads by place, given to every place: a rod that may slide along a floor has one
+state, the nearest."""
 PSI, X, FORCE = slice(0, 3), slice(3, 6), slice(6, 9)
 
 
@@ -316,7 +319,7 @@ class Equations:
         D[:, PSI, PSI], lower[:, PSI, PSI], upper[:, PSI, PSI] = T.stiff, T.before, T.behind
         D[:, PSI, PSI] += SOFTEST * self.stiffness * self.chain.h / self.s[-1] ** 2 * one
         D[1:, PSI, FORCE], upper[:-1, PSI, FORCE] = lever[1:], lever[:-1]
-        D[1:-1, X, PSI], D[1:-1, X, X] = -T.E, T.K
+        D[1:-1, X, PSI], D[1:-1, X, X] = -T.E, T.K + SOFTEST_PLACE * np.abs(T.K).max() * one
         D[1:, X, FORCE], upper[:-1, X, FORCE] = one, -one
         D[1:, FORCE, PSI], lower[1:, FORCE, PSI] = lever[1:].transpose(0, 2, 1), lever[:-1].transpose(0, 2, 1)
         D[1:, FORCE, X], lower[1:, FORCE, X] = one, -one

@@ -16,7 +16,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.outcome import Outcome, RunFailed
-from solver.statics.equations import FORCE, PSI, Equations, Point
+from solver.statics.equations import FORCE, PSI, Equations, Point, X
 from solver.statics.stability import negative_modes
 
 LONGEST, FIRST, SHORTEST = 0.5, 0.05, 1e-8
@@ -43,6 +43,8 @@ FIRST_CROSSING, CROSSING, PRESSED_CROSSING = 1e-6, 1e-3, 0.1
 the branch for another. The first time, as where a rod buckles, it may also have passed the bend by which a small load
 leads to the stable branch; and where strands press: what is wound may slide along the rod for next to no energy, which
 rises and falls with every node that it passes."""
+WITHOUT_END = 1e3
+"""In rod lengths a unit of the branch: beside such a displacement only `SOFTEST_PLACE` stands against the loads."""
 REACHED = 1e-10
 STEEP = 0.02
 """Least dq at which a step may end at a given q."""
@@ -158,6 +160,8 @@ class Path:
         _, solver = self._equations.linearise(point)
         if solver.singular:
             raise self._failure(Outcome.SINGULAR_SYSTEM, "a pivot vanished")
+        if np.abs(self.direction.z[:, X]).max() > WITHOUT_END * self._equations.units[3]:
+            raise self._failure(Outcome.SINGULAR_SYSTEM, "nothing holds the rod against its loads")
         raise self._failure(Outcome.EQUILIBRIUM_LOST, "no step was short enough")
 
     def _accept(self, end: Point, direction: Direction, modes: int, swept: float, length: float, smooth: bool) -> None:
@@ -199,7 +203,7 @@ class Path:
     def _size(self, z: Array, point: Point) -> float:
         units = self._equations.units
         force = max(units[6], float(np.abs(point.F).max()))
-        return float(max(np.abs(z[:, PSI]).max(), np.abs(z[:, FORCE]).max() / force))
+        return float(max(np.abs(z[:, PSI]).max(), np.abs(z[:, X]).max() / units[3], np.abs(z[:, FORCE]).max() / force))
 
     def _direction(self, point: Point, forward: float = 0.0) -> Direction:
         """The branch's direction at a point: as it was, or right behind a corner with q going `forward` (+-1)."""

@@ -14,12 +14,14 @@ from scipy.linalg.lapack import dgbsv, dsytrf
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
-from solver.statics.equations import Equations, levers
+from solver.statics.equations import SOFTEST_PLACE, Equations, levers
 
 BAND = 5
 NEUTRAL = 1e-7
 """Stiffness, in EJ/L shared by all segments as `SOFTEST` is, that makes a direction one of rising or falling energy:
 below it the energy stays the same, as where a rod spins about its own axis or an arch swings about its pins."""
+NEUTRAL_PLACE = 10.0 * SOFTEST_PLACE
+"""Likewise in the largest stiffness of loads by place: of a rod that slides along a floor."""
 
 
 def negative_modes(equations: Equations) -> int:
@@ -40,7 +42,7 @@ def _count(equations: Equations, softest: float) -> int:
     bands = _second_variation(T.stiff, T.behind, equations, softest) * (length / equations.stiffness)
     G, W, ties = _conditions(equations)
     if placed:
-        return _all_together(equations, bands, G, W) - ties
+        return _all_together(equations, bands, G, W, softest) - ties
     full = np.zeros((3 * BAND + 1, bands.shape[1]))
     full[2 * BAND :] = bands
     for k in range(1, BAND + 1):
@@ -73,12 +75,12 @@ def _conditions(equations: Equations) -> tuple[Array, Array, int]:
     return G, W, int(ties.shape[1])
 
 
-def _all_together(equations: Equations, bands: Array, G: Array, W: Array) -> int:
+def _all_together(equations: Equations, bands: Array, G: Array, W: Array, softest: float) -> int:
     """Negative eigenvalues of [H G^t; G W] where strands press on each other or loads depend on the place, which
     couples rotations far apart. (Eliminated from segment to segment the counts fell below zero.) How these move a rod
     along itself by stretching it is left out."""
     length = float(equations.s[-1])
-    S, steps = _by_place(equations), -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
+    S, steps = _by_place(equations, softest), -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
     n, unit = len(S), length / equations.stiffness
     # the place of the start moves all nodes, a rotation those behind its segment
     together = S[::-1, :, ::-1].cumsum(axis=0).cumsum(axis=2)[::-1, :, ::-1]
@@ -93,14 +95,16 @@ def _all_together(equations: Equations, bands: Array, G: Array, W: Array) -> int
     return int(np.sum(np.diag(factors)[~paired] < 0.0)) + int(np.sum(paired)) // 2
 
 
-def _by_place(equations: Equations) -> Array:
-    """The stiffness of contact and loads by the places of the nodes (N + 1, 3, N + 1, 3)."""
-    n = len(equations.s)
+def _by_place(equations: Equations, softest: float) -> Array:
+    """The stiffness of contact and loads by the places of the nodes (N + 1, 3, N + 1, 3); of loads with as much more,
+    of either sign, as a slide along them is taken for neutral by."""
+    n, K = len(equations.s), equations.tangents.K
+    K = K + np.copysign(NEUTRAL_PLACE, softest) * np.abs(K).max() * np.eye(3)
     S = equations.contact.stiffness()[0] if equations.contact.pressing else np.zeros((n, 3, n, 3))
     segments = np.arange(n - 1)
     for one in (0, 1):  # a segment's centre lies between its nodes
         for other in (0, 1):
-            S[segments + one, :, segments + other] += 0.25 * equations.tangents.K
+            S[segments + one, :, segments + other] += 0.25 * K
     return np.asarray(S)
 
 

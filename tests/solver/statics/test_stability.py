@@ -18,7 +18,9 @@ from solver import (
     End,
     Initial,
     Numerics,
+    Outcome,
     PointLoad,
+    RunFailed,
     Scene,
     UserLoad,
     constant_vector,
@@ -167,6 +169,30 @@ def test_a_rod_that_hangs_onto_a_solid_is_stable_however_its_section_is_turned(
     )  # fmt: skip
     frames = list(simulate(hanging))
     assert [(frame.negative_modes, frame.neutral_modes) for frame in frames] == [(0, 0)] * len(frames)
+
+
+def on_a_floor(across: float) -> Scene:
+    """A rod that nothing holds but the floor it lies on, with a force to the side on its middle."""
+    return static(
+        initial=Initial.straight(origin=(0.0, 0.0, -1e-3), direction=(1.0, 0.0, 0.0)), end=End.free(), start=End.free(),
+        gravity=(0.0, 0.0, -9.81), loads=(Floor(2000.0),),
+        points=(PointLoad(0.5 * LENGTH, (ZERO, ramp(across), ZERO)),),
+    )  # fmt: skip
+
+
+def test_a_rod_that_lies_on_a_floor_stays_where_it_is_and_may_slide_and_roll() -> None:
+    frame = last(on_a_floor(0.0))
+    weight = DENSITY * 0.25 * pi * DIAMETER**2 * 9.81
+    assert_allclose(frame.r[:, 2], -weight / 2000.0, rtol=1e-6)
+    assert_allclose(frame.r[:, 0], np.linspace(0.0, LENGTH, len(frame.r)), atol=1e-9)
+    assert_allclose(frame.r[:, 1], 0.0, atol=1e-9)
+    assert (frame.negative_modes, frame.neutral_modes) == (0, 4)
+
+
+def test_a_rod_that_loads_push_along_a_floor_ends_by_name() -> None:
+    with pytest.raises(RunFailed, match="nothing holds the rod against its loads") as failure:
+        last(on_a_floor(1e-3))
+    assert failure.value.outcome is Outcome.SINGULAR_SYSTEM
 
 
 def test_a_thin_strip_that_is_seeded_buckles_sideways_at_prandtls_load() -> None:

@@ -45,7 +45,8 @@ def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
             *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_begins_inside(scene),
-            *_degrees(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec)]  # fmt: skip
+            *_degrees(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec),
+            *_idle(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -187,6 +188,45 @@ def _tables(spec: CaseSpec) -> Iterator[FieldError]:
         if isinstance(table, ProfileTable) and table.s[-1] > BEYOND * spec.rod.length:
             rule = f"ends at {table.s[-1]:g} m, beyond the rod, which is {spec.rod.length:g} m long"
             yield FieldError(f"{where}/s", table.s[-1], rule)
+
+
+def _idle(scene: Scene) -> Iterator[FieldError]:
+    """Loads that are zero, and switches that come when the run is over."""
+    loads: dict[str, Iterable[object]] = {}
+    loads |= {f"/loads/point/{i}": (*load.force, *load.moment) for i, load in enumerate(scene.points)}
+    loads |= {f"/loads/distributed/{i}": (*load.force, *load.moment) for i, load in enumerate(scene.distributed)}
+    for where, components in loads.items():
+        if all(isinstance(component, Curve) and component.is_zero for component in components):
+            yield FieldError(where, None, "has neither a force nor a moment: it does nothing")
+    for name, end in (("start", scene.start), ("end", scene.end)):
+        conditions = chain.from_iterable((*end.translation, *end.rotation))
+        late = sorted({condition.since for condition in conditions if condition.since >= scene.t_end})
+        for time in late:
+            rule = f"has a switch at {time:g} s, and the run ends at t_end, {scene.t_end:g} s: it does nothing"
+            yield FieldError(f"/ends/{name}/switches", time, rule)
+
+
+def _held_back(scene: Scene) -> Iterator[FieldError]:
+    """A rod that begins to move as a whole while an end of it stays where it is."""
+    speed = float(np.linalg.norm(scene.initial.velocity))
+    for name, end in (("start", scene.start), ("end", scene.end)):
+        stays = all(c[0].kind != "load" and c[0].curve.is_zero for c in end.translation)
+        if stays and speed > 0.0 and not any(scene.initial.angular_velocity):
+            rule = f"is of the whole rod, whose {name} is held where it is: it begins with a jerk"
+            yield FieldError("/initial/velocity", speed, rule)
+
+
+def _too_fast(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """An end that is moved faster than a push runs along the rod, sqrt(EA / m) with EA of a solid section."""
+    s = np.linspace(0.0, scene.rod.length, 11)
+    EJ = np.max([profile(s) for profile in scene.rod.stiffness[:2]])
+    sound = float(4.0 * np.sqrt(EJ / np.min(scene.rod.mass(s))) / np.min(scene.rod.diameter(s)))
+    for where, table in tables_in(spec.ends, "/ends"):
+        if where.rpartition("/")[2] in ("x1", "x2", "x3") and isinstance(table, ScheduleTable):
+            speed = float(np.max(np.abs(np.diff(table.value) / np.diff(table.t))))
+            if speed > sound:
+                rule = f"moves at {speed:.3g} m/s, faster than sound runs along the rod, {sound:.3g} m/s"
+                yield FieldError(where, speed, rule)
 
 
 def _largest(vector: Iterable[Curve], scene: Scene) -> float:

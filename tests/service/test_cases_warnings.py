@@ -154,3 +154,18 @@ def test_ends_that_would_tear_the_rod_are_told(moved: float, warned: bool):
     pulled = {"t": [0.0, 1.0], "value": [0.0, moved], "interpolation": "linear"}
     found = told({"ends.start": "clamp", "ends.end": {"preset": "clamp", "x3": pulled}, "t_end": 2.0})
     assert any("torn" in warning.rule for warning in found) == warned
+
+
+@pytest.mark.parametrize(("change", "pointer"), [
+    ({"loads": {"point": [{"s": 0.5}]}}, "/loads/point/0"),
+    ({"loads": {"distributed": [{"force": [0.0, 1.0, 0.0]}, {"moment": [0.0, 0.0, 0.0]}]}}, "/loads/distributed/1"),
+    ({"ends": {"start": "clamp", "end": {"preset": "free", "switches": [{"at": 1.0, "v1": 0.0}]}}},
+     "/ends/end/switches"),
+    ({"initial": {"shape": "straight", "velocity": [0.0, 2.0, 0.0]}}, "/initial/velocity"),
+    ({"ends": {"start": "clamp", "end": {"preset": "clamp", "frame": "lab", "x1": {
+        "t": [0.0, 0.5, 0.5001], "value": [0.0, 0.0, 0.2], "interpolation": "linear"}}}}, "/ends/end/x1"),
+])  # fmt: skip
+def test_what_does_nothing_and_what_comes_with_a_jerk_is_told(change: dict[str, Any], pointer: str):
+    bare = {"ends": {"start": "clamp", "end": "free"}}
+    assert _warned(PRESSED | bare) == []
+    assert {warning.pointer for warning in _warned(PRESSED | bare | change)} == {pointer}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import TypeVar
 
 import numpy as np
@@ -18,6 +18,7 @@ from solver import Initial, Rod, Scene, check_end
 from solver.run.plan import FIRST_INTERVALS
 from solver.scene.layout import curvature_of, nodes_at_rest
 from solver.scene.rod import Profiles
+from solver.scene.scene import check_frame
 
 Part = TypeVar("Part")
 KEPT = 64
@@ -38,7 +39,16 @@ def build_scene(spec: CaseSpec) -> Scene:
         intervals = spec.numerics.intervals or FIRST_INTERVALS
         kappa0 = _part("/initial", lambda: _curvature(spec.initial, spec.rod.length, intervals))
         rod = replace(rod, kappa0=kappa0)
+    if spec.analysis == "dynamic":
+        _check_frames(spec)
     return _part("", lambda: _scene(spec, rod, initial))
+
+
+def _check_frames(spec: CaseSpec) -> None:
+    ends = {0.0: spec.ends.start, spec.rod.length: spec.ends.end}
+    for i, load in enumerate(spec.loads.point):
+        end = build_end(ends[load.s]) if load.s in ends else None
+        _part(f"/loads/point/{i}", partial(check_frame, load.build(), end))
 
 
 # The cases of a sweep share most of their parts: these are kept.

@@ -206,6 +206,9 @@ class CaseSpec(Spec):
         if self.analysis == "static" and self.numerics.tolerance is not None:
             rule = "must not be given with analysis static: give intervals"
             raise refusal("numerics/tolerance", self.numerics.tolerance, rule)
+        for name in ("velocity", "angular_velocity"):
+            if self.analysis == "static" and any(velocity := getattr(self.initial, name)):
+                raise refusal(f"initial/{name}", velocity, "must be 0 in a static analysis, in which nothing moves")
         return self
 
     @model_validator(mode="after")

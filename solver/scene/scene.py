@@ -66,21 +66,13 @@ class Scene:
         for load in self.points:
             if not 0 <= load.s <= self.rod.length:
                 raise ValueError(f"s of a point load must be in [0, {self.rod.length}] m, got {load.s}")
-            self._check_frame(load)
+            if self.analysis == "dynamic":
+                check_frame(load, {0.0: self.start, self.rod.length: self.end}.get(load.s))
 
     def keeps(self, view: View) -> bool:
         """Whether all of the scene keeps the motion about an axis."""
         parts = [getattr(self, part.name) for part in fields(self) if part.name != "gravity"]
         return view.moved_by(self.gravity) and all(answer(part, view) for part in parts)
-
-    def _check_frame(self, load: PointLoad) -> None:
-        """A force that follows the rod cannot be added to a condition on the components of f along lab axes."""
-        end = {0.0: self.start, self.rod.length: self.end}.get(load.s)
-        if end is None or self.analysis == "static" or (load.frame, end.frame) != ("material", "lab"):
-            return
-        loaded = any(condition.kind == "load" for component in end.translation for condition in component)
-        if loaded and not all(curve.is_zero for curve in load.force):
-            raise ValueError('frame of a force at an end that is free along lab axes must be "lab", got "material"')
 
     def _check_statics(self) -> None:
         finest = self.numerics.intervals * (2 if self.numerics.verify else 1)
@@ -100,3 +92,12 @@ class Scene:
         if not times or times[-1] < self.t_end * (1 - 1e-12):
             times.append(self.t_end)
         return times
+
+
+def check_frame(load: PointLoad, end: End | None) -> None:
+    """A force that follows the rod cannot be added to a condition on the components of f along lab axes."""
+    if end is None or (load.frame, end.frame) != ("material", "lab"):
+        return
+    loaded = any(condition.kind == "load" for component in end.translation for condition in component)
+    if loaded and not all(curve.is_zero for curve in load.force):
+        raise ValueError('frame of a force at an end that is free along lab axes must be "lab", got "material"')

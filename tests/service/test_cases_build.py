@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.cases import apply_settings, build_scene, load_case, parse_case
+from service.cases import CaseError, apply_settings, build_scene, load_case, parse_case
 from solver import simulate
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
@@ -156,3 +156,11 @@ def test_contact_needs_no_constants():
         built = build_scene(parse_case(raw | {"contact": given})).contact
         assert built.automatic
         assert built.spacing == given.get("spacing")
+
+
+def test_a_force_that_cannot_follow_an_end_is_named():
+    following = {"s": 1.0, "force": [1.0, 0.0, 0.0], "frame": "material"}
+    settings = {"ends.end": {"preset": "free", "frame": "lab"}, "rod.length": 1.0, "loads.point": [following]}
+    with pytest.raises(CaseError, match="free along lab axes must be") as refused:
+        scene("cantilever-vibration", **settings)
+    assert [fault.pointer for fault in refused.value.errors] == ["/loads/point/0"]

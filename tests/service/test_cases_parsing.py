@@ -254,7 +254,7 @@ def test_the_schema_tells_every_field_of_a_case():
     ("settings", "pointer", "rule"),
     [
         ({"ends.end": {"preset": "clamp", "switches": [{"at": 1.0, "f3": 0.0}]}}, "/ends/end", "switches"),
-        ({"initial.velocity": [1.0, 0.0, 0.0]}, "", "velocity"),
+        ({"initial.velocity": [1.0, 0.0, 0.0]}, "/initial/velocity", "in which nothing moves"),
         ({"numerics.tolerance": 1e-3}, "/numerics/tolerance", "analysis static: give intervals"),
         ({"numerics.intervals": 1001, "contact": {}}, "", "intervals must be <= 1000 in a static analysis"),
     ],

@@ -16,8 +16,11 @@ from collections.abc import Iterator, Sequence
 from math import ceil, inf, log, sqrt
 from typing import NamedTuple
 
+from solver.outcome import Outcome
 from solver.run.series import Attempt, chosen, is_diagonal
 
+MADE = tuple(Outcome).index(Outcome.ENERGY_MADE)
+"""The outcome of a run whose steps, rather than its mesh, are the reason that it failed."""
 FIRST_INTERVALS = 16
 """Of the coarsest mesh, or somewhat more: see `first_mesh`. The work is counted as if it were as many."""
 FIRST_STEPS = 0.5
@@ -266,6 +269,8 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> T
     same = same and _work(history) > ENOUGH * MOST_WORK  # a rope may be too limp for several coarse meshes
     if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > LAST_PART * MOST_WORK:
         return None
+    if last.outcome == MADE and not any(attempt.mesh == last.mesh for attempt in failed[:-1]):
+        return Trial(last.mesh, last.steps + 1)
     return Trial(last.mesh + 1, last.steps)
 
 

@@ -35,6 +35,7 @@ class AppliedLoads:
         self._at_ends = tuple(load for load in scene.points if load.s in (0.0, scene.rod.length))
         self._moving = tuple(source for source in self._sources if not source.steady)
         self._barring = tuple(source for source in self._sources if source.bars)
+        self._striking = tuple(source for source in self._sources if source.strikes and source.record.present)
         self.entrained = np.zeros(len(s)) + entrained_mass(self._sources)
         """Mass per length (n,) that the rod takes along across its tangent, kg/m."""
 
@@ -42,6 +43,11 @@ class AppliedLoads:
     def steady(self) -> bool:
         """Whether the loads are the same at all times."""
         return not self._moving
+
+    @property
+    def strikes(self) -> bool:
+        """Whether loads may set in all of a sudden: see `missed`."""
+        return bool(self._striking)
 
     def corners(self) -> list[float]:
         """Times to which steps must be aligned."""
@@ -77,6 +83,10 @@ class AppliedLoads:
     def longest_step(self, r: Array, V: Array) -> float:
         """The longest step (s) from places r (n, 3) with velocities V (n, 3), lab, that passes over no load."""
         return min((source.longest_step(r, V) for source in self._barring), default=inf)
+
+    def missed(self, r: Array, mass: Array, dt: float) -> float:
+        """By how much (m) a step of dt may be off where loads set in, or cease, within it: see `Source.missed`."""
+        return max((source.missed(r, mass, dt) for source in self._striking), default=0.0)
 
     def check(self) -> None:
         """Raise what a load could not say to the kernel that asked it."""

@@ -86,6 +86,8 @@ class Source:
 
     bars = False
     """Whether a step that is too long may pass over where the load acts: then `longest_step` says so."""
+    strikes = False
+    """Whether it sets in all of a sudden where the rod comes to it: then `missed` says what a step did not see."""
     corners: tuple[float, ...] = ()
     """Times to which steps must be aligned."""
 
@@ -100,6 +102,11 @@ class Source:
     def longest_step(self, r: Array, V: Array) -> float:
         """The longest step (s) from places r (n, 3) with velocities V (n, 3), lab."""
         return inf
+
+    def missed(self, r: Array, mass: Array, dt: float) -> float:
+        """By how much (m) a step of dt may be off where the load begins, or ceases, to act on points that bear `mass`
+        (n,) per length; `r` (times, n, 3): where they are at its start and at its stages."""
+        return 0.0
 
     def check(self) -> None:
         """Raise what the load could not say to the kernel that asked it."""

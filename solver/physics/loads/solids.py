@@ -31,6 +31,8 @@ from solver.scene.scene import Scene
 
 LEAP = 0.5
 """Part of the way to an obstacle, or of its radius, that a node may come nearer in a step."""
+STRUCK = 0.02
+"""How far off Radau's quadrature is, in (w dt)^2 of the speed, where a force sets in within a step."""
 SMALLEST = 1e-300
 
 
@@ -116,21 +118,43 @@ class Record(NamedTuple):
 class Solids(Source):
     """Those of a scene: a step may leap over no obstacle."""
 
+    strikes = True
+
     def __init__(self, record: Record) -> None:
         super().__init__(record)
         self.bars = not record.flat.all()
 
     def longest_step(self, r: Array, V: Array) -> float:
         """In which no node comes nearer by more than LEAP of its gap, or of the radius where that is more."""
-        curved = ~self.record.flat
-        start, axis, radius = (array[curved] for array in (self.record.start, self.record.axis, self.record.radius))
-        away = r[:, None] - start
-        part = np.clip((away * axis).sum(axis=2) / np.maximum((axis * axis).sum(axis=1), SMALLEST), 0.0, 1.0)
-        way = away - part[:, :, None] * axis
-        distance = np.linalg.norm(way, axis=2)
+        way, distance = self._from_axes(r)
+        radius = self.record.radius[~self.record.flat]
         closing = -(way * V[:, None]).sum(axis=2) / np.maximum(distance, SMALLEST)
         allowed = LEAP * np.maximum(distance - radius, radius)
         return float(1.0 / max(np.max(closing / allowed), SMALLEST))
+
+    def missed(self, r: Array, mass: Array, dt: float) -> float:
+        """What a part of the rod that comes to a solid, or leaves it, moves in the step, as far as the step is too long
+        to see it do so: STRUCK (w dt)^2, w^2 = k / mass the square of the frequency with which it swings on it."""
+        record, places = self.record, r.reshape(-1, 3)
+        depth = record.radius - places @ record.axis.T  # (times n, m): of floors
+        if self.bars:
+            depth[:, ~record.flat] = record.radius[~record.flat] - self._from_axes(places)[1]
+        depth = depth.reshape(*r.shape[:2], -1)
+        within = depth > 0.0
+        struck = within.any(axis=0) & ~within.all(axis=0)
+        if not struck.any():
+            return 0.0
+        unseen = np.minimum(STRUCK * dt**2 * record.stiffness / mass[:, None], 1.0)
+        return float((unseen * np.ptp(depth, axis=0))[struck].max())
+
+    def _from_axes(self, r: Array) -> tuple[Array, Array]:
+        """The way (n, m, 3) from the obstacles' axes to places r (n, 3), and its length (n, m)."""
+        curved = ~self.record.flat
+        start, axis = self.record.start[curved], self.record.axis[curved]
+        away = r[:, None] - start
+        part = np.clip((away * axis).sum(axis=2) / np.maximum((axis * axis).sum(axis=1), SMALLEST), 0.0, 1.0)
+        way = away - part[:, :, None] * axis
+        return way, np.linalg.norm(way, axis=2)
 
 
 class Near(NamedTuple):

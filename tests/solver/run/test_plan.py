@@ -9,6 +9,7 @@ import pytest
 
 from solver.run.plan import (
     FAR_FROM_IT,
+    MADE,
     MOST_PATIENCE,
     MOST_WORK,
     Excess,
@@ -30,6 +31,10 @@ def ran(mesh: int, steps: int, work: float = SMALL) -> Attempt:
 
 def failed(mesh: int, t: float, work: float = SMALL) -> Attempt:
     return Attempt(mesh, 0, work, t, complete=False, slow=False, outcome=3)
+
+
+def made(mesh: int, steps: int) -> Attempt:
+    return Attempt(mesh, steps, SMALL, 0.8, complete=False, slow=False, outcome=MADE)
 
 
 def slow(mesh: int, steps: int) -> Attempt:
@@ -56,6 +61,8 @@ def slow(mesh: int, steps: int) -> Attempt:
         ([ran(0, 0), ran(0, 1), ran(1, 0, 0.9 * MOST_WORK)], Excess(9.0, 0.1), None),
         ([ran(0, 0), ran(0, 1), ran(1, 0), slow(2, 0)], Excess(9.0, 0.1, 9.0), None),
         ([failed(0, 0.5)], Excess(), Trial(1, 0)),
+        ([made(0, 0)], Excess(), Trial(0, 1)),  # shorter steps first
+        ([made(0, 0), made(0, 1)], Excess(), Trial(1, 1)),
         ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2)], Excess(), Trial(3, 0)),
         ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2, 0.6 * MOST_WORK)], Excess(), None),
         ([slow(0, 0)], Excess(), Trial(0, -2)),

@@ -82,6 +82,9 @@ class RadauMethod(ABC):
         """
         errors: tuple[float, ...] = estimate_error(self._handed.reference, dt, self.state, self._centres)
         turn_error, turned, move_error, moved = errors
+        if self.applied.strikes:
+            places = np.concatenate([self._centres[:1], self.stages.r])
+            move_error = max(move_error, self.applied.missed(places, self.chain.mass + self.applied.entrained, dt))
         small = self._small_motion * min((self._dt_max / dt) ** 2, 1.0)
         return max(turn_error / (turned + small), move_error / (moved + small * float(self.s[-1])))
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.integrate import solve_ivp
 
 from service.cases import CaseError, apply_settings, build_scene, load_case, parse_case
-from solver import End, Frame, Initial, Numerics, Scene, simulate
+from solver import End, Fluid, Frame, Initial, Numerics, Rod, Scene, simulate
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.physics.loads import solids
@@ -15,6 +16,7 @@ from solver.physics.loads.load import Point, conservative, energy, force, tangen
 from solver.physics.loads.solids import Floor, Obstacle
 from solver.run.first_mesh import first_mesh
 from solver.run.plan import intervals_of
+from solver.run.verify import VerifiedFrame
 from tests.solver.methods.problem import problem
 from tests.solver.methods.test_box_tangents import LARGEST_ERROR, error
 from tests.solver.scenes import ROD
@@ -151,6 +153,49 @@ def test_a_rod_thrown_at_a_bar_comes_back_however_long_the_steps(method: str) ->
     thrown = lying(0.0, velocity=(0.0, 0.0, -speed))
     *_, last = simulate(Scene(ROD, thrown, End.free(), End.free(), 0.2, 0.2, loads=(bar,), numerics=numerics))
     assert last.r[:, 2].min() > 0.0
+
+
+def bouncing(t: Array, height: float, k: float) -> Array:
+    """How high (m) a bar of `MASS` is above a floor at times t that it falls on flat from a height, and leaves again:
+    free fall, and the swing of a mass on a spring."""
+    w, v = np.sqrt(k / MASS), np.sqrt(2.0 * G * height)
+    touching = 2.0 * (np.pi - np.arctan2(v / w, G / w**2)) / w
+    since = (t - v / G) % (2.0 * v / G + touching)
+    on, up = since - touching < 0.0, since - touching
+    swing = G / w**2 * (np.cos(w * since) - 1.0) - v / w * np.sin(w * since)
+    return np.where(t < v / G, height - 0.5 * G * t**2, np.where(on, swing, v * up - 0.5 * G * up**2))
+
+
+def test_a_bar_that_falls_flat_bounces_as_high_again_however_long_the_steps() -> None:
+    """A step that leapt over the blow of 6 ms took the bar's energy."""
+    height, k = 0.3, 1e5
+    numerics = Numerics("staggered", intervals=4, dt_max=0.1, increment_tolerance=0.016, strides=5)
+    scene = Scene(ROD, lying(height), End.free(), End.free(), 1.5, 0.05, gravity=(0.0, 0.0, -G), loads=(Floor(k),),
+                  numerics=numerics)  # fmt: skip
+    shown = list(simulate(scene))
+    above, t = np.array([frame.r[0, 2] for frame in shown]), np.array([frame.t for frame in shown])
+    assert_allclose(above, bouncing(t, height, k), atol=0.02)
+
+
+def test_a_rod_that_rises_in_water_bounces_below_a_lid() -> None:
+    """To a tolerance: a step of five frames met the lid, and the next left it with an energy from nowhere."""
+    D, water, k, lid = 0.02, 1000.0, 2e4, 2.0
+    rod, area = Rod.circular(0.8, D, 1e9, 4e8, 600.0), 0.25 * np.pi * D**2
+    scene = Scene(rod, lying(0.5), End.free(), End.free(), 6.0, 0.1, gravity=(0.0, 0.0, -G),
+                  fluid=Fluid(water, 1.0, 1.0), loads=(Floor(k, -lid, (0.0, 0.0, -1.0)),),
+                  numerics=Numerics("staggered", tolerance=1e-3))  # fmt: skip
+
+    def rate(_: float, y: Array) -> tuple[float, float]:
+        force = (water - 600.0) * area * G - 0.5 * water * D * abs(y[1]) * y[1] - k * max(y[0] - lid, 0.0)
+        return y[1], force / ((600.0 + water) * area)
+
+    frames = list(simulate(scene))
+    true = solve_ivp(rate, (0.0, 6.0), (0.5, 0.0), t_eval=[frame.t for frame in frames], rtol=1e-9, atol=1e-11,
+                     max_step=2e-3)  # fmt: skip
+    for frame, z in zip(frames, true.y[0], strict=True):
+        assert isinstance(frame, VerifiedFrame)
+        assert_allclose(frame.r[:, 2], z, atol=3.0 * float(frame.error.r.max()) + 1e-7)
+        assert float(frame.error.r.max()) < 1e-3 * 0.8
 
 
 def test_a_case_has_a_floor_and_obstacles() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from math import inf
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -170,6 +171,10 @@ class BoxMethod:
     def step_limit(self) -> float:
         """The longest next step (s) that contact and loads allow."""
         return min(self.contact.step_limit, self.applied.longest_step(self.state.r, self.state.Y[:, V : V + 3]))
+
+    def next_blow(self) -> float:
+        """Not looked for: its steps are shortened as the motion changes."""
+        return inf
 
     def look_back(self, ago: float) -> Ahead:
         """Its steps end at every frame: `Numerics` sees to that."""

@@ -79,6 +79,9 @@ class Method(Protocol):
     def step_limit(self) -> float:
         """The longest next step (s) that contact allows."""
 
+    def next_blow(self) -> float:
+        """In what time (s) the next step is to end, so that a part of the rod meets or leaves a solid between two."""
+
     def look_back(self, ago: float) -> Ahead:
         """Show the rod as it was `ago` (s) before the end of the last step, until the next one is tried: as `fields`,
         `energies`, `twist`, `centreline` and `smallest_gap` see it. Say what came afterwards."""

@@ -75,7 +75,8 @@ class Simulation(Run):
 
     def _next_frame(self, output: float) -> Frame | None:
         if not self._control.reached(output, self.t):
-            self.t = self._advance(self.t, *self._control.step_from(self.t, self._method.step_limit()))
+            step = self._control.step_from(self.t, self._method.step_limit(), self._method.next_blow())
+            self.t = self._advance(self.t, *step)
         if not self._control.reached(output, self.t):
             return None
         ago = 0.0 if self._control.reached(self.t, output) else self.t - output

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import ceil
+from math import ceil, inf
 
 SMALLEST_STEP = 2.0**-22
 """In dt_max: a step below it is given up."""
@@ -37,11 +37,15 @@ class StepControl:
         """Whether an event's time has come at t: a corner and an output of the same time may differ by rounding."""
         return event <= t + self._near
 
-    def step_from(self, t: float, limit: float) -> tuple[float, float]:
-        """The next step from t, and where it ends: equal steps up to the next event, each at most `limit`."""
+    def step_from(self, t: float, limit: float, blow: float = inf) -> tuple[float, float]:
+        """The next step from t, and where it ends: equal steps up to the next event, each at most `limit`; or, if that
+        is sooner, one that ends with a `blow`."""
         while self._next < len(self._events) and self.reached(self._events[self._next], t):
             self._next += 1
         wanted = min(self._wanted, self._longest, limit)
+        blow = max(blow, self.smallest)
+        if blow < wanted and (self._next == len(self._events) or t + blow < self._events[self._next] - self._near):
+            return blow, t + blow
         if self._next == len(self._events):
             return wanted, t + wanted
         event = self._events[self._next]

@@ -44,6 +44,10 @@ class AppliedLoads:
         """Whether the loads are the same at all times."""
         return not self._moving
 
+    def next_blow(self, motion: Array, mass: Array, tolerance: float) -> float:
+        """In what time (s) the next step is to end: see `Source.next_blow`."""
+        return min((source.next_blow(motion, mass, tolerance) for source in self._striking), default=inf)
+
     @property
     def strikes(self) -> bool:
         """Whether loads may set in all of a sudden: see `missed`."""

@@ -87,7 +87,7 @@ class Source:
     bars = False
     """Whether a step that is too long may pass over where the load acts: then `longest_step` says so."""
     strikes = False
-    """Whether it sets in all of a sudden where the rod comes to it: then `missed` says what a step did not see."""
+    """Whether it sets in all of a sudden where the rod comes to it: see `missed` and `next_blow`."""
     corners: tuple[float, ...] = ()
     """Times to which steps must be aligned."""
 
@@ -107,6 +107,12 @@ class Source:
         """By how much (m) a step of dt may be off where the load begins, or ceases, to act on points that bear `mass`
         (n,) per length; `r` (times, n, 3): where they are at its start and at its stages."""
         return 0.0
+
+    def next_blow(self, motion: Array, mass: Array, tolerance: float) -> float:
+        """In what time (s) a step is to end, so that the load sets in, or ceases, between two; `motion` (3, n, 3):
+        places, velocities and accelerations of points that bear `mass` (n,) per length; `tolerance` of a step's error
+        relative to its motion."""
+        return inf
 
     def check(self) -> None:
         """Raise what the load could not say to the kernel that asked it."""

@@ -91,3 +91,8 @@ def test_a_run_whose_steps_only_shrink_is_stuck() -> None:
         dt *= 0.6
     assert steps.stuck
     assert dt > 1e-8
+
+
+@pytest.mark.parametrize(("blow", "end"), [(0.01, 0.01), (0.05, 0.05), (0.7, 0.0625)])
+def test_a_step_ends_with_a_blow_that_comes_sooner(blow: float, end: float) -> None:
+    assert control(1.0, [0.5]).step_from(0.0, 1.0, blow) == pytest.approx((end, end))

@@ -51,6 +51,7 @@ class RadauMethod(ABC):
         self.applied = loads_on_segments(scene, self.s, STAGES, axis)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
+        self._tolerance = min(tolerance, 1.0)
         self._newton_part = NEWTON_PART * min(tolerance, 1.0) if tolerance < inf else 0.0
         self._dt_max = scene.numerics.dt_max
         # no shorter step has an error below what Newton's iteration leaves
@@ -84,7 +85,7 @@ class RadauMethod(ABC):
         turn_error, turned, move_error, moved = errors
         if self.applied.strikes:
             places = np.concatenate([self._centres[:1], self.stages.r])
-            move_error = max(move_error, self.applied.missed(places, self.chain.mass + self.applied.entrained, dt))
+            move_error = max(move_error, self.applied.missed(places, self._borne, dt))
         small = self._small_motion * min((self._dt_max / dt) ** 2, 1.0)
         return max(turn_error / (turned + small), move_error / (moved + small * float(self.s[-1])))
 
@@ -128,6 +129,10 @@ class RadauMethod(ABC):
     def step_limit(self) -> float:
         """None."""
         return inf
+
+    def next_blow(self) -> float:
+        """As the loads have it."""
+        return self.applied.next_blow(self._centres, self._borne, self._tolerance) if self.applied.strikes else inf
 
     def smallest_gap(self) -> float:
         """NaN."""
@@ -176,6 +181,11 @@ class RadauMethod(ABC):
         flowed = np.zeros(4)
         flowed[:3] = weights @ self._powers
         return flowed
+
+    @property
+    def _borne(self) -> Array:
+        """The mass per length (N,) of the segments, with what they take along."""
+        return np.asarray(self.chain.mass + self.applied.entrained)
 
     @property
     def _touch(self) -> Record:

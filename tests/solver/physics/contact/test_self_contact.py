@@ -62,11 +62,11 @@ def bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     steps = 0
     original = StepControl.step_from
 
-    def counted(self: StepControl, t: float, limit: float) -> tuple[float, float]:
+    def counted(self: StepControl, t: float, limit: float, blow: float) -> tuple[float, float]:
         nonlocal steps
         steps += 1
         assert steps < 20000, f"the run does not get on: t = {t}, the next step at most {limit}"
-        return original(self, t, limit)
+        return original(self, t, limit, blow)
 
     monkeypatch.setattr(StepControl, "step_from", counted)
 

@@ -167,14 +167,14 @@ def bouncing(t: Array, height: float, k: float) -> Array:
 
 
 def test_a_bar_that_falls_flat_bounces_as_high_again_however_long_the_steps() -> None:
-    """A step that leapt over the blow of 6 ms took the bar's energy."""
+    """Steps that leapt over the blows of 6 ms took the energy; now one ends where the bar meets or leaves the floor."""
     height, k = 0.3, 1e5
     numerics = Numerics("staggered", intervals=4, dt_max=0.1, increment_tolerance=0.016, strides=5)
     scene = Scene(ROD, lying(height), End.free(), End.free(), 1.5, 0.05, gravity=(0.0, 0.0, -G), loads=(Floor(k),),
                   numerics=numerics)  # fmt: skip
     shown = list(simulate(scene))
     above, t = np.array([frame.r[0, 2] for frame in shown]), np.array([frame.t for frame in shown])
-    assert_allclose(above, bouncing(t, height, k), atol=0.02)
+    assert_allclose(above, bouncing(t, height, k), atol=3e-3)
 
 
 def test_a_rod_that_rises_in_water_bounces_below_a_lid() -> None:

@@ -191,19 +191,34 @@ def _tables(spec: CaseSpec) -> Iterator[FieldError]:
 
 
 def _idle(scene: Scene) -> Iterator[FieldError]:
-    """Loads that are zero, and switches that come when the run is over."""
-    loads: dict[str, Iterable[object]] = {}
-    loads |= {f"/loads/point/{i}": (*load.force, *load.moment) for i, load in enumerate(scene.points)}
-    loads |= {f"/loads/distributed/{i}": (*load.force, *load.moment) for i, load in enumerate(scene.distributed)}
-    for where, components in loads.items():
-        if all(isinstance(component, Curve) and component.is_zero for component in components):
-            yield FieldError(where, None, "has neither a force nor a moment: it does nothing")
+    """Loads that are zero, or that an end bears, a current that drags at nothing, and switches that come too late."""
+    ends = {0.0: scene.start, scene.rod.length: scene.end}
+    for i, load in enumerate(scene.points):
+        if _largest(load.force, scene) == _largest(load.moment, scene) == 0.0:
+            yield FieldError(f"/loads/point/{i}", None, "has neither a force nor a moment until t_end: it does nothing")
+        elif load.s in ends and _is_clamp(ends[load.s]):
+            yield FieldError(f"/loads/point/{i}", load.s, "is where a clamp bears the load: the rod does not feel it")
+    for i, spread in enumerate(scene.distributed):
+        parts = (*spread.force, *spread.moment)
+        zero = all(isinstance(part, Curve) and part.is_zero for part in parts)
+        if zero or _largest((spread.schedule,), scene) == 0.0:
+            rule = "has neither a force nor a moment until t_end: it does nothing"
+            yield FieldError(f"/loads/distributed/{i}", None, rule)
+    fluid = scene.fluid
+    if fluid and any(fluid.current) and not (fluid.drag_normal or fluid.drag_tangential):
+        rule = "drags at nothing: drag_normal and drag_tangential are 0"
+        yield FieldError("/fluid/current", float(np.linalg.norm(fluid.current)), rule)
     for name, end in (("start", scene.start), ("end", scene.end)):
         conditions = chain.from_iterable((*end.translation, *end.rotation))
         late = sorted({condition.since for condition in conditions if condition.since >= scene.t_end})
         for time in late:
             rule = f"has a switch at {time:g} s, and the run ends at t_end, {scene.t_end:g} s: it does nothing"
             yield FieldError(f"/ends/{name}/switches", time, rule)
+
+
+def _is_clamp(end: End) -> bool:
+    """Whether an end has its place and its rotation all the time."""
+    return all(condition.kind != "load" for component in (*end.translation, *end.rotation) for condition in component)
 
 
 def _held_back(scene: Scene) -> Iterator[FieldError]:

@@ -37,6 +37,8 @@ TURNED_OVER = 4.0 * pi
 """Rotation (rad) of an end about an axis across the rod, beyond which it is likely to be in degrees."""
 BEYOND = 1.0 + 1e-6
 """Part of the rod's length up to which a table ends at the rod's end."""
+BESIDE, WITHIN = 8.0, 0.9
+"""In D: how far along the rod places are neighbours; and how near others overlap."""
 GREENHILL = 8.987
 """A straight rod with clamped ends buckles at the twist moment GREENHILL EJ/L (Greenhill 1883)."""
 
@@ -45,8 +47,8 @@ def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
             *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_begins_inside(scene),
-            *_degrees(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec),
-            *_idle(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
+            *_touches_itself(scene), *_degrees(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec),
+            *_frames(spec), *_idle(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -146,6 +148,24 @@ def _begins_inside(scene: Scene) -> Iterator[FieldError]:
         if deepest > _widest(scene):
             rule = f"has the rod in it at t = 0, by {deepest:.3g} m: it would throw the rod out"
             yield FieldError(where, None, rule)
+
+
+def _touches_itself(scene: Scene) -> Iterator[FieldError]:
+    """With contact: a shape that begins within itself."""
+    if scene.contact is None:
+        return
+    s = np.linspace(0.0, scene.rod.length, 201)
+    r, _, _ = nodes_at_rest(scene.initial, s)
+    D, along = float(np.min(scene.rod.diameter(s))), np.abs(s[:, None] - s)
+    closed = float(np.linalg.norm(r[-1] - r[0])) < D  # a ring: its ends are neighbours
+    along = np.minimum(along, scene.rod.length - along) if closed else along
+    apart = np.linalg.norm(r[:, None] - r, axis=2)
+    apart[along < max(BESIDE * D, 2.0 * s[1])] = np.inf
+    one, other = np.unravel_index(int(np.argmin(apart)), apart.shape)
+    if apart[one, other] < WITHIN * D:
+        rule = (f"of the places at s = {s[one]:.3g} and {s[other]:.3g} m is less than the diameter, {D:.3g} m: with "
+                "contact the rod must not begin within itself")  # fmt: skip
+        yield FieldError("/initial", float(apart[one, other]), rule)
 
 
 def _degrees(scene: Scene) -> Iterator[FieldError]:

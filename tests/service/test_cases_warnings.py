@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from math import pi
 from typing import Any
 
+import numpy as np
 import pytest
 
 from service.cases import apply_settings, build_scene, load_case, parse_case, shipped_cases, warnings_of
@@ -176,3 +178,20 @@ def test_what_does_nothing_and_what_comes_with_a_jerk_is_told(change: dict[str, 
     bare = {"ends": {"start": "clamp", "end": "free"}}
     assert _warned(PRESSED | bare) == []
     assert {warning.pointer for warning in _warned(PRESSED | bare | change)} == {pointer}
+
+
+@pytest.mark.parametrize(("rise", "warned"), [(0.0, True), (0.03, False)])
+def test_a_shape_that_begins_within_itself_is_told_where_there_is_contact(rise: float, warned: bool):
+    """Two turns of a helix of radius 1 / 4 pi, which lie in each other or above each other; a ring touches its end."""
+    turns = np.linspace(0.0, 2.0, 81)
+    size = np.hypot(1.0, 2.0 * rise)
+    helix = [[np.cos(2 * pi * t) / (4 * pi), np.sin(2 * pi * t) / (4 * pi), rise * t] for t in turns]
+    shape = {"initial": {"shape": "centreline", "points": helix}, "rod": PRESSED["rod"] | {"length": size}}
+    found = [warning.pointer for warning in _warned(PRESSED | shape | {"contact": {}})]
+    assert ("/initial" in found) == warned
+
+
+def test_a_ring_does_not_begin_within_itself():
+    ring = [[np.cos(x) / (2 * pi), np.sin(x) / (2 * pi), 0.0] for x in np.linspace(0.0, 2 * pi, 81)]
+    shape = {"initial": {"shape": "centreline", "points": ring}, "contact": {}}
+    assert "/initial" not in [warning.pointer for warning in _warned(PRESSED | shape)]

@@ -98,7 +98,6 @@ class Equations:
         self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
         self.stages, self.tangents = Stages.empty(N), Tangents.empty(N)
         self._driven, self._residuals = Driven.empty(N), Residuals.empty(N)
-        self._placing = csr_array((3 * (N + 1), BLOCK * (N + 2)))
         self._moments = np.zeros((2, 3))
         """On the ends, material, of the point that was looked at last."""
         _lay_down(self.chain, state.quaternion, self.start.base, self.start.F, self.stages)
@@ -271,9 +270,8 @@ class Equations:
         return left, Solver(*self.blocks(), _places(len(self.start.quaternion)), self.units)
 
     def moved_nodes(self, z: Array) -> Array:
-        """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point with pressing strands that was
-        linearised last."""
-        return np.asarray((self._placing @ (z / self.units).ravel()).reshape(-1, 3))
+        """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point evaluated last."""
+        return np.asarray((self._placed(self._moves()) @ (z / self.units).ravel()).reshape(-1, 3))
 
     def _placed(self, moves: csr_array) -> csr_array:
         """What takes a dimensionless displacement to that of the nodes: of the segments' ends, which is `moves`, and of
@@ -311,8 +309,7 @@ class Equations:
         (S, coupled), moves, n = self.contact.stiffness(), self._moves(), len(self.s)
         one, other = np.nonzero(coupled)
         blocks = S[one, :, other] * self._rows[PSI.start], other, np.searchsorted(one, np.arange(n + 1))
-        self._placing = self._placed(moves)
-        return csr_array(moves.T @ (bsr_array(blocks, shape=(3 * n, 3 * n)) @ self._placing))
+        return csr_array(moves.T @ (bsr_array(blocks, shape=(3 * n, 3 * n)) @ self._placed(moves)))
 
     def blocks(self) -> tuple[Array, Array, Array]:
         """Diagonal (N + 2, 9, 9) of the tangent, and the blocks before and behind it, dimensionless."""

@@ -123,7 +123,7 @@ class Record(NamedTuple):
 
 
 class Solids(Source):
-    """Those of a scene: a step may leap over no obstacle."""
+    """Those of a scene: a step may leap over no obstacle, and ends where a blow begins and ends."""
 
     strikes = True
 
@@ -140,8 +140,8 @@ class Solids(Source):
         return float(1.0 / max(np.max(closing / allowed), SMALLEST))
 
     def missed(self, r: Array, mass: Array, dt: float) -> float:
-        """What a part of the rod that comes to a solid, or leaves it, moves in the step, as far as the step is too long
-        to see it do so: STRUCK (w dt)^2, w^2 = k / mass the square of the frequency with which it swings on it."""
+        """Twice the way that a part of the rod goes on the one side of a surface which it passes in the step, on that
+        where it is less, times STRUCK (w dt)^2, at most 1; w^2 = k / mass, as it swings on the solid."""
         record, places = self.record, r.reshape(-1, 3)
         depth = record.radius - places @ record.axis.T  # (times n, m): of floors
         if self.bars:

@@ -164,10 +164,14 @@ class Equations:
 
     def residual(self, point: Point) -> Array:
         """What is left of the equations at a point (N + 2, 9), dimensionless."""
-        t, stages, driven = self.time(point.q), self.stages, self._driven
-        _lay_down(self.chain, point.quaternion, point.base, point.F, stages)
+        _lay_down(self.chain, point.quaternion, point.base, point.F, self.stages)
         if self.contact.present:
-            driven.push[0] = self.contact.push(self.nodes())
+            self._driven.push[0] = self.contact.push(self.nodes())
+        return self._left(point)
+
+    def _left(self, point: Point) -> Array:
+        """The same where the rod has been laid down."""
+        t, stages, driven = self.time(point.q), self.stages, self._driven
         self.applied.set_time(t)
         balance_segments(self.chain, self.loads, driven, stages, self._residuals, 0)
         if self._stretches:
@@ -183,9 +187,9 @@ class Equations:
         return left
 
     def slope(self, point: Point, ahead: float, step: float = 1e-6) -> Array:
-        """How the residual changes with q beside a point, at q + `ahead` (N + 2, 9)."""
+        """How the residual changes with q beside the point evaluated last, at q + `ahead` (N + 2, 9)."""
         sides = [Point(point.quaternion, point.base, point.F, point.q + ahead + x) for x in (step, -step)]
-        up, down = (self.residual(side) for side in sides)
+        up, down = (self._left(side) for side in sides)
         return (up - down) / (2.0 * step)
 
     def _balance_end(self, side: int, t: float, point: Point, left: Array) -> None:
@@ -271,45 +275,35 @@ class Equations:
 
     def moved_nodes(self, z: Array) -> Array:
         """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point evaluated last."""
-        return np.asarray((self._placed(self._moves()) @ (z / self.units).ravel()).reshape(-1, 3))
+        moves, z = self._opened(self._moves()), z / self.units
+        return np.asarray((moves[:, 0] @ z[:-1, :, None] + moves[:, 1] @ z[1:, :, None])[:, :, 0])
 
-    def _placed(self, moves: csr_array) -> csr_array:
-        """What takes a dimensionless displacement to that of the nodes: of the segments' ends, which is `moves`, and of
-        those of the rod where their joints open."""
-        if not self._stretches:
-            return moves
-        opens, N = self.tangents.opens[[0, -1]] * np.array([-1.0, 1.0])[:, None, None, None], len(self.s) - 1
-        data = np.zeros((4, 3, BLOCK))  # of each end's joint by the orientations before it and behind it
-        data[0::2, :, PSI], data[1::2, :, PSI] = opens[:, 0], opens[:, 1]
-        data[1::2, :, FORCE] = opens[:, 2] * self.units[6]
-        starts = np.concatenate([[0], np.full(N, 2), [4]])
-        shape = 3 * (N + 1), BLOCK * (N + 2)
-        return csr_array(moves + bsr_array((data, np.array([0, 1, N, N + 1]), starts), shape=shape))
+    def _moves(self) -> Array:
+        """What takes the dimensionless displacements of the orientations before and behind each node to its own, m
+        (N + 1, 2, 3, 9): to that of either segment beside it, as these bear the forces there."""
+        lever = levers(self.stages.R[0], self.chain.h).transpose(0, 2, 1)
+        moves = np.zeros((len(self.s), 2, 3, BLOCK))
+        for side, tip, sign in ((0, slice(1, None), -1.0), (1, slice(-1), 1.0)):
+            moves[tip, side, :, X] = self.units[X] * np.eye(3)
+            moves[tip, side, :, PSI] = sign * lever[1:-1]
+        moves[1:-1] *= 0.5
+        return moves
 
-    def _moves(self) -> csr_array:
-        """What takes a dimensionless displacement to that of the nodes (3 (N + 1), 9 (N + 2)), m: to that of either
-        segment beside them, as they bear the forces there."""
-        lever, N = levers(self.stages.R[0], self.chain.h), len(self.s) - 1
-        moves = np.zeros((2, N, 3, BLOCK))  # of the nodes before and behind each segment
-        for side, sign in ((0, 1.0), (1, -1.0)):
-            moves[side, :, :, X] = self.units[X] * np.eye(3)
-            moves[side, :, :, PSI] = sign * lever[1:-1].transpose(0, 2, 1)
-        moves[:, 1:], moves[1, 0] = 0.5 * moves[:, 1:], 0.5 * moves[1, 0]
-        moves[1, -1] *= 2.0
-        segments = np.arange(N)
-        data = np.stack([moves[0], moves[1]], axis=1).reshape(-1, 3, BLOCK)
-        rows = np.stack([segments, segments + 1], axis=1).ravel()
-        columns = np.repeat(segments + 1, 2)
-        order = np.argsort(rows, kind="stable")
-        starts = np.searchsorted(rows[order], np.arange(N + 2))
-        return csr_array(bsr_array((data[order], columns[order], starts), shape=(3 * (N + 1), BLOCK * (N + 2))))
+    def _opened(self, moves: Array) -> Array:
+        """The same of the rod's nodes: at its ends the joints open between the orientations beside them."""
+        if self._stretches:
+            opens = self.tangents.opens[[0, -1]] * np.array([-1.0, 1.0])[:, None, None, None]
+            moves[[0, -1], :, :, PSI] += opens[:, :2]
+            moves[[0, -1], 1, :, FORCE] += opens[:, 2] * self.units[6]
+        return moves
 
     def _contact_tangent(self) -> csr_array:
         """What contact adds to the tangent (9 (N + 2), 9 (N + 2)), dimensionless."""
         (S, coupled), moves, n = self.contact.stiffness(), self._moves(), len(self.s)
         one, other = np.nonzero(coupled)
         blocks = S[one, :, other] * self._rows[PSI.start], other, np.searchsorted(one, np.arange(n + 1))
-        return csr_array(moves.T @ (bsr_array(blocks, shape=(3 * n, 3 * n)) @ self._placed(moves)))
+        pushed = bsr_array(blocks, shape=(3 * n, 3 * n)) @ _by_blocks(self._opened(moves.copy()))
+        return csr_array(_by_blocks(moves).T @ pushed)
 
     def blocks(self) -> tuple[Array, Array, Array]:
         """Diagonal (N + 2, 9, 9) of the tangent, and the blocks before and behind it, dimensionless."""
@@ -355,6 +349,14 @@ def levers(R: Array, h: float) -> Array:
     lever = np.zeros((len(R), 3, 3))
     lever[1:-1, 0], lever[1:-1, 1] = 0.5 * h * R[1:-1, :, 1], -0.5 * h * R[1:-1, :, 0]
     return lever
+
+
+def _by_blocks(moves: Array) -> bsr_array:
+    """What takes a displacement of all orientations to those of the nodes, of what does for each node."""
+    n = len(moves)
+    columns = (np.arange(n)[:, None] + np.arange(2)).ravel()
+    blocks = moves.reshape(2 * n, 3, BLOCK), columns, 2 * np.arange(n + 1)
+    return bsr_array(blocks, shape=(3 * n, BLOCK * (n + 1)))
 
 
 def _cross(x: Array) -> Array:

@@ -149,8 +149,8 @@ class Path:
                     beyond = part < 1.0 and abs(dq) > STEEP and direction.dq * dq > 0.0
                     if part > 0.99 and not beyond:
                         self._accept(end, direction, modes, swept, length, not (cornered or kinked))
-                        # a step that a stop cut short says nothing of how long the next may be
-                        grown = 2.0 * wanted if self._easy and length == wanted else wanted
+                        # one that a stop cut short says nothing of the next; where a longer one has just failed, wait
+                        grown = 2.0 * wanted if self._easy and length == wanted == self._length else wanted
                         self._length = min(LONGEST, grown)
                         return
                     limit = length * part

@@ -97,6 +97,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "initial": _part("Straight", "Centreline"),
     "end": _part("EndObject"),
     "fluid": _part("FluidSpec"),
+    "shear": _part("ShearSpec"),
     "loads": _part("LoadsSpec"),
     "distributed load": _part("DistributedSpec"),
     "point load": _part("PointSpec"),

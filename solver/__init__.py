@@ -14,7 +14,7 @@ from solver.run.warming import warm
 from solver.scene.contact import Contact
 from solver.scene.curve import Curve, Vector, constant_vector
 from solver.scene.ends import FIXED, FREE, Condition, End
-from solver.scene.fluid import Fluid
+from solver.scene.fluid import Fluid, Shear
 from solver.scene.initial import Initial
 from solver.scene.loads import DistributedLoad, PointLoad
 from solver.scene.numerics import Numerics
@@ -25,7 +25,7 @@ from solver.statics.ends import check_end
 
 __all__ = [
     "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
-    "Initial", "Numerics", "Outcome", "PointLoad", "Refined", "Rod", "Run", "RunFailed", "Scene", "Simulation",
+    "Initial", "Numerics", "Outcome", "PointLoad", "Refined", "Rod", "Run", "RunFailed", "Scene", "Shear", "Simulation",
     "Statistics", "Trial", "UnderWay", "UserLoad", "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest",
     "constant_vector", "simulate", "strides_of", "warm",
 ]

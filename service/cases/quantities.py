@@ -50,7 +50,7 @@ class ProfileTable(Spec):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        _check_table("s", self.s, self.value)
+        check_table("s", self.s, self.value)
         return self
 
     def curve(self) -> Curve:
@@ -67,7 +67,7 @@ class ScheduleTable(Spec):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        _check_table("t", self.t, self.value)
+        check_table("t", self.t, self.value)
         return self
 
     def curve(self) -> Curve:
@@ -75,9 +75,10 @@ class ScheduleTable(Spec):
         return Curve.table(self.t, self.value, self.interpolation)
 
 
-def _check_table(name: str, x: tuple[float, ...], value: tuple[float, ...]) -> None:
+def check_table(name: str, x: tuple[float, ...], value: tuple[float, ...], of: str = "value") -> None:
+    """Refuse a table whose x do not increase, or which has not as many values, in the field `of`."""
     if len(x) != len(value):
-        raise refusal("value", len(value), f"must have as many entries as {name} ({len(x)})")
+        raise refusal(of, len(value), f"must have as many entries as {name} ({len(x)})")
     for i in range(1, len(x)):
         if x[i] <= x[i - 1]:
             raise refusal(f"{name}/{i}", x[i], f"must be greater than the entry before it ({x[i - 1]})")

@@ -9,8 +9,10 @@ from pydantic import Field, model_validator
 
 from service.cases.errors import refusal
 from service.cases.quantities import (
+    Column,
     Finite,
     FrameName,
+    Interpolation,
     NotNegative,
     Positive,
     ProfileTriple,
@@ -18,11 +20,12 @@ from service.cases.quantities import (
     ScheduleTriple,
     Spec,
     Triple,
+    check_table,
     curve,
     curves,
 )
 from service.meaning import means
-from solver import Contact, DistributedLoad, Fluid, PointLoad
+from solver import Contact, Curve, DistributedLoad, Fluid, PointLoad, Shear
 from solver.physics.loads.solids import Floor, Obstacle
 
 MOST_LOADS = 100
@@ -130,8 +133,28 @@ class LoadsSpec(Spec):
         return tuple(spec.build() for spec in (*solid, *self.obstacles))
 
 
+class ShearSpec(Spec):
+    """What the current is multiplied by at each height: a function through the points, constant beyond them."""
+
+    height: Annotated[Column, means("along the normal from the lab's origin, increasing strictly", "m")]
+    factor: Annotated[Column, means("of the current there", "1")]
+    interpolation: Annotated[Interpolation, means("of the factor between the points")]
+    normal: Annotated[Triple, means("vector, lab, along which heights count, of any length > 0")] = (0.0, 0.0, 1.0)
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        check_table("height", self.height, self.factor, "factor")
+        if not any(self.normal):
+            raise refusal("normal", self.normal, "must not be zero")
+        return self
+
+    def build(self) -> Shear:
+        """The solver's shear."""
+        return Shear(Curve.table(self.height, self.factor, self.interpolation), self.normal)
+
+
 class FluidSpec(Spec):
-    """Morison's fluid, still or with a uniform current.
+    """Morison's fluid, still or with a current.
 
     u is the velocity of the rod relative to it, u_n its part across the rod, u_3 along.
     """
@@ -143,10 +166,14 @@ class FluidSpec(Spec):
     drag_normal: Annotated[NotNegative, means("Cdn: force ½ ρ_w D Cdn |u_n| u_n", "1")] = 0.0
     drag_tangential: Annotated[NotNegative, means("Cdt: force ½ ρ_w π D Cdt |u_3| u_3", "1")] = 0.0
     current: Annotated[Triple, means("vector, lab", "m/s")] = NOTHING
+    shear: Annotated[ShearSpec | None, means("factor of the current by height; without it 1 everywhere")] = None
+    schedule: Annotated[Schedule, means("factor of the current in time", "1")] = 1.0
 
     def build(self) -> Fluid:
         """The solver's fluid."""
-        return Fluid(self.density, self.added_mass, self.drag_normal, self.drag_tangential, self.current)
+        shear = self.shear.build() if self.shear else None
+        return Fluid(self.density, self.added_mass, self.drag_normal, self.drag_tangential, self.current, shear,
+                     curve(self.schedule))  # fmt: skip
 
 
 class ContactSpec(Spec):

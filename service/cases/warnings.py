@@ -228,6 +228,9 @@ def _idle(scene: Scene) -> Iterator[FieldError]:
     if fluid and any(fluid.current) and not (fluid.drag_normal or fluid.drag_tangential):
         rule = "drags at nothing: drag_normal and drag_tangential are 0"
         yield FieldError("/fluid/current", float(np.linalg.norm(fluid.current)), rule)
+    if fluid and fluid.varies and fluid.fastest == 0.0:
+        name = "shear" if fluid.shear else "schedule"
+        yield FieldError(f"/fluid/{name}", None, "is of a current that is 0: it does nothing")
     for name, end in (("start", scene.start), ("end", scene.end)):
         conditions = chain.from_iterable((*end.translation, *end.rotation))
         late = sorted({condition.since for condition in conditions if condition.since >= scene.t_end})

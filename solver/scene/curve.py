@@ -74,6 +74,12 @@ class Curve:
         return not self._pieces
 
     @property
+    def polynomials(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The points (m,) of its table, and the coefficients (m - 1, 4) of the cubics between them, of x less the point
+        before, highest power first; of a constant one point and no cubic."""
+        return np.array(self._knots), np.array(self._pieces).reshape(-1, 4)
+
+    @property
     def is_zero(self) -> bool:
         """Whether the curve is zero everywhere."""
         return not any(any(piece) for piece in self._pieces) and self._first == 0.0 and self._last == 0.0

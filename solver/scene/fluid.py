@@ -6,17 +6,43 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.scene.checks import require_finite
+from solver.scene.curve import Curve
 from solver.scene.view import View
+
+UNIFORM = Curve.constant(1.0)
+
+
+@dataclass(frozen=True)
+class Shear:
+    """The current at the lab place r is `factor`(n . r) times that of the fluid, n the unit vector along `normal`."""
+
+    factor: Curve
+    normal: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+    def __post_init__(self) -> None:
+        require_finite("shear normal", self.normal)
+        if not any(self.normal):
+            raise ValueError(f"shear normal must not be zero, got {self.normal}")
+
+    @property
+    def up(self) -> Array:
+        """n (3,)."""
+        return np.asarray(np.array(self.normal) / np.linalg.norm(self.normal))
+
+
+EVERYWHERE = Shear(UNIFORM)
 
 
 @dataclass(frozen=True)
 class Fluid:
-    """Morison's fluid of density rho_w (kg/m^3), still or with a uniform lab current U (m/s).
+    """Morison's fluid of density rho_w (kg/m^3), still or with a lab current U (m/s).
 
     Relative velocity u = v - R^T U. Normal added mass `added_mass` rho_w A; normal drag
     0.5 rho_w D `drag_normal` |u_n| u_n; tangential 0.5 rho_w pi D `drag_tangential` |u_3| u_3.
-    With gravity it also bears the rod up by rho_w A g.
+    With gravity it also bears the rod up by rho_w A g. U is `current` times `schedule`(t), and times the factor of
+    `shear`.
     """
 
     density: float
@@ -24,6 +50,8 @@ class Fluid:
     drag_normal: float = 0.0
     drag_tangential: float = 0.0
     current: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    shear: Shear | None = None
+    schedule: Curve = UNIFORM
 
     def __post_init__(self) -> None:
         for name in ("density", "added_mass", "drag_normal", "drag_tangential"):
@@ -32,6 +60,18 @@ class Fluid:
                 raise ValueError(f"fluid {name} must be >= 0, got {value}")
         require_finite("fluid current", self.current)
 
+    @property
+    def varies(self) -> bool:
+        """Whether the current depends on place or time."""
+        return self.shear is not None or not self.schedule.is_constant or self.schedule.value(0.0) != 1.0
+
+    @property
+    def fastest(self) -> float:
+        """The largest speed of the current (m/s), at the points of its tables."""
+        curves = (self.schedule, (self.shear or EVERYWHERE).factor)
+        factors = (np.abs(curve(np.array([0.0, *curve.corners]))).max() for curve in curves)
+        return float(np.prod([*factors, np.linalg.norm(self.current)]))
+
     def keeps(self, view: View) -> bool:
-        """Whether the current flows along the motion about an axis."""
-        return view.moved_by(self.current)
+        """Whether the current is the same everywhere and always, and flows along the motion about an axis."""
+        return not self.varies and view.moved_by(self.current)

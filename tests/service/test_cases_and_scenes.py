@@ -18,8 +18,21 @@ from service.cases.case import CaseSpec, NumericsSpec, OutputSpec
 from service.cases.ends import EndObject, EndsSpec, Stop, Switch
 from service.cases.initial import Centreline, Straight
 from service.cases.rod import RodSpec
-from service.cases.surroundings import ContactSpec, DistributedSpec, FluidSpec, LoadsSpec, PointSpec
-from solver import Condition, Contact, Curve, DistributedLoad, End, Fluid, Initial, Numerics, PointLoad, Rod, Scene
+from service.cases.surroundings import ContactSpec, DistributedSpec, FluidSpec, LoadsSpec, PointSpec, ShearSpec
+from solver import (
+    Condition,
+    Contact,
+    Curve,
+    DistributedLoad,
+    End,
+    Fluid,
+    Initial,
+    Numerics,
+    PointLoad,
+    Rod,
+    Scene,
+    Shear,
+)
 from solver.scene.view import View
 
 TRANSLATION = tuple(f"{kind}{i}" for kind in "vxf" for i in (1, 2, 3))
@@ -68,6 +81,7 @@ PAIRS = (
          "loads.point.0.", lambda scene: scene.points[0], lambda scene, part: replace(scene, points=(part,))),
     Pair(Fluid, (FluidSpec,), {}, (),
          "fluid.", lambda scene: scene.fluid, lambda scene, part: replace(scene, fluid=part)),
+    Pair(Shear, (ShearSpec,), {"factor": ("height", "factor", "interpolation")}),
     Pair(Contact, (ContactSpec,), {"aperture": ("aperture_deg",)}, (),
          "contact.", lambda scene: scene.contact, lambda scene, part: replace(scene, contact=part)),
     Pair(Numerics, (NumericsSpec,), {"most_intervals": (), "small_motion": (), "strides": ()}, (),

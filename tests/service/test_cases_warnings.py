@@ -167,6 +167,7 @@ LATER = {"t": [2.0, 3.0], "value": [0.0, 1.0], "interpolation": "linear"}
     ({"loads": {"point": [{"s": 0.0, "force": [1.0, 0.0, 0.0]}]}}, "/loads/point/0"),
     ({"loads": {"distributed": [{"force": [0.0, 1.0, 0.0], "schedule": LATER}]}}, "/loads/distributed/0"),
     ({"fluid": {"density": 1000.0, "added_mass": 1.0, "current": [1.0, 0.0, 0.0]}}, "/fluid/current"),
+    ({"fluid": {"density": 1000.0, "drag_normal": 1.0, "schedule": 2.0}}, "/fluid/schedule"),
     ({"loads": {"distributed": [{"force": [0.0, 1.0, 0.0]}, {"moment": [0.0, 0.0, 0.0]}]}}, "/loads/distributed/1"),
     ({"ends": {"start": "clamp", "end": {"preset": "free", "switches": [{"at": 1.0, "v1": 0.0}]}}},
      "/ends/end/switches"),

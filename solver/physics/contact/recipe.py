@@ -205,7 +205,7 @@ def _largest_pull(scene: Scene, t: Array) -> float:
                * np.abs(_at(load.schedule, t)).max() for load in scene.distributed]  # fmt: skip
     if scene.fluid:
         drag = 0.5 * scene.fluid.density * (scene.fluid.drag_normal + pi * scene.fluid.drag_tangential)
-        forces.append(drag * float(np.linalg.norm(scene.fluid.current)) ** 2 * along(np.asarray(scene.rod.diameter(s))))
+        forces.append(drag * scene.fluid.fastest**2 * along(np.asarray(scene.rod.diameter(s))))
     weight = along(np.asarray(scene.rod.mass(s))) * float(np.linalg.norm(scene.gravity))
     return float(max([*forces, weight]))
 

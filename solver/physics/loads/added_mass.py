@@ -2,7 +2,8 @@
 
 (With v_t on v1, v2 alone, whose power is the rate of 1/2 Ca rho_w A |u_n|^2, the paper's scene reaches Wr(25 s) = 0.572
 instead of the reference's 0.580: the difference is no detail.) The fluid's energy is that of 1/2 Ca rho_w A |u_n|^2,
-u_n = u - (u . T) T, u the velocity relative to the current; what is left of the power is lost.
+u_n = u - (u . T) T, u the velocity relative to the current (to still water, if that varies); what is left of the power
+is lost.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ def of(scene: Scene, samples: Samples) -> Source:
     """The added mass of a scene's fluid."""
     fluid = scene.fluid
     area, ratio = samples.section.area, fluid.density * fluid.added_mass if fluid else 0.0
-    current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)], dtype=float)
+    current = np.array([fluid.current if fluid and not fluid.varies else (0.0, 0.0, 0.0)], dtype=float)
     return Source(Record(ratio > 0.0, ratio * area, current))
 
 
@@ -54,7 +55,7 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
 
 
 @inner
-def carrier(load: Record) -> Any:
+def carrier(load: Record, i: int, j: int, at: Point) -> Any:
     """The current."""
     return vector(load.current, 0)
 

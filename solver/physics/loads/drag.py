@@ -26,12 +26,12 @@ class Record(NamedTuple):
 
 
 def of(scene: Scene, samples: Samples) -> Source:
-    """The drag of a scene's fluid."""
+    """The drag of a scene's fluid, whose current is the same everywhere and always: else see `sheared_drag`."""
     fluid = scene.fluid
     half = 0.5 * fluid.density * samples.section.diameter if fluid else 0.0 * samples.section.diameter
     normal, tangential = (fluid.drag_normal, fluid.drag_tangential) if fluid else (0.0, 0.0)
     current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)], dtype=float)
-    present = bool(fluid and fluid.density * (normal + tangential) > 0.0)
+    present = bool(fluid and not fluid.varies and fluid.density * (normal + tangential) > 0.0)
     return Source(Record(present, half * normal, pi * half * tangential, current))
 
 
@@ -67,7 +67,7 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
 
 
 @inner
-def carrier(load: Record) -> Any:
+def carrier(load: Record, i: int, j: int, at: Point) -> Any:
     """The current."""
     return vector(load.current, 0)
 

@@ -192,8 +192,8 @@ def energy(load: Any, i: int, j: int, at: Point) -> float:
 
 
 @dispatched
-def carrier(load: Any) -> Any:
-    """The velocity of what the load's source moves with, None if it rests."""
+def carrier(load: Any, i: int, j: int, at: Point) -> Any:
+    """The velocity of what the load's source moves with at point j, None if it rests."""
 
 
 @dispatched
@@ -267,7 +267,7 @@ def _add_powers(load: Any, i: int, motion: Any, out: Array) -> None:
         if what == GIVEN:
             given += power
         else:
-            through = carried_power(lab, carrier(load))
+            through = carried_power(lab, carrier(load, i, j, at))
             given += through
             stored = entrained_power(entrained(load, j, at)) - carried_power(conservative(load, i, j, at), at.V)
             lost += through - power - stored

@@ -6,7 +6,7 @@ from collections import namedtuple
 from typing import Any
 
 from solver.kernels.dispatch import enter
-from solver.physics.loads import added_mass, damping, dead, drag, following, levers, solids, user, weight
+from solver.physics.loads import added_mass, damping, dead, drag, following, levers, sheared_drag, solids, user, weight
 from solver.physics.loads import load as protocol
 from solver.physics.loads.load import Samples, Source
 from solver.scene.scene import Scene
@@ -19,6 +19,7 @@ LOADS: tuple[Any, ...] = (
     damping,
     added_mass,
     drag,
+    sheared_drag,
     solids,
     *user.KINDS,
 )

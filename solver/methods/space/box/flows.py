@@ -137,24 +137,25 @@ def _add_flows(load: Any, motion: Motion, dt: float, h: float, flows: Flows) -> 
 @inner
 def _add_power(load: Any, motion: Motion, h: float, power: Array) -> None:
     """Add what the load's carrier gives, and what the load takes for good, W: mean forces times mean velocities."""
-    f, m, V, omega, taken = _at_node(load, motion, 0)
+    f, m, V, omega, carried, taken = _at_node(load, motion, 0)
     for j in range(1, len(motion.r)):
-        f_next, m_next, V_next, omega_next, taken_next = _at_node(load, motion, j)
+        f_next, m_next, V_next, omega_next, carried_next, taken_next = _at_node(load, motion, j)
         mean = middle(f, f_next)
-        through = carried_power(mean, carrier(load))
+        through = carried_power(mean, middle(carried, carried_next))
         done = total_power(mean, middle(m, m_next), middle(V, V_next), middle(omega, omega_next))
         power[0] += h * through
         power[1] += h * (through - done - _mean_power(taken, taken_next))
-        f, m, V, omega, taken = f_next, m_next, V_next, omega_next, taken_next
+        f, m, V, omega, carried, taken = f_next, m_next, V_next, omega_next, carried_next, taken_next
 
 
 @inner
 def _at_node(load: Any, motion: Motion, j: int) -> Any:
-    """The load's force but for its conservative part, its moment, velocity and angular velocity, and the mass that the
-    load entrains at node j."""
+    """The load's force but for its conservative part, its moment, velocity and angular velocity, and those of what
+    carries the load, and the mass that it entrains, at node j."""
     at = point(motion, j)
     lab, material = force(load, 0, j, at)
-    return without(lab, conservative(load, 0, j, at)), material, at.V, at.omega, entrained(load, j, at)
+    across, carried = without(lab, conservative(load, 0, j, at)), carrier(load, 0, j, at)
+    return across, material, at.V, at.omega, carried, entrained(load, j, at)
 
 
 @inner

@@ -26,26 +26,39 @@ from solver.scene.numerics import Numerics
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 from solver.statics.equations import Equations, Point
-from solver.statics.path import Path
+from solver.statics.first_forces import first_forces
+from solver.statics.path import MOST_STEPS, Path
 from solver.statics.stability import negative_modes, neutral_modes
+
+WAYS = ((True, True), (False, True), (False, False))
+"""In which what holds the initial shape is tried to be let go: whether its forces turn with the rod, and whether this
+begins with a tension."""
+PATIENCE = 500
+"""Steps after which another one is tried."""
 
 
 class Equilibria(Run):
     """A branch of equilibria. Raises `RunFailed` where it cannot be followed.
 
-    First what holds the initial shape is let go at t = 0, then the schedules go on. A frame's `t` is how far their
+    First what holds the initial shape is let go at t = 0, in the first of WAYS that leads to an equilibrium, then the
+    schedules go on. A frame's `t` is how far their
     time has travelled along the branch, to and fro; its `parameter` is their time itself.
     """
 
     def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
         super().__init__(scene, statistics)
         compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
-        self._equations = Equations(scene)
-        self._path = Path(self._equations)
         self.remarks.axial_stiffness = axial_stiffness(scene)
-        self._linking = LinkingNumber()
-        self._count_turns_at_start()
         self._watch = Watch(self.remarks, scene.contact is not None)
+        self._begin(0)
+
+    def _begin(self, way: int) -> None:
+        """Lay the rod down, held in one of the WAYS."""
+        self._way, self._equations, self._linking = way, Equations(self._scene), LinkingNumber()
+        turning, tense = WAYS[way]
+        self._equations.hold(first_forces(self._equations) if tense else None, turning)
+        self._path = Path(self._equations, MOST_STEPS if WAYS[way] is WAYS[-1] else PATIENCE)
+        self._count_turns_at_start()
 
     @property
     def s(self) -> Array:
@@ -58,7 +71,13 @@ class Equilibria(Run):
         negative_modes(self._equations)
 
     def _first_frame(self) -> Frame | None:
-        if not self._advance(1.0):
+        try:
+            if not self._advance(1.0):
+                return None
+        except RunFailed:
+            if self._way + 1 == len(WAYS):
+                raise
+            self._begin(self._way + 1)
             return None
         self._equations.let_go()
         self._path.begin(self._corners())

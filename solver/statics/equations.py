@@ -29,6 +29,7 @@ from solver.methods.space.segments.motion import follow_segments
 from solver.methods.space.segments.opening import add_levers, measure_openings, pull_joints, shift_segments
 from solver.physics.axial import axial_compliance
 from solver.physics.elasticity import can_stretch, mean_bending, stretches
+from solver.physics.loads.registry import records_with_energy
 from solver.scene.scene import Scene
 from solver.statics.contact import StaticContact
 from solver.statics.ends import StaticEnd
@@ -96,7 +97,7 @@ class Equations:
         self.chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
         state, self.offset = lay_out(scene, self.chain, self.s)
         self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
-        self.stages, self.tangents = Stages.empty(N), Tangents.empty(N)
+        self.stages, self.tangents, self._stored = Stages.empty(N), Tangents.empty(N), Tangents.empty(N)
         self._driven, self._residuals = Driven.empty(N), Residuals.empty(N)
         self._moments = np.zeros((2, 3))
         """On the ends, material, of the point that was looked at last."""
@@ -111,10 +112,21 @@ class Equations:
         moment, force = self.stiffness / length, self.stiffness / length**2
         self.units = np.repeat([1.0, length, force], 3)
         self._rows = 1.0 / np.repeat([moment, force, length], 3)
-        self.letting_go = False
-        self._holding = self.residual(self.start)
+        self.hold()
+
+    def hold(self, F: Array | None = None, turning: bool = False) -> None:
+        """Begin with forces F (N + 1, 3), lab, in the rod, and hold it; `turning`: by forces that turn with it."""
+        self.start.F[:] = 0.0 if F is None else F
+        self._turning = turning
+        self.letting_go, self._held = False, 0.0
+        """Whether what holds the initial shape is taken away, as q goes from 0 to 1 at t = 0; how much is there."""
+        self.held_at_start = self.residual(self.start)
+        """What holds the initial shape (N + 2, 9), dimensionless, lab."""
+        self._holding = self.held_at_start.copy()
+        """The same; where it turns, with material forces on the segments, so that it does not press them along."""
+        if turning:
+            self._holding[1:-1, X] = _turned_by(self.stages.R[0].transpose(0, 2, 1), self._holding[1:-1, X])
         self.letting_go = True
-        """Whether what holds the initial shape is taken away, as q goes from 0 to 1 at t = 0."""
 
     def let_go(self) -> None:
         """Nothing holds the initial shape any more; q is now the schedules' time."""
@@ -182,8 +194,12 @@ class Equations:
         for side in (0, 1):
             self._balance_end(side, t, point, left)
         left *= self._rows
+        self._held = 1.0 - point.q if self.letting_go else 0.0
         if self.letting_go:
-            left -= (1.0 - point.q) * self._holding
+            left -= self._held * self._holding
+            if self._turning:
+                forces = self._holding[1:-1, X]
+                left[1:-1, X] -= self._held * (_turned_by(stages.R[0], forces) - forces)
         return left
 
     def slope(self, point: Point, ahead: float, step: float = 1e-6) -> Array:
@@ -266,6 +282,14 @@ class Equations:
         segment_tangents(self.chain, self.loads, self._driven, self.stages, 0, self.tangents)
         return left
 
+    def stiffness_of_loads(self) -> Array:
+        """How the forces of those loads that store energy change with the places of the segments (N, 3, 3), of the
+        point that was looked at last."""
+        if not self.tangents.K.any():
+            return np.asarray(self.tangents.K)
+        segment_tangents(self.chain, records_with_energy(self.loads), self._driven, self.stages, 0, self._stored)
+        return np.asarray(self._stored.K)
+
     def linearise(self, point: Point) -> tuple[Array, Solver | CoupledSolver]:
         """The residual (N + 2, 9) and the factored tangent at a point."""
         left = self.look_at(point)
@@ -314,6 +338,8 @@ class Equations:
         D[:, PSI, PSI] += SOFTEST * self.stiffness * self.chain.h / self.s[-1] ** 2 * one
         D[1:, PSI, FORCE], upper[:-1, PSI, FORCE] = lever[1:], lever[:-1]
         D[1:-1, X, PSI], D[1:-1, X, X] = -T.E, T.K + SOFTEST_PLACE * np.abs(T.K).max() * one
+        if self.letting_go and self._turning:
+            D[1:-1, X, PSI] += self._held * self._unit(X) * R[1:-1] @ _cross(self._holding[1:-1, X])
         D[1:, X, FORCE], upper[:-1, X, FORCE] = one, -one
         D[1:, FORCE, PSI], lower[1:, FORCE, PSI] = lever[1:].transpose(0, 2, 1), lever[:-1].transpose(0, 2, 1)
         D[1:, FORCE, X], lower[1:, FORCE, X] = one, -one
@@ -359,8 +385,14 @@ def _by_blocks(moves: Array) -> bsr_array:
     return bsr_array(blocks, shape=(3 * n, BLOCK * (n + 1)))
 
 
+def _turned_by(R: Array, forces: Array) -> Array:
+    """Those on segments (N, 3) by the rotations of all orientations (N + 2, 3, 3)."""
+    return np.asarray((R[1:-1] @ forces[:, :, None])[:, :, 0])
+
+
 def _cross(x: Array) -> Array:
-    return np.array([[0.0, -x[2], x[1]], [x[2], 0.0, -x[0]], [-x[1], x[0], 0.0]])
+    """The matrices [x] (..., 3, 3) of vectors (..., 3)."""
+    return np.asarray(np.cross(x[..., None, :], np.eye(3)).swapaxes(-1, -2))
 
 
 Places = tuple[tuple[NDArray[np.bool_], tuple[NDArray[np.int64], NDArray[np.int64]]], ...]

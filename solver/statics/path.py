@@ -72,8 +72,9 @@ class Path:
     `modes`: in how many directions the energy falls there; `last_dq`, `last_iterations` of the last step.
     """
 
-    def __init__(self, equations: Equations) -> None:
-        self._equations = equations
+    def __init__(self, equations: Equations, patience: int = MOST_STEPS) -> None:
+        """`patience`: steps in which what holds the initial shape must have been let go."""
+        self._equations, self._patience = equations, patience
         self.point = equations.start.moved(np.zeros((len(equations.start.quaternion), 9)), 0.0)
         self.direction = Direction(np.zeros((len(equations.start.quaternion), 9)), 1.0)
         self._bend = 0.0 * self.direction
@@ -99,7 +100,7 @@ class Path:
             self.modes = negative_modes(self._equations)
             self._begun = True
         if self._left(stop) > REACHED:
-            if self._idle == MOST_STEPS:
+            if self._idle == (self._patience if self._equations.letting_go else MOST_STEPS):
                 raise self._failure(Outcome.EQUILIBRIUM_LOST, f"{MOST_STEPS} steps did not reach the next frame")
             if self._idle == AT_ONCE and self._equations.letting_go and abs(self.point.q) < REACHED:
                 raise self._failure(Outcome.EQUILIBRIUM_LOST)

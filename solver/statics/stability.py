@@ -36,13 +36,14 @@ def neutral_modes(equations: Equations, falling: int) -> int:
 
 def _count(equations: Equations, softest: float) -> int:
     """Directions of falling energy where every rotation has as much stiffness more."""
-    placed = equations.contact.pressing > 0 or bool(equations.tangents.K.any())
+    K = equations.stiffness_of_loads()
+    placed = equations.contact.pressing > 0 or bool(K.any())
     length = float(equations.s[-1])
     T = equations.tangents
     bands = _second_variation(T.stiff, T.behind, equations, softest) * (length / equations.stiffness)
     G, W, ties = _conditions(equations)
     if placed:
-        return _all_together(equations, bands, G, W, softest) - ties
+        return _all_together(equations, K, bands, G, W, softest) - ties
     full = np.zeros((3 * BAND + 1, bands.shape[1]))
     full[2 * BAND :] = bands
     for k in range(1, BAND + 1):
@@ -75,12 +76,12 @@ def _conditions(equations: Equations) -> tuple[Array, Array, int]:
     return G, W, int(ties.shape[1])
 
 
-def _all_together(equations: Equations, bands: Array, G: Array, W: Array, softest: float) -> int:
+def _all_together(equations: Equations, K: Array, bands: Array, G: Array, W: Array, softest: float) -> int:
     """Negative eigenvalues of [H G^t; G W] where strands press on each other or loads depend on the place, which
     couples rotations far apart. (Eliminated from segment to segment the counts fell below zero.) How these move a rod
     along itself by stretching it is left out."""
     length = float(equations.s[-1])
-    S, steps = _by_place(equations, softest), -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
+    S, steps = _by_place(equations, K, softest), -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
     n, unit = len(S), length / equations.stiffness
     # the place of the start moves all nodes, a rotation those behind its segment
     together = S[::-1, :, ::-1].cumsum(axis=0).cumsum(axis=2)[::-1, :, ::-1]
@@ -95,10 +96,10 @@ def _all_together(equations: Equations, bands: Array, G: Array, W: Array, softes
     return int(np.sum(np.diag(factors)[~paired] < 0.0)) + int(np.sum(paired)) // 2
 
 
-def _by_place(equations: Equations, softest: float) -> Array:
+def _by_place(equations: Equations, K: Array, softest: float) -> Array:
     """The stiffness of contact and loads by the places of the nodes (N + 1, 3, N + 1, 3); of loads with as much more,
     of either sign, as a slide along them is taken for neutral by."""
-    n, K = len(equations.s), equations.tangents.K
+    n = len(equations.s)
     K = K + np.copysign(NEUTRAL_PLACE, softest) * np.abs(K).max() * np.eye(3)
     S = equations.contact.stiffness()[0] if equations.contact.pressing else np.zeros((n, 3, n, 3))
     segments = np.arange(n - 1)

@@ -8,7 +8,7 @@ from typing import Any
 from solver.kernels.dispatch import enter
 from solver.physics.loads import added_mass, damping, dead, drag, following, levers, sheared_drag, solids, user, weight
 from solver.physics.loads import load as protocol
-from solver.physics.loads.load import Samples, Source
+from solver.physics.loads.load import Samples, Source, has_energy
 from solver.scene.scene import Scene
 
 LOADS: tuple[Any, ...] = (
@@ -56,6 +56,12 @@ def sources_of(scene: Scene, samples: Samples) -> tuple[Source, ...]:
 def records_of(sources: tuple[Source, ...]) -> Any:
     """Their records, as kernels read them."""
     return Loads(*(source.record for source in sources))
+
+
+def records_with_energy(records: Any) -> Any:
+    """The same records, but only those of loads that store energy are present."""
+    others = {name: record for name, record in records._asdict().items() if not has_energy(type(record))}
+    return records._replace(**{name: record._replace(present=False) for name, record in others.items()})
 
 
 def records_about(axis: Any, sources: tuple[Source, ...]) -> Any:

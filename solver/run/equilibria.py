@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import nan, pi
+from math import inf, nan, pi
 
 import numpy as np
 
@@ -40,8 +40,8 @@ PATIENCE = 500
 class Equilibria(Run):
     """A branch of equilibria. Raises `RunFailed` where it cannot be followed.
 
-    First what holds the initial shape is let go at t = 0, in the first of WAYS that leads to an equilibrium, then the
-    schedules go on. A frame's `t` is how far their
+    First what holds the initial shape is let go at t = 0, in the first of WAYS that leads to a stable equilibrium, or
+    else to that with the fewest directions of falling energy; then the schedules go on. A frame's `t` is how far their
     time has travelled along the branch, to and fro; its `parameter` is their time itself.
     """
 
@@ -50,6 +50,8 @@ class Equilibria(Run):
         compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
         self.remarks.axial_stiffness = axial_stiffness(scene)
         self._watch = Watch(self.remarks, scene.contact is not None)
+        self._falling: list[float] = []
+        """Directions of falling energy where each of the WAYS led; inf where it led nowhere."""
         self._begin(0)
 
     def _begin(self, way: int) -> None:
@@ -71,18 +73,32 @@ class Equilibria(Run):
         negative_modes(self._equations)
 
     def _first_frame(self) -> Frame | None:
-        try:
-            if not self._advance(1.0):
-                return None
-        except RunFailed:
-            if self._way + 1 == len(WAYS):
-                raise
-            self._begin(self._way + 1)
+        if not self._let_go():
             return None
         self._equations.let_go()
         self._path.begin(self._corners())
         self._path.advance(0.0)
         return self._frame(0.0)
+
+    def _let_go(self) -> bool:
+        """Take a step in the way at hand; whether it has led to an equilibrium: a stable one, or the best of all."""
+        try:
+            if not self._advance(1.0):
+                return False
+            falling = float(self._path.modes)
+        except RunFailed:
+            if self._way + 1 == len(WAYS) and min(self._falling) == inf:
+                raise
+            falling = inf
+        if falling == 0.0 or len(self._falling) == len(WAYS):
+            return True
+        self._falling.append(falling)
+        last = len(self._falling) == len(WAYS)
+        following = self._falling.index(min(self._falling)) if last else len(self._falling)
+        if following != self._way:
+            self._begin(following)
+            return False
+        return True
 
     def _next_frame(self, output: float) -> Frame | None:
         reached = self._advance(output / self._scene.t_end)

@@ -448,10 +448,11 @@ def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k:
 
 @kernel
 def update(chain: Chain, transform: Array, unit: float, fraction: float, stages: Stages, tangents: Tangents,
-           real: Factors, pair: Factors) -> tuple[float, float]:  # fmt: skip
-    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one."""
+           real: Factors, pair: Factors) -> tuple[float, float, float]:  # fmt: skip
+    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one, and
+    displacement of the start (m)."""
     T = transform
-    turned, forced, largest = 0.0, 0.0, unit
+    turned, forced, shifted, largest = 0.0, 0.0, 0.0, unit
     for i in range(STAGES):
         t0, t1, t2 = fraction * T[i, 0], fraction * T[i, 1], fraction * T[i, 2]
         for a in range(stages.theta.shape[1]):
@@ -477,7 +478,7 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
             theta[2] += p2 - 0.5 * c2 + (1 / 12) * (u * c1 - v * c0)
             turned = max(turned, abs(p0), abs(p1), abs(p2))
             if not np.isfinite(p0):
-                return np.inf, np.inf
+                return np.inf, np.inf, np.inf
         for a in range(stages.F.shape[1]):
             for k in range(3):
                 change = t0 * real.x[a, 3 + k] + t1 * pair.x[a, 3 + k].real + t2 * pair.x[a, 3 + k].imag
@@ -486,5 +487,7 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
                 largest = max(largest, abs(stages.F[i, a, k]))
         for k in range(3):
             z0 = node_moves(chain, tangents, pair, 0, k)
-            stages.shift[i, k] += t0 * node_moves(chain, tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
-    return turned / fraction, forced / (fraction * largest)
+            moved = t0 * node_moves(chain, tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
+            stages.shift[i, k] += moved
+            shifted = max(shifted, abs(moved))
+    return turned / fraction, forced / (fraction * largest), shifted / fraction

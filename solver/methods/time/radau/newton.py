@@ -43,9 +43,10 @@ LARGEST_ITERATIONS = 12
 LARGEST_INCREMENT = 1e3
 """Increment at which an iteration is given up."""
 TOLERANCE = 1e-10
-"""Remaining increment, rotation (rad) and force in EJ/L^2 relative to its largest, at which an iteration has converged:
-far below a buckling seed. A step may leave a part of its largest departure from steady rotation, if that is more; not
-of the rotation itself, for a rod may spin fast with a small seed."""
+"""Remaining increment, rotation (rad), force in EJ/L^2 relative to its largest, and the start's place in L, at which an
+iteration has converged: far below a buckling seed. A step may leave a part of its largest departure from steady
+rotation, and of that of the start from steady motion, if that is more; not of the rotation itself, for a rod may spin
+fast with a small seed. (A rod that slides without turning has no other error than that of its place.)"""
 IN_CONTACT = 10.0
 """How many times more a step in contact may leave, whose error is that of strands that rattle."""
 
@@ -119,7 +120,7 @@ def step(reference: Reference, dt: float, unit: float, part: float, state: Recor
     many arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
     chain, loads, driven, scheme, stages, touch, work = reference.records
-    before, contact, fresh = 0.0, in_contact(touch), True
+    before, contact, fresh, length = 0.0, in_contact(touch), True, chain.h * len(chain.mass)
     residuals, transformed, tangents, real, pair = work.residuals, work.transformed, work.tangents, work.real, work.pair
     begin_step(state, scheme.nodes, dt, stages)
     for iteration in range(1, LARGEST_ITERATIONS + 1):
@@ -139,13 +140,14 @@ def step(reference: Reference, dt: float, unit: float, part: float, state: Recor
                                           iteration == 1, fresh)  # fmt: skip
         else:
             solve_stages(chain, driven, tangents, gamma, lam, transformed, real, pair)
-        turned, forced = update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
+        turned, forced, shifted = update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
         if not max(turned, forced) < LARGEST_INCREMENT:
             return STALLED, iteration
         share = part * IN_CONTACT if contact else part
         enough = max(TOLERANCE, share * largest_departure(stages.theta[STAGES - 1]))
         # contact's forces are as large as they are whatever the step: what counts is their own relative error
         size = max(turned / enough, forced / (max(enough, share) if contact else enough))
+        size = max(size, shifted / max(TOLERANCE * length, share * shift_departure(stages.shift, state.base, dt)))
         if is_enough(size, before):
             move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
             if contact:
@@ -165,6 +167,17 @@ def move_guess(reference: Reference, dt: float, state: Record) -> None:
     chain, _, _, scheme, stages, _, _ = reference.records
     begin_step(state, scheme.nodes, dt, stages)
     move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
+
+
+@inner
+def shift_departure(shift: Array, base: Array, dt: float) -> float:
+    """The largest component (m) of the start's departure from steady motion in a step; `shift` (3, ...) at the stages,
+    `base` (3, ...) its place, velocity and acceleration before."""
+    largest, each = 0.0, shift.size // STAGES
+    moved, velocity = shift.reshape(STAGES, each), base.reshape(3, each)
+    for k in range(each):
+        largest = max(largest, abs(moved[STAGES - 1, k] - dt * velocity[1, k]))
+    return largest
 
 
 @inner

@@ -228,3 +228,27 @@ def test_depth_is_that_of_a_place_below_the_surface() -> None:
     assert_allclose(FLOOR.depth(places), [0.1, 0.46], atol=1e-12)
     assert_allclose(BAR.depth(places), [0.2 - 0.1 * np.sin(np.arctan(0.25)), 0.2 - 0.5], atol=1e-12)
     assert_allclose(BALL.depth(np.array([[0.1, 0.05, 0.4]])), [0.15], atol=1e-12)
+
+
+@pytest.mark.parametrize("axis", [(0.0, 1.0, 0.0), (1.0, 0.0, 0.0)], ids=["across the slope", "along the slope"])
+def test_a_rod_that_slides_without_turning_is_followed_into_its_slide(axis: tuple[float, float, float]) -> None:
+    """v' = g (sin a - mu cos a v / sqrt(v^2 + v0^2)): Newton's iteration has nothing but the rod's place to see."""
+    slope, friction, slip = np.radians(27.0), 0.31, 0.005
+    normal = (float(np.sin(slope)), 0.0, float(np.cos(slope)))
+    down = np.array([np.cos(slope), 0.0, -np.sin(slope)])
+    along = axis if axis[1] else tuple(map(float, down))
+    rod = Rod.circular(0.4, 0.01, 7e10, 2.6e10, 2700.0)
+    depth = float(rod.mass(np.zeros(1))[0]) * 9.81 * np.cos(slope) / 2e5
+    start = tuple(float(-depth * x) for x in normal)
+    floor, numerics = Floor(2e5, 0.0, normal, friction, slip), Numerics(method="staggered", tolerance=1e-3)
+    scene = Scene(rod, Initial.straight(start, along), End.free(), End.free(), 2.0, 0.5, gravity=(0.0, 0.0, -9.81),
+                  loads=(floor,), numerics=numerics)  # fmt: skip
+    frames = list(simulate(scene))
+
+    def rates(_t: float, y: Array) -> list[float]:
+        return [y[1], 9.81 * (np.sin(slope) - friction * np.cos(slope) * y[1] / np.hypot(y[1], slip))]
+
+    exact = solve_ivp(rates, (0.0, 2.0), [0.0, 0.0], method="Radau", rtol=1e-10, atol=1e-12,
+                      t_eval=[frame.t for frame in frames]).y[0]  # fmt: skip
+    travelled = [(frame.r[0] - frames[0].r[0]) @ down for frame in frames]
+    assert_allclose(travelled, exact, atol=1e-3 * rod.length)

@@ -33,7 +33,8 @@ from solver.scene.layout import nodes_at_rest
 SLOWLY, RINGING = "slow in space", "undamped"
 SECONDS = {
     "wound up": 12.0, "lies on itself": 12.0, "pulled taut": 10.0, "held straight and twisted": 3.5,
-    "held straight and moved": 1.2, "held straight": 0.4, "on a floor": 4.2, "overdamped": 0.12,
+    "held straight and moved": 1.2, "held straight": 0.4, "on a floor": 4.2, "slides as a whole": 0.12,
+    "overdamped": 0.12,
     "in space and moved or let go": 4.0, "flying freely": 0.12, "settling in space": 0.18, SLOWLY: 0.36,
     "long and heavy in water": 0.8, "shaken in water": 0.45, "towed through water": 0.18, "in water": 0.36,
     "let go or loaded at once": 1.8, "let go and settling": 0.65, "let go gently": 0.5, "let go between pins": 0.9,
@@ -61,6 +62,8 @@ FARTHER = 1e-6
 """Part of their distance by which ends that come apart pull the rod taut."""
 MUCH = 100.0
 """Damping, in the rod's first angular frequency, with which nothing swings."""
+STIFF = 1.0
+"""Weight, in EJ/L^2, of a rod that hardly bends by it."""
 LIMP = 1e5
 """Weight, in EJ/L^2, of a rod that bends by its ends in so short a part that the meshes have to be fine."""
 FIRST_FREQUENCY = 3.516
@@ -81,7 +84,7 @@ def kind_of(scene: Scene) -> str:
     """What moves the rod, of `SECONDS`."""
     driven, frequency = Driven.of(scene), _frequency(scene)
     urged = Urged.of(scene, driven)
-    overdamped = scene.damping > MUCH * frequency
+    overdamped, held = scene.damping > MUCH * frequency, _is_held(scene.start) or _is_held(scene.end)
     if driven.turned > TURN:
         return "wound up"
     if scene.contact is not None and urged.bent > TIED and not overdamped:
@@ -93,14 +96,14 @@ def kind_of(scene: Scene) -> str:
             return "held straight and twisted"
         return "held straight and moved" if driven.moved else "held straight"
     if any(isinstance(load, solids.Given) for load in scene.loads):
-        return "on a floor"
+        return "slides as a whole" if urged.weight < STIFF and not held and _lies(scene) else "on a floor"
     if overdamped:
         return "overdamped"
     if axis_of(replace(scene, numerics=replace(scene.numerics, intervals=INTERVALS))) is None:
         urging = max(urged.stress, urged.force, urged.held_weight) > SMALL
         if urged.inertia > DRIVEN or (urging and scene.damping == 0.0):
             return "in space and moved or let go"
-        if not (urging or _is_held(scene.start) or _is_held(scene.end)):
+        if not (urging or held):
             return "flying freely"
         return "settling in space" if scene.damping > IN_SPACE * frequency else SLOWLY
     if scene.fluid is not None:
@@ -162,6 +165,12 @@ class Urged:
     def at_once(self) -> bool:
         """Whether the rod is not at rest where it begins."""
         return self.thrown or max(self.weight_across, self.stress, self.force) > SMALL
+
+
+def _lies(scene: Scene) -> bool:
+    """Whether a floor or an obstacle bears the rod all along where it begins."""
+    places, _, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, INTERVALS + 1))
+    return any(bool((load.depth(places) >= 0.0).all()) for load in scene.loads if isinstance(load, solids.Given))
 
 
 def _come_apart(scene: Scene) -> bool:

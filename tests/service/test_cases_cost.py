@@ -127,6 +127,8 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"ends__start": "free", "loads__point": [], "loads__gravity": ASKEW}, "flying freely"),
     ({"ends__end": moved(x3=True, to=0.01)}, "pulled taut"),
     ({"loads__floor": {"stiffness": 1.0}}, "on a floor"),
+    ({"loads__floor": {"stiffness": 1.0, "normal": [1, 0, 0]}, "ends__start": "free", "loads__point": []},
+     "slides as a whole"),
     ({"loads__obstacles": [{"start": [0, 0, -9], "radius": 1.0, "stiffness": 1.0}]}, "on a floor"),
     ({"ends__end": moved(theta3=True)}, "wound up"),
     ({"ends__end": moved(theta3=True), "loads__damping": 1e3}, "wound up"),

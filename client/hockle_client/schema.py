@@ -187,8 +187,8 @@ class FloorSpec(TypedDict):
 
 
 class FluidSpec(TypedDict):
-    """Morison's fluid, still or with a uniform current.  u is the velocity of the rod relative to it, u_n its
-    part across the rod, u_3 along.
+    """Morison's fluid, still or with a current.  u is the velocity of the rod relative to it, u_n its part
+    across the rod, u_3 along.
     """
 
     density: float
@@ -205,6 +205,12 @@ class FluidSpec(TypedDict):
 
     current: NotRequired[Sequence[float]]
     """vector, lab; in m/s; default [0.0, 0.0, 0.0]"""
+
+    shear: NotRequired[Union[ShearSpec, None]]
+    """factor of the current by height; without it 1 everywhere"""
+
+    schedule: NotRequired[Union[float, ScheduleTable]]
+    """factor of the current in time; a plain number; default 1.0"""
 
 
 class LoadsSpec(TypedDict):
@@ -423,6 +429,22 @@ class ScheduleTable(TypedDict):
     value: Sequence[float]
 
     interpolation: Literal["linear", "smoothstep", "pchip", "cubic"]
+
+
+class ShearSpec(TypedDict):
+    """What the current is multiplied by at each height: a function through the points, constant beyond them."""
+
+    height: Sequence[float]
+    """along the normal from the lab's origin, increasing strictly; in m"""
+
+    factor: Sequence[float]
+    """of the current there; a plain number"""
+
+    interpolation: Literal["linear", "smoothstep", "pchip", "cubic"]
+    """of the factor between the points"""
+
+    normal: NotRequired[Sequence[float]]
+    """vector, lab, along which heights count, of any length > 0; default [0.0, 0.0, 1.0]"""
 
 
 class Stop(TypedDict):
@@ -742,6 +764,15 @@ Setting = Literal[
     "fluid.density",
     "fluid.drag_normal",
     "fluid.drag_tangential",
+    "fluid.schedule",
+    "fluid.schedule.interpolation",
+    "fluid.schedule.t",
+    "fluid.schedule.value",
+    "fluid.shear",
+    "fluid.shear.factor",
+    "fluid.shear.height",
+    "fluid.shear.interpolation",
+    "fluid.shear.normal",
     "initial",
     "initial.a1",
     "initial.angular_velocity",

@@ -31,8 +31,8 @@ from solver.statics.path import MOST_STEPS, Path
 from solver.statics.stability import negative_modes, neutral_modes
 
 WAYS = ((True, True), (False, True), (False, False))
-"""In which what holds the initial shape is tried to be let go: whether its forces turn with the rod, and whether this
-begins with a tension."""
+"""In which to let go of the initial shape, the one to try first before the others: whether the forces that hold it turn
+with the rod, and whether the rod begins with a tension."""
 PATIENCE = 500
 """Steps after which another one is tried."""
 
@@ -55,7 +55,7 @@ class Equilibria(Run):
         self._begin(0)
 
     def _begin(self, way: int) -> None:
-        """Lay the rod down, held in one of the WAYS."""
+        """Lay the rod down, held in one of the WAYS, by its index."""
         self._way, self._equations, self._linking = way, Equations(self._scene), LinkingNumber()
         turning, tense = WAYS[way]
         self._equations.hold(first_forces(self._equations) if tense else None, turning)

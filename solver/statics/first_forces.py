@@ -2,8 +2,8 @@
 
 What holds the initial shape is let go step by step. A rope that hangs from one end would begin as limp as its section
 is, and take any way down. So the rod begins with a tension tau along its tangents T, which may not push: that for which
-the forces on segments and free ends, as they are loaded, are balanced best. With no moments from it what holds the
-shape are forces that stay the same, as loads are; how many directions of falling energy there are remains the question.
+the forces on segments and free ends, as they are loaded, are balanced best. It has no moments, so that forces hold the
+shape of a straight rod: while moments do, a count of the directions of falling energy says nothing.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ SMALLEST = 1e-12
 
 
 def first_forces(equations: Equations) -> Array:
-    """F (N + 1, 3), lab, at the nodes of a rod that was looked at where it lies without any."""
+    """The tension's forces F (N + 1, 3), N, lab, at the nodes of a rod that is held where it lies without any."""
     left, T = equations.held_at_start[:, X], equations.stages.R[0, :, :, 2]
     nodes = np.vstack([T[:1], T[1:-2] + T[2:-1], T[-1:]])
     nodes /= np.linalg.norm(nodes, axis=1)[:, None]

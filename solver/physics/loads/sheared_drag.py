@@ -55,9 +55,9 @@ def of(scene: Scene, samples: Samples) -> Source:
     current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)], dtype=float)
     heights, pieces = shear.factor.polynomials
     present = bool(fluid and fluid.varies and still.present)
-    times = np.full(samples.times, schedule.value(0.0))
+    now = np.full(samples.times, schedule.value(0.0))
     return ShearedDrag(Record(present, still, current, shear.up[None], heights, pieces,
-                              shear.factor(np.array([-np.inf, np.inf])), times), schedule)  # fmt: skip
+                              shear.factor(np.array([-np.inf, np.inf])), now), schedule)  # fmt: skip
 
 
 @inner

@@ -8,6 +8,8 @@ pivots of its factorisation, and those of W - G H^-1 G^t; each condition account
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from scipy.linalg import eigvalsh
 from scipy.linalg.lapack import dgbsv, dsytrf
@@ -34,15 +36,19 @@ def neutral_modes(equations: Equations, falling: int) -> int:
     return max(_count(equations, -NEUTRAL) - falling, 0)
 
 
+def coupled(equations: Equations) -> bool:
+    """Whether rotations far apart are coupled: where strands press on each other, or loads depend on the place."""
+    return equations.contact.pressing > 0 or bool(equations.stiffness_of_loads().any())
+
+
 def _count(equations: Equations, softest: float) -> int:
     """Directions of falling energy where every rotation has as much stiffness more."""
     K = equations.stiffness_of_loads()
-    placed = equations.contact.pressing > 0 or bool(K.any())
     length = float(equations.s[-1])
     T = equations.tangents
     bands = _second_variation(T.stiff, T.behind, equations, softest) * (length / equations.stiffness)
     G, W, ties = _conditions(equations)
-    if placed:
+    if coupled(equations):
         return _all_together(equations, K, bands, G, W, softest) - ties
     full = np.zeros((3 * BAND + 1, bands.shape[1]))
     full[2 * BAND :] = bands
@@ -81,32 +87,42 @@ def _all_together(equations: Equations, K: Array, bands: Array, G: Array, W: Arr
     couples rotations far apart. (Eliminated from segment to segment the counts fell below zero.) How these move a rod
     along itself by stretching it is left out."""
     length = float(equations.s[-1])
-    S, steps = _by_place(equations, K, softest), -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
-    n, unit = len(S), length / equations.stiffness
-    # the place of the start moves all nodes, a rotation those behind its segment
-    together = S[::-1, :, ::-1].cumsum(axis=0).cumsum(axis=2)[::-1, :, ::-1]
-    H, turned = _from_bands(bands), slice(3, 3 * n)
-    H[turned, turned] += unit * np.einsum("iap,ipkq,kbq->iakb", steps, together[1:, :, 1:], steps,
-                                          optimize=True).reshape(3 * n - 3, -1)  # fmt: skip
-    G[turned, :3] += unit * length * np.einsum("iap,ipq->iaq", steps, together[1:, :, 0]).reshape(-1, 3)
-    W[:3, :3] += unit * length**2 * together[0, :, 0]
+    unit, steps = length / equations.stiffness, -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
+    H, turned = _from_bands(bands), slice(3, 3 * len(steps) + 3)
+    for by_rotations, by_both, by_place in (of_loads(K, steps, softest), *_of_contact(equations, steps)):
+        H[turned, turned] += unit * by_rotations
+        G[turned, :3] += unit * length * by_both
+        W[:3, :3] += unit * length**2 * by_place
     variation = np.block([[H, G], [G.T, W]])
-    factors, pivots, _ = dsytrf(0.5 * (variation + variation.T), lower=1, lwork=64 * len(variation), overwrite_a=1)
+    factors, pivots, _ = dsytrf(variation, lower=1, lwork=64 * len(variation), overwrite_a=1)
     paired = pivots < 0  # in blocks of two, each of which has one of either sign
     return int(np.sum(np.diag(factors)[~paired] < 0.0)) + int(np.sum(paired)) // 2
 
 
-def _by_place(equations: Equations, K: Array, softest: float) -> Array:
-    """The stiffness of contact and loads by the places of the nodes (N + 1, 3, N + 1, 3); of loads with as much more,
-    of either sign, as a slide along them is taken for neutral by."""
-    n = len(equations.s)
-    K = K + np.copysign(NEUTRAL_PLACE, softest) * np.abs(K).max() * np.eye(3)
-    S = equations.contact.stiffness()[0] if equations.contact.pressing else np.zeros((n, 3, n, 3))
-    segments = np.arange(n - 1)
-    for one in (0, 1):  # a segment's centre lies between its nodes
-        for other in (0, 1):
-            S[segments + one, :, segments + other] += 0.25 * K
-    return np.asarray(S)
+def of_loads(K: Array, steps: Array, softest: float) -> tuple[Array, Array, Array]:
+    """The second variation by the rotations of the n segments (3 n, 3 n), of which what is above the diagonal blocks is
+    none, by these and the place of the start (3 n, 3), and by this alone (3, 3). The centre of a segment is moved by
+    the place of the start, the rotations of all segments before it, by `steps` (n, 3, 3), and half its own.
+
+    Loads have as much stiffness more, of either sign, as a slide along them is taken for neutral by.
+    """
+    K = 0.5 * (K + K.transpose(0, 2, 1)) + np.copysign(NEUTRAL_PLACE, softest) * np.abs(K).max() * np.eye(3)
+    pushed, one = steps @ (K[::-1].cumsum(axis=0)[::-1] - 0.5 * K), np.arange(len(K))
+    by_rotations = (pushed.reshape(-1, 3) @ steps.reshape(-1, 3).T).reshape(len(K), 3, len(K), 3)
+    by_rotations[one, :, one] -= 0.25 * steps @ K @ steps.transpose(0, 2, 1)
+    return by_rotations.reshape(3 * len(K), -1), pushed.reshape(-1, 3), K.sum(axis=0)
+
+
+def _of_contact(equations: Equations, steps: Array) -> Iterator[tuple[Array, Array, Array]]:
+    """Likewise where strands press on each other: the place of the start moves all nodes, a rotation those behind its
+    segment."""
+    if not equations.contact.pressing:
+        return
+    S = equations.contact.stiffness()[0]
+    together = S[::-1, :, ::-1].cumsum(axis=0).cumsum(axis=2)[::-1, :, ::-1]
+    by_rotations = np.einsum("iap,ipkq,kbq->iakb", steps, together[1:, :, 1:], steps, optimize=True)
+    by_both = np.einsum("iap,ipq->iaq", steps, together[1:, :, 0])
+    yield by_rotations.reshape(3 * len(steps), -1), by_both.reshape(-1, 3), together[0, :, 0]
 
 
 def _from_bands(bands: Array) -> Array:

@@ -31,6 +31,7 @@ from solver.physics.loads.solids import Floor
 from solver.run.equilibria import Equilibria
 from solver.scene.layout import nodes_at_rest, sampled
 from solver.statics.equations import Equations
+from solver.statics.stability import of_loads
 from tests.solver.scenes import (
     ARC,
     DENSITY,
@@ -207,3 +208,23 @@ def test_a_thin_strip_that_is_seeded_buckles_sideways_at_prandtls_load() -> None
     before, behind = (next(frame for frame in frames if frame.parameter > part / 1.2) for part in (0.9, 1.1))
     assert abs(before.r[-1, 1]) < 1e-3 * LENGTH < 0.1 * LENGTH < abs(behind.r[-1, 1])
     assert not any(frame.negative_modes for frame in frames)
+
+
+def test_loads_by_place_count_like_as_many_springs_on_the_nodes() -> None:
+    """The centre of a segment is half way between its nodes, and these are moved by the rotations before them."""
+    n, rng = 5, np.random.default_rng(1)
+    K, steps = rng.normal(size=(n, 3, 3)), rng.normal(size=(n, 3, 3))
+    K += K.transpose(0, 2, 1)
+    moved = np.zeros((3 * n, 3 * n + 3))  # the centres by the place of the start and the rotations
+    for i in range(n):
+        moved[3 * i : 3 * i + 3] = np.hstack([np.eye(3), *(
+            (j < i or 0.5 * (j == i)) * steps[j].T for j in range(n))])  # fmt: skip
+    springs = np.zeros((3 * n, 3 * n))
+    for i in range(n):
+        springs[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = K[i]
+    whole = moved.T @ springs @ moved
+    by_rotations, by_both, by_place = of_loads(K, steps, 0.0)
+    blocks = np.kron(np.tril(np.ones((n, n))), np.ones((3, 3))) > 0.0
+    assert_allclose(by_rotations[blocks], whole[3:, 3:][blocks], atol=1e-12)
+    assert_allclose(by_both, whole[3:, :3], atol=1e-12)
+    assert_allclose(by_place, whole[:3, :3], atol=1e-12)

@@ -40,7 +40,10 @@ def load_case(name_or_path: str | Path) -> dict[str, Any]:
     if not path.is_file():
         names = ", ".join(shipped_cases())
         raise CaseError([FieldError("", str(name_or_path), f"must be a file or one of {names}")])
-    return _read(path.read_text(encoding="utf-8"), str(path))
+    try:
+        return _read(path.read_text(encoding="utf-8-sig"), str(path))
+    except UnicodeDecodeError as error:
+        raise CaseError([FieldError("", None, f"must be UTF-8 text in {path}, which byte {error.start} is not")]) from None
 
 
 def apply_settings(raw: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:
@@ -85,6 +88,8 @@ def _read(text: str, name: str) -> dict[str, Any]:
     except json.JSONDecodeError as error:
         fault = f"is not JSON in {name}, line {error.lineno}, column {error.colno}: {error.msg}"
         raise CaseError([FieldError("", None, fault)]) from None
+    except RecursionError:
+        raise CaseError([FieldError("", None, f"must not be nested so deeply as in {name}")]) from None
     if not isinstance(raw, dict):
         raise CaseError([FieldError("", None, f"must be a JSON object in {name}")])
     return raw

@@ -7,10 +7,12 @@ has the tangent K = -C dU/dr, with C that by the velocity.
 from __future__ import annotations
 
 from dataclasses import replace
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import dot, minus, outer, times, transform, vector
 from solver.physics.loads import drag
@@ -18,6 +20,8 @@ from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
 from solver.scene.curve import Curve
 from solver.scene.fluid import EVERYWHERE, UNIFORM
 from solver.scene.scene import Scene
+
+SMALLEST = 1e-300
 
 
 class Record(NamedTuple):
@@ -35,15 +39,26 @@ class Record(NamedTuple):
 
 
 class ShearedDrag(Source):
-    """That of a scene's fluid, unless its current is the same everywhere and always."""
+    """That of a scene's fluid, unless its current is the same everywhere and always. A step leaps over no layer."""
 
-    def __init__(self, record: Record, schedule: Curve) -> None:
+    def __init__(self, record: Record, schedule: Curve, sheared: bool) -> None:
         super().__init__(record)
+        self.bars = record.present and sheared
         self._schedule, self.corners, self.steady = schedule, schedule.corners, schedule.is_constant
 
     def set_time(self, t: float, i: int) -> None:
         """Write the factor at time t."""
         self.record.schedule[i] = self._schedule.value(t)
+
+    def longest_step(self, r: Array, V: Array) -> float:
+        """In which no node comes farther than to the middle of the layer that follows that where it is."""
+        up, heights = self.record.up[0], self.record.heights
+        middles = 0.5 * (heights[1:] + heights[:-1])
+        height, rate = r @ up, V @ up
+        above, below = np.append(middles, [inf, inf]), np.append([-inf, -inf], middles)
+        rises, falls = heights.searchsorted(height, "right"), heights.searchsorted(height, "left")
+        way = np.where(rate > 0.0, above[rises] - height, height - below[falls])
+        return float(np.min(way / np.maximum(np.abs(rate), SMALLEST)))
 
 
 def of(scene: Scene, samples: Samples) -> Source:
@@ -56,8 +71,8 @@ def of(scene: Scene, samples: Samples) -> Source:
     heights, pieces = shear.factor.polynomials
     present = bool(fluid and fluid.varies and still.present)
     now = np.full(samples.times, schedule.value(0.0))
-    return ShearedDrag(Record(present, still, current, shear.up[None], heights, pieces,
-                              shear.factor(np.array([-np.inf, np.inf])), now), schedule)  # fmt: skip
+    record = Record(present, still, current, shear.up[None], heights, pieces, shear.factor(np.array([-inf, inf])), now)
+    return ShearedDrag(record, schedule, shear is not EVERYWHERE)
 
 
 @inner

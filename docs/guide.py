@@ -56,6 +56,12 @@ def _by_frames(kind: str) -> str:
     return f" for {outlook.FRAMES} frames, and by their number for more" if kind == outlook.RINGING else ""
 
 
+def _at_rest() -> str:
+    dearer = ", ".join(f"{times:g} {what}" for what, times in outlook.DEARER.items())
+    return (f"{outlook.STATIC:g} (frames + {outlook.STATIC_START}) {outlook.STATIC_DOUBLED:g}^m, with a first mesh of 16 "
+            f"2^m intervals; so many times more: {dearer}")  # fmt: skip
+
+
 def costs() -> str:
     """What the estimate of a case's cost counts."""
     def micro(rate: float) -> str:
@@ -72,6 +78,7 @@ def costs() -> str:
         ("steps with an `increment_tolerance` below the usual one", "(usual / given)^(1/2) times, `staggered` ^(1/4)"),
         ("all of it with a `tolerance` below 1e-3", "(1e-3 / given)^(1/2) times, up to 10 s"),
         ("and no less, by what sets the rod moving, than so many seconds", least),
+        ("a static analysis with a tolerance of 1e-3, in seconds", _at_rest()),
         ("all of it with `verify` and no tolerance", f"{cost.VERIFIED} times"),
     ]
     return markdown(("what", "CPU time, µs"), rows)

@@ -91,8 +91,8 @@ class NumericsSpec(Spec):
         """Where nothing is said about the resolution or the box method, a tolerance; else all of the resolution."""
         if not isinstance(raw, dict):
             return raw
-        values = {name: value for name, value in raw.items() if value is not None or name not in NULLABLE}
-        if "tolerance" in values or (values.keys() <= {"method", "verify"} and values.get("method") != "box"):
+        values = _given(raw)
+        if _to_tolerance(raw):
             return {"method": "staggered", "tolerance": TOLERANCE, **values}
         return {"intervals": INTERVALS, "dt_max": DT_MAX, **values}
 
@@ -121,6 +121,17 @@ class NumericsSpec(Spec):
         """The solver's settings for a run of so many frames."""
         most = min(Numerics.most_intervals, MOST_NODE_FRAMES // frames)
         return Numerics(**{name: value for name, value in self if value is not None}, most_intervals=most)
+
+
+def _given(raw: dict[str, Any]) -> dict[str, Any]:
+    """Of the numerics of a case those that say something."""
+    return {name: value for name, value in raw.items() if value is not None or name not in NULLABLE}
+
+
+def _to_tolerance(raw: dict[str, Any]) -> bool:
+    """Whether numerics ask for a tolerance: where they say nothing about the resolution or the box method, too."""
+    values = _given(raw)
+    return "tolerance" in values or (values.keys() <= {"method", "verify"} and values.get("method") != "box")
 
 
 class OutputSpec(Spec):
@@ -186,8 +197,8 @@ class CaseSpec(Spec):
     @field_validator("numerics", mode="before")
     @classmethod
     def _resolve_statics(cls, raw: Any, case: ValidationInfo) -> Any:
-        """A static analysis has no tolerance where nothing is said about the resolution, and a node at each load."""
-        if case.data.get("analysis") != "static" or not isinstance(raw, dict) or raw.get("tolerance") is not None:
+        """Of a static analysis that is not to a tolerance the intervals have a node at each load."""
+        if case.data.get("analysis") != "static" or not isinstance(raw, dict) or _to_tolerance(raw):
             return raw
         rod, loads = case.data.get("rod"), case.data.get("loads")  # missing where they are refused
         places = [load.s / rod.length for load in loads.point] if rod and loads else []
@@ -203,9 +214,6 @@ class CaseSpec(Spec):
 
     @model_validator(mode="after")
     def _check_statics(self) -> Self:
-        if self.analysis == "static" and self.numerics.tolerance is not None:
-            rule = "must not be given with analysis static: give intervals"
-            raise refusal("numerics/tolerance", self.numerics.tolerance, rule)
         for name in ("velocity", "angular_velocity"):
             if self.analysis == "static" and any(velocity := getattr(self.initial, name)):
                 raise refusal(f"initial/{name}", velocity, "must be 0 in a static analysis, in which nothing moves")

@@ -11,7 +11,8 @@
 With `verify` five times the seconds (the second run has twice the intervals and steps) and twice the bytes. With a
 `tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the bytes; or the seconds
 that such scenes take (`outlook`) if these are more; a tolerance below the usual one makes it (usual/tolerance)^(1/2)
-times as much, up to the WORK after which it ends.
+times as much, up to the WORK after which it ends. Of statics with a tolerance the seconds are those that such scenes
+take, (usual/tolerance)^(1/4) times as much.
 
 The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
 a step from goyal-2003 to 32 s (about two Newton iterations a step, contact included), WRITHE of a rod whose strands lie
@@ -65,6 +66,8 @@ def estimate(spec: CaseSpec) -> Cost:
     if tolerance is None:
         return cost
     likely = likely_seconds(build_scene(spec))
+    if spec.analysis == "static":
+        return replace(cost, seconds=likely * _finer(tolerance) ** 0.5)
     return replace(cost, seconds=max(cost.seconds, min(likely * _finer(tolerance), max(likely, WORK))))
 
 

@@ -42,6 +42,11 @@ SECONDS = {
 }  # fmt: skip
 """CPU seconds at a tolerance of 1e-3, by what moves the rod; what is slow in space with a first mesh of 16 intervals: a
 finer one costs the more; and undamped of FRAMES: what rings lasts through all of them."""
+STATIC, STATIC_START, STATIC_DOUBLED = 0.012, 15, 1.5
+"""CPU seconds of a frame of a static analysis, how many frames the start counts for, and how many times more for every
+doubling of the first mesh."""
+DEARER = {"wound up": 4.0, "on solids": 4.0, "limp": 3.0, "touching": 3.0}
+"""How many times more a static analysis takes."""
 FRAMES = 60
 TURN = 15.0
 """Rotation (rad) of the ends relative to each other from which on a rod is taken to buckle and wind itself up."""
@@ -72,12 +77,24 @@ FIRST_FREQUENCY = 3.516
 
 def likely_seconds(scene: Scene) -> float:
     """CPU seconds at a tolerance of 1e-3, but for what very many frames or nodes cost."""
+    if scene.analysis == "static":
+        return _at_rest(scene)
     kind = kind_of(scene)
     if kind == SLOWLY:
         return SECONDS[kind] * 2.0 ** first_mesh(scene, pressed=False)
     if kind == RINGING:
         return SECONDS[kind] * max(scene.t_end / scene.output_interval / FRAMES, 1.0)
     return SECONDS[kind]
+
+
+def _at_rest(scene: Scene) -> float:
+    driven = Driven.of(scene)
+    dear = {
+        "wound up": driven.turned > TURN, "on solids": any(isinstance(load, solids.Given) for load in scene.loads),
+        "limp": Urged.of(scene, driven).weight > LIMP, "touching": scene.contact is not None,
+    }  # fmt: skip
+    seconds = STATIC * (len(scene.outputs) + STATIC_START) * STATIC_DOUBLED ** first_mesh(scene, pressed=False)
+    return float(np.prod([seconds, *(DEARER[what] for what, is_so in dear.items() if is_so)]))
 
 
 def kind_of(scene: Scene) -> str:

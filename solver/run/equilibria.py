@@ -28,7 +28,7 @@ from solver.scene.scene import Scene
 from solver.statics.equations import Equations, Point
 from solver.statics.first_forces import first_forces
 from solver.statics.path import MOST_STEPS, Path
-from solver.statics.stability import negative_modes, neutral_modes
+from solver.statics.stability import coupled, negative_modes, neutral_modes
 
 WAYS = ((True, True), (False, True), (False, False))
 """In which to let go of the initial shape, the one to try first before the others: whether the forces that hold it turn
@@ -66,6 +66,16 @@ class Equilibria(Run):
     def s(self) -> Array:
         """Arclengths of the nodes (n,), m."""
         return self._equations.s
+
+    @property
+    def presses(self) -> bool:
+        """Whether parts of the rod press on each other."""
+        return self._equations.contact.pressing > 0
+
+    @property
+    def coupled(self) -> bool:
+        """Whether the rotations are counted all together, as far as is known."""
+        return coupled(self._equations)
 
     def warm(self) -> None:
         """Have every kernel compiled."""

@@ -7,13 +7,23 @@ from math import ceil, log2
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.physics.ends import ABOUT_A3, DrivenEnd
-from solver.run.plan import FIRST_INTERVALS
+from solver.run.plan import FIRST_INTERVALS, intervals_of
+from solver.scene.fluid import Shear
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 
-LARGEST_TURN, LARGEST_TURN_PRESSED = 1.2, 0.6
-"""Rotation (rad) within an interval that the first mesh has at the most; and where strands press on each other."""
+LARGEST_TURN, LARGEST_TURN_PRESSED, LARGEST_TWIST_AT_REST = 1.2, 0.6, 2.4
+"""Rotation (rad) within an interval that the first mesh has at the most; where strands press on each other; and about
+its axis where nothing moves: a twist that is the same all along needs no mesh."""
+LARGEST_CORNER, FINEST_FOR_CORNERS = 0.5, 128
+"""By what angle (rad) the shape may turn more within an interval than in the mean, in a static analysis; and how fine
+the first mesh becomes for it at the most."""
+LARGEST_MISS, FINEST_FOR_LAYERS = 0.25, 512
+"""What part of a current's drag the middles of intervals may miss; and how fine the first mesh becomes for it."""
+LAYERS = 8192
+"""Places at which a current is looked at."""
 ON_NODE = 1e-6
 """Part of an interval by which a load may be beside a node."""
 LOOKED_AT = 513
@@ -25,12 +35,46 @@ TIMES = 101
 def first_mesh(scene: Scene, pressed: bool) -> int:
     """How many times `first_intervals` are to be doubled, see `plan`. `pressed`: whether strands press on each other.
     """
-    largest = LARGEST_TURN_PRESSED if pressed else LARGEST_TURN
+    at_rest = scene.analysis == "static"
+    largest = LARGEST_TURN_PRESSED if pressed and not at_rest else LARGEST_TURN
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
-    _, _, kappa = nodes_at_rest(scene.initial, s)
-    bent = float(np.sum(np.linalg.norm(kappa, axis=1)[1:] * np.diff(s)))
-    intervals = max(bent, twisted(scene)) / largest, *(float(scene.rod.length) / scale for scale in _scales(scene))
-    return max(ceil(log2(max(intervals) / first_intervals(scene) + 1e-9)), 0)
+    places, _, kappa = nodes_at_rest(scene.initial, s)
+    turned = np.append(0.0, np.cumsum(np.linalg.norm(kappa, axis=1)[1:] * np.diff(s)))
+    bent = float(turned[-1])
+    twist = twisted(scene) / (LARGEST_TWIST_AT_REST if at_rest else largest)
+    intervals = bent / largest, twist, *(float(scene.rod.length) / scale for scale in _scales(scene))
+    mesh = max(ceil(log2(max(intervals) / first_intervals(scene) + 1e-9)), 0)
+    while _misses(scene, places, turned, intervals_of(mesh)):
+        mesh += 1
+    return mesh
+
+
+def _misses(scene: Scene, places: Array, turned: Array, intervals: int) -> bool:
+    """Whether a mesh misses a layer of the current, or a corner of the shape in a static analysis."""
+    shear = scene.fluid.shear if scene.fluid else None
+    if shear is not None and intervals < FINEST_FOR_LAYERS and _flows_between(shear, places, intervals):
+        return True
+    return scene.analysis == "static" and intervals < FINEST_FOR_CORNERS and _cornered(turned, intervals)
+
+
+def _cornered(turned: Array, intervals: int) -> bool:
+    """Whether somewhere the initial shape turns by so much more within an interval than in the mean that meshes as
+    coarse as this do not show it alike, and finer ones may. `turned`: by what angle (rad), until each of `LOOKED_AT`
+    nodes."""
+    s = np.linspace(0.0, 1.0, LOOKED_AT)
+    most = np.max(np.interp(s + 1.0 / intervals, s, turned) - turned)
+    return bool(most - turned[-1] / intervals > LARGEST_CORNER)
+
+
+def _flows_between(shear: Shear, places: Array, intervals: int) -> bool:
+    """Whether the middles of intervals miss a layer in which water flows: what drags at the initial shape, from its
+    start to any of them, is off by more than LARGEST_MISS of all. `places`: of `LOOKED_AT` nodes."""
+    s, fine = np.linspace(0.0, 1.0, LOOKED_AT), (np.arange(LAYERS) + 0.5) / LAYERS
+    drag = np.interp(fine, s, places @ shear.up)
+    drag = np.abs(shear.factor(drag)) * shear.factor(drag) / LAYERS
+    middle = drag.reshape(intervals, -1)[:, LAYERS // intervals // 2] * LAYERS / intervals
+    whole = drag.reshape(intervals, -1).sum(axis=1)
+    return bool(np.abs(np.cumsum(whole - middle)).max() > LARGEST_MISS * np.abs(drag).sum())
 
 
 def first_intervals(scene: Scene) -> int:

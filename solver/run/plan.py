@@ -19,8 +19,9 @@ from typing import NamedTuple
 from solver.outcome import Outcome
 from solver.run.series import Attempt, chosen, is_diagonal
 
-MADE = tuple(Outcome).index(Outcome.ENERGY_MADE)
-"""The outcome of a run whose steps, rather than its mesh, are the reason that it failed."""
+MADE, LOST = (tuple(Outcome).index(outcome) for outcome in (Outcome.ENERGY_MADE, Outcome.EQUILIBRIUM_LOST))
+"""The outcome of a run whose steps, rather than its mesh, are the reason that it failed; and of a static analysis on
+what may be too coarse a mesh."""
 FIRST_INTERVALS = 16
 """Of the coarsest mesh, or somewhat more: see `first_mesh`. The work is counted as if it were as many."""
 FIRST_STEPS = 0.5
@@ -39,6 +40,12 @@ MOST_WORK = 1.2e7
 """Newton iterations times (intervals + OVERHEAD), in all, after which nothing is refined: five to ten seconds."""
 IN_CONTACT = 6.0
 """How many times more work an iteration is where strands press on each other."""
+DEAR_AT_REST, PRESSED_AT_REST, COUPLED_AT_REST = 20.0, 4.0, 0.5
+"""How many times more work an iteration of a static analysis is, with all that goes with it; of that how many times
+more where strands press on each other; and what the square of its intervals adds where rotations are coupled far apart.
+"""
+MOST_WORK_AT_REST = 20.0 * MOST_WORK
+"""Of a static analysis on one mesh, if none as coarse has come to its end: no waves can keep it from that."""
 FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 LAST_PART = 2.5
@@ -46,8 +53,9 @@ LAST_PART = 2.5
 PATIENCE, MOST_PATIENCE = 8.0, 2.5
 """How many times the work that is expected of it the first run on a second mesh, or with other steps, may take; and
 how many times MOST_WORK."""
-LOOSEST = -4
-"""The longest steps that are tried: their error hardly counts."""
+LOOSEST, AT_REST = -4, -9
+"""The longest steps that are tried: their error hardly counts; and what stands for those of a static analysis, which
+make no error and are no other when they are tried again."""
 SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
 BY_STEPS = 1.5
@@ -108,6 +116,17 @@ def strides_of(tolerance: float, steps: int = 0) -> int:
     return int(max(round(STRIDES * min(tolerance / 1e-3, 1.0) ** 0.2), 1))
 
 
+def work_of_iteration(mesh: int, pressed: bool) -> float:
+    """Of a motion; `pressed`: whether strands press on each other."""
+    return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT if pressed else 1.0)
+
+
+def work_at_rest(mesh: int, pressed: bool, coupled: bool) -> float:
+    """Of an iteration of a static analysis; `coupled`: whether it counts all rotations together."""
+    nearby = (intervals_of(mesh) + OVERHEAD) * (PRESSED_AT_REST if pressed else 1.0)
+    return DEAR_AT_REST * nearby + (COUPLED_AT_REST * intervals_of(mesh) ** 2 if coupled else 0.0)
+
+
 def longest_step(steps: int, interval: float) -> float:
     """The longest step (s), in strides, where frames are an `interval` apart: waves that two runs damp alike show in
     neither."""
@@ -117,6 +136,8 @@ def longest_step(steps: int, interval: float) -> float:
 def allowance(history: Sequence[Attempt], trial: Trial) -> float:
     """The work that an attempt may take before it is given up as slow."""
     complete = [attempt for attempt in history if attempt.complete]
+    if trial.steps == AT_REST and all(trial.mesh < attempt.mesh for attempt in complete):
+        return MOST_WORK_AT_REST
     if not complete:
         return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else LAST_PART)
     remaining = MOST_WORK - _work(history)
@@ -176,7 +197,7 @@ def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_inter
     meshes = {attempt.mesh for attempt in complete}
     if len(meshes) == 1 and history[-1].slow and _work(history) > MOST_WORK:
         return  # what was to tell the error took far longer than what it is the error of
-    if len(complete) == 1:
+    if len(complete) == 1 and complete[0].steps != AT_REST:
         mesh, steps = complete[0].mesh, complete[0].steps
         if _is_for(history, Trial(mesh, steps + 1), most_intervals):
             yield Trial(mesh, steps + 1)
@@ -266,7 +287,8 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> T
         return Trial(last.mesh, max(last.steps - 2, LOOSEST)) if last.steps > LOOSEST else None
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
-    same = same and _work(history) > ENOUGH * MOST_WORK  # a rope may be too limp for several coarse meshes
+    branch_ends = last.steps == AT_REST and len(failed) > 3 and (last.outcome != LOST or last.t > 0.0)
+    same = same and (branch_ends or _work(history) > ENOUGH * MOST_WORK)  # a rope may be too limp for coarse meshes
     if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > LAST_PART * MOST_WORK:
         return None
     if last.outcome == MADE and not any(attempt.mesh == last.mesh for attempt in failed[:-1]):

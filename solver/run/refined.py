@@ -19,6 +19,7 @@ from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
 from solver.run.first_mesh import first_intervals, first_mesh
 from solver.run.plan import (
+    AT_REST,
     FIRST_INTERVALS,
     Excess,
     Trial,
@@ -35,7 +36,7 @@ from solver.run.run import Run
 from solver.run.series import Attempt, chosen
 from solver.run.together import Piece, Together
 from solver.run.under_way import UnderWay
-from solver.scene.scene import Scene
+from solver.scene.scene import MOST_AT_REST, Scene
 
 OUTCOMES = tuple(Outcome)
 MOST_ROWS = 1_000_000
@@ -64,7 +65,8 @@ class Refined(Run):
         self._piece = Piece()
         self._before = replace(self.statistics)
         """What the attempts before that under way have cost."""
-        self._under_way = UnderWay(scene, Trial(first_mesh(scene, pressed=False), 0))
+        steps = AT_REST if scene.analysis == "static" else 0
+        self._under_way = UnderWay(scene, Trial(first_mesh(scene, pressed=False), steps))
 
     @property
     def s(self) -> Array:
@@ -157,6 +159,8 @@ class Refined(Run):
     @property
     def _most(self) -> int:
         most = min(self._scene.numerics.most_intervals, MOST_ROWS // (len(self._outputs) + 1))
+        if self._scene.analysis == "static" and self._scene.contact is not None:
+            most = min(most, MOST_AT_REST)
         return most * FIRST_INTERVALS // first_intervals(self._scene)
 
     @property

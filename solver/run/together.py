@@ -67,6 +67,7 @@ class Together:
     def __init__(self, scene: Scene, attempts: Sequence[Attempt], recorded: Sequence[Array]) -> None:
         self._scene, self._attempts, self._recorded = scene, attempts, recorded
         self._chosen, self._diagonal = chosen(attempts), is_diagonal(attempts)
+        self._at_rest = scene.analysis == "static"
         self._in_waves = [number(name) for name in of_waves(scene.rod)]
         self.finest = attempts[self._chosen.finest]
         self._intervals = intervals_of(self.finest.mesh, first_intervals(scene))
@@ -82,16 +83,17 @@ class Together:
         """Frame number i and those that follow it, as many as are looked at together.
 
         The errors of each are the largest of those of the frames beside it: those of a wave pass through zero now and
-        then. Of what is given at the start none is in error.
+        then. Of what is given at the start of a motion none is in error.
         """
         here = range(i, min(i + self._many, self.frames))
         first, last = max(i - BESIDE, 0), min(here.stop + BESIDE, self.frames)
         value, error = self._of_frames(slice(first, last))
         magnitudes = [np.linalg.norm(value.along[..., rows], axis=-1).max(axis=-1) for rows in (OMEGA, FORCE)]
         rows = self._recorded[self._chosen.finest]
-        frames = []
+        frames, given = [], 0 if self._at_rest else 1
         for k in here:
-            beside = slice(max(k - BESIDE, 1) - first, min(k + BESIDE + 1, last) - first) if k > 0 else slice(0, 1)
+            after = min(k + BESIDE + 1, last) if k >= given else 1
+            beside = slice(max(k - BESIDE, min(k, given)) - first, after - first)
             largest = [float(magnitude[beside].max()) for magnitude in magnitudes]
             columns = Columns(value.along[k - first], value.numbers[k - first])
             along, numbers = error.along[beside].max(axis=0), error.numbers[beside].max(axis=0)
@@ -104,7 +106,7 @@ class Together:
         """A frame, whose errors are those of the attempts or what none of these shows: `largest` omega (rad/s) and f
         (N) nearby, and the energy `lost` (J)."""
         along, numbers = error
-        tolerated = step_tolerance(self.finest.steps, self._scene.numerics.tolerance or 1.0)
+        tolerated = 0.0 if self._at_rest else step_tolerance(self.finest.steps, self._scene.numerics.tolerance or 1.0)
         for rows, most in zip((OMEGA, FORCE), largest, strict=True):
             along[:, rows] = np.maximum(along[:, rows], UNFOLLOWED * min(tolerated, 1.0) * most)
         for name, least in self._unseen.items():
@@ -141,7 +143,8 @@ class Together:
             steps.append(errors_of(self._of_steps(series, here, judged=True), size))
         unknown = np.full(len(QUANTITIES), np.inf)
         of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else unknown
-        of_steps = excess(target, self._with_lost(np.concatenate(steps), size)) if len(series) > 1 else unknown
+        told = len(series) > 1 or self._at_rest
+        of_steps = excess(target, self._with_lost(np.concatenate(steps), size)) if told else unknown
         if self._diagonal:
             of_steps = np.minimum(of_steps, 0.5 * of_mesh)
             of_mesh = of_mesh - of_steps
@@ -154,13 +157,18 @@ class Together:
     @cached_property
     def _unseen(self) -> dict[str, Array | float]:
         """See `unseen`, of an energy of 1 J."""
+        if self._at_rest:
+            return {}
         rows = self._recorded[self._chosen.finest]
         dt = float(np.mean([number_of(row, STEP) for row in rows]))
         return unseen(self._scene.rod, self.s, 1.0, dt)
 
     @cached_property
     def _lost(self) -> Array:
-        """The energy (J) that the finest attempt had lost by each frame in waves that no attempt follows."""
+        """The energy (J) that the finest attempt had lost by each frame in waves that no attempt follows: at rest none.
+        """
+        if self._at_rest:
+            return np.zeros(self.frames)
         balances = [abs(number_of(row, BALANCE)) for row in self._recorded[self._chosen.finest]]
         return np.asarray(self._unfollowed * np.maximum.accumulate(balances))
 

@@ -8,8 +8,17 @@ from typing import Any
 
 from solver.measures.frame import Frame, Statistics
 from solver.run.checkpoint import Saved, restore, saved
+from solver.run.equilibria import Equilibria
 from solver.run.first_mesh import first_intervals
-from solver.run.plan import IN_CONTACT, OVERHEAD, Trial, intervals_of, longest_step, step_tolerance, strides_of
+from solver.run.plan import (
+    Trial,
+    intervals_of,
+    longest_step,
+    step_tolerance,
+    strides_of,
+    work_at_rest,
+    work_of_iteration,
+)
 from solver.run.simulation import Simulation
 from solver.scene.scene import Scene
 
@@ -35,7 +44,11 @@ class UnderWay:
             dt_max=longest_step(trial.steps, scene.output_interval), strides=strides_of(tolerance, trial.steps),
             small_motion=SMALL_MOTION, increment_tolerance=step_tolerance(trial.steps, tolerance),
         )  # fmt: skip
-        self.run = Simulation(replace(scene, numerics=numerics), self.statistics, goes_on=True)
+        resolved = replace(scene, numerics=numerics)
+        self.run: Simulation | Equilibria = (
+            Equilibria(resolved, self.statistics) if scene.analysis == "static"
+            else Simulation(resolved, self.statistics, goes_on=True)
+        )  # fmt: skip
 
     def advance(self) -> Frame | None:
         """Take a step; give the frame where it ends, if one is due there. Raises RunFailed."""
@@ -43,7 +56,8 @@ class UnderWay:
         frame = self.run.advance()
         presses = self.run.presses
         self.pressed = self.pressed or presses
-        per_iteration = (intervals_of(self.trial.mesh) + OVERHEAD) * (IN_CONTACT if presses else 1.0)
+        per_iteration = (work_at_rest(self.trial.mesh, presses, self.run.coupled) if isinstance(self.run, Equilibria)
+                         else work_of_iteration(self.trial.mesh, presses))  # fmt: skip
         self.work += (self.statistics.newton_iterations - before) * per_iteration
         return frame
 

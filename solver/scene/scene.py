@@ -81,8 +81,6 @@ class Scene:
             raise ValueError(f"{rule}, got {self.numerics.intervals}")
         if any((*self.initial.velocity, *self.initial.angular_velocity)):
             raise ValueError("velocity and angular_velocity must be 0 in a static analysis")
-        if self.numerics.tolerance is not None:
-            raise ValueError("tolerance must not be given with a static analysis: give intervals")
 
     @property
     def outputs(self) -> list[float]:

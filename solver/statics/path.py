@@ -217,7 +217,7 @@ class Path:
         q = self.point.q
         if self._equations.letting_go:
             return RunFailed(outcome, 0.0, self.steps, f"{100.0 * q:.3g} % of what holds the initial shape was let go")
-        return RunFailed(outcome, self._equations.time(q), self.steps, detail)
+        return RunFailed(outcome, self._equations.time(max(q, 0.0)), self.steps, detail)
 
 
 def _sweep(dq: float, slope: float, end_slope: float, length: float, room: float) -> tuple[float, float]:

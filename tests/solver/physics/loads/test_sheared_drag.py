@@ -10,11 +10,13 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad, solve_ivp
 
-from solver import Curve, End, Fluid, Frame, Initial, Numerics, Rod, Scene, Shear, simulate
+from solver import Curve, End, Fluid, Frame, Initial, Numerics, Rod, Scene, Shear, VerifiedFrame, simulate
 from solver.arrays import Array
 from solver.physics.loads import sheared_drag
 from solver.physics.loads.load import Point, Samples
 from solver.physics.section import sample
+from solver.run.first_mesh import first_mesh
+from solver.run.plan import intervals_of
 from tests.solver.physics.loads.test_fluid import act, frame
 from tests.solver.scenes import DENSITY, DIAMETER, EJ, LENGTH, ROD
 
@@ -133,6 +135,35 @@ def test_a_post_on_the_sea_floor_bends_as_a_beam_does_under_the_sheared_load() -
     expected = quad(bending, 0.0, LENGTH, points=[0.3], epsabs=1e-14)[0]
     assert frame.r[-1, 0] == pytest.approx(expected, rel=1e-3)
     assert expected > 5e-4
+
+
+@pytest.mark.parametrize("interval", [2.0, 20.0])
+def test_a_rod_that_sinks_through_a_thin_layer_is_taken_along(interval: float) -> None:
+    """It passes the layer in a second, and a step might be as long as five frames."""
+    layer = Shear(Curve.table([-15.5, -15.4, -15.2, -15.1], [0.0, 1.0, 1.0, 0.0]))
+    water = Fluid(RATIO * DENSITY, drag_normal=1.2, current=(2.0, 0.0, 0.0), shear=layer)
+    scene = replace(free(water, 0.0), gravity=(0.0, 0.0, -9.81), t_end=100.0, output_interval=interval,
+                    numerics=Numerics("staggered", tolerance=1e-3))  # fmt: skip
+
+    def rates(t: float, y: Array) -> Array:
+        u = y[2:] - (2.0 * layer.factor.value(float(y[1])), 0.0)
+        return np.array([*y[2:], *((0.0, -9.81 * (1.0 - RATIO)) - RATE * np.hypot(*u) * u)])
+
+    exact = solve_ivp(rates, (0.0, 100.0), np.zeros(4), rtol=1e-10, atol=1e-12, max_step=0.02).y[:2, -1]
+    *_, last = simulate(scene)
+    assert isinstance(last, VerifiedFrame)
+    assert exact[0] > 2.0 * LENGTH
+    assert np.all(np.abs(last.r[0, [0, 2]] - exact) < 3.0 * last.error.r[0, [0, 2]] + 1e-3 * LENGTH)
+
+
+def test_to_a_tolerance_the_first_mesh_sees_each_layer() -> None:
+    jet = Shear(Curve.table([0.48 * LENGTH, 0.481 * LENGTH, 0.484 * LENGTH, 0.485 * LENGTH], [0.0, 1.0, 1.0, 0.0]))
+    standing = replace(free(replace(WATER, shear=jet), 0.0), initial=Initial.straight(direction=(0.0, 0.0, 1.0)))
+    lying = replace(standing, initial=Initial.straight(direction=(1.0, 0.0, 0.0)))
+    assert intervals_of(first_mesh(standing, pressed=False)) >= 256
+    assert intervals_of(first_mesh(lying, pressed=False)) == 16
+    smooth = replace(WATER, shear=Shear(Curve.table(np.linspace(0.0, LENGTH, 200), np.linspace(0.0, 1.0, 200))))
+    assert intervals_of(first_mesh(replace(standing, fluid=smooth), pressed=False)) == 16
 
 
 def test_the_fastest_current_is_known() -> None:

@@ -120,12 +120,11 @@ class Equations:
         self._turning = turning
         self.letting_go, self._held = False, 0.0
         """Whether what holds the initial shape is taken away, as q goes from 0 to 1 at t = 0; how much is there."""
-        self.held_at_start = self.residual(self.start)
-        """What holds the initial shape (N + 2, 9), dimensionless, lab."""
-        self._holding = self.held_at_start.copy()
-        """The same; where it turns, with material forces on the segments, so that it does not press them along."""
+        self.holding = self.residual(self.start)
+        """What holds the initial shape (N + 2, 9), dimensionless, lab; where it turns, with material forces on the
+        segments, so that it does not press them along."""
         if turning:
-            self._holding[1:-1, X] = _turned_by(self.stages.R[0].transpose(0, 2, 1), self._holding[1:-1, X])
+            self.holding[1:-1, X] = _turned_by(self.stages.R[0].transpose(0, 2, 1), self.holding[1:-1, X])
         self.letting_go = True
 
     def let_go(self) -> None:
@@ -196,9 +195,9 @@ class Equations:
         left *= self._rows
         self._held = 1.0 - point.q if self.letting_go else 0.0
         if self.letting_go:
-            left -= self._held * self._holding
+            left -= self._held * self.holding
             if self._turning:
-                forces = self._holding[1:-1, X]
+                forces = self.holding[1:-1, X]
                 left[1:-1, X] -= self._held * (_turned_by(stages.R[0], forces) - forces)
         return left
 
@@ -295,7 +294,7 @@ class Equations:
         left = self.look_at(point)
         if self.contact.pressing:
             return left, CoupledSolver(self.blocks(), self._contact_tangent(), self.units)
-        return left, Solver(*self.blocks(), _places(len(self.start.quaternion)), self.units)
+        return left, Solver(*self.blocks(), self.units)
 
     def moved_nodes(self, z: Array) -> Array:
         """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point evaluated last."""
@@ -339,7 +338,7 @@ class Equations:
         D[1:, PSI, FORCE], upper[:-1, PSI, FORCE] = lever[1:], lever[:-1]
         D[1:-1, X, PSI], D[1:-1, X, X] = -T.E, T.K + SOFTEST_PLACE * np.abs(T.K).max() * one
         if self.letting_go and self._turning:
-            D[1:-1, X, PSI] += self._held * self._unit(X) * R[1:-1] @ _cross(self._holding[1:-1, X])
+            D[1:-1, X, PSI] += self._held * self._unit(X) * R[1:-1] @ _cross(self.holding[1:-1, X])
         D[1:, X, FORCE], upper[:-1, X, FORCE] = one, -one
         D[1:, FORCE, PSI], lower[1:, FORCE, PSI] = lever[1:].transpose(0, 2, 1), lever[:-1].transpose(0, 2, 1)
         D[1:, FORCE, X], lower[1:, FORCE, X] = one, -one
@@ -395,11 +394,8 @@ def _cross(x: Array) -> Array:
     return np.asarray(np.cross(x[..., None, :], np.eye(3)).swapaxes(-1, -2))
 
 
-Places = tuple[tuple[NDArray[np.bool_], tuple[NDArray[np.int64], NDArray[np.int64]]], ...]
-
-
 @cache
-def _places(n: int) -> Places:
+def _places(n: int) -> tuple[tuple[NDArray[np.bool_], tuple[NDArray[np.int64], NDArray[np.int64]]], ...]:
     """Where the entries of the diagonal, lower and upper blocks lie in LAPACK's band storage."""
     a, p, q = np.meshgrid(np.arange(n), np.arange(BLOCK), np.arange(BLOCK), indexing="ij")
     places = []
@@ -413,11 +409,10 @@ def _places(n: int) -> Places:
 class Solver:
     """The factored tangent of one point."""
 
-    def __init__(self, D: Array, lower: Array, upper: Array, places: Places,
-                 units: Array) -> None:  # fmt: skip
+    def __init__(self, D: Array, lower: Array, upper: Array, units: Array) -> None:
         self._units, self._shape = units, (len(D), BLOCK)
         bands = np.zeros((3 * BAND + 1, BLOCK * len(D)), order="F")
-        for block, (keep, place) in zip((D, lower, upper), places, strict=True):
+        for block, (keep, place) in zip((D, lower, upper), _places(len(D)), strict=True):
             bands[place] = block[keep]
         self._factors, self._pivots, info = dgbtrf(bands, BAND, BAND, overwrite_ab=True)
         pivots = np.abs(self._factors[2 * BAND])

@@ -22,7 +22,7 @@ SMALLEST = 1e-12
 
 def first_forces(equations: Equations) -> Array:
     """The tension's forces F (N + 1, 3), N, lab, at the nodes of a rod that is held where it lies without any."""
-    left, T = equations.held_at_start[:, X], equations.stages.R[0, :, :, 2]
+    left, T = equations.holding[:, X], equations.stages.R[0, :, :, 2]
     nodes = np.vstack([T[:1], T[1:-2] + T[2:-1], T[-1:]])
     nodes /= np.linalg.norm(nodes, axis=1)[:, None]
     weights = np.ones((len(left), 3))

@@ -77,18 +77,16 @@ class Path:
         self._equations, self._patience = equations, patience
         self.point = equations.start.moved(np.zeros((len(equations.start.quaternion), 9)), 0.0)
         self.direction = Direction(np.zeros((len(equations.start.quaternion), 9)), 1.0)
-        self._bend = 0.0 * self.direction
-        """How the direction changes along the branch, as its last step had it."""
-        self.steps, self.iterations, self.failed, self.last_iterations = 0, 0, 0, 0
-        self.travelled, self.last_dq, self.modes = 0.0, 0.0, 0
-        self._corners: list[float] = []
-        self._length, self._easy, self._begun, self._idle, self._crossed = FIRST, True, False, 0, False
+        self.steps, self.iterations, self.failed, self.last_iterations, self.modes = 0, 0, 0, 0, 0
+        self._easy = True
+        self.begin([])
 
     def begin(self, corners: list[float]) -> None:
         """Go on with q from 0, from where the path is; the schedules bend at `corners`."""
         self.point.q, self.travelled, self.last_dq = 0.0, 0.0, 0.0
         self._corners, self._length, self._begun, self._idle, self._crossed = corners, FIRST, False, 0, False
         self._bend = 0.0 * self.direction
+        """How the direction changes along the branch, as its last step had it."""
 
     def advance(self, stop: float) -> bool:
         """Take one step towards where q has travelled as far as `stop`; whether it is there.

@@ -66,19 +66,18 @@ def _conditions(equations: Equations) -> tuple[Array, Array, int]:
     R, length = equations.stages.R[0], float(equations.s[-1])
     held = [end.axes[:, end.held[:3]] for end in equations.ends]
     ties = np.hstack(held)
-    many = 3 + ties.shape[1]
+    many, first = 3 + ties.shape[1], 3 + held[0].shape[1]
     G, W = np.zeros((3 * len(R), many)), np.zeros((many, many))
     opens, by_rotation = equations.tangents.opens, -2.0 * levers(R, equations.chain.h)
     by_rotation[:-1] += opens[:, 0].transpose(0, 2, 1)
     by_rotation[1:] += opens[:, 1].transpose(0, 2, 1)
-    G[:, 3 + held[0].shape[1] :] = (1.0 / length * by_rotation @ held[1]).reshape(3 * len(R), -1)
+    G[:, first:] = (1.0 / length * by_rotation @ held[1]).reshape(3 * len(R), -1)
     W[:3, 3:], W[3:, :3] = ties, ties.T
     give = equations.compliance * equations.stiffness / length**3
-    for side, rows in enumerate((slice(3, 3 + held[0].shape[1]), slice(3 + held[0].shape[1], many))):
+    for side, rows in enumerate((slice(3, first), slice(first, many))):
         along = R[-side, :, 2] @ held[side]
         W[rows, rows] -= give * np.outer(along, along)
-    last = slice(3 + held[0].shape[1], many)
-    W[last, last] -= equations.stiffness / length**3 * held[1].T @ opens[:, 2].sum(axis=0) @ held[1]
+    W[first:, first:] -= equations.stiffness / length**3 * held[1].T @ opens[:, 2].sum(axis=0) @ held[1]
     return G, W, int(ties.shape[1])
 
 

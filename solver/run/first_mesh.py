@@ -42,7 +42,8 @@ def first_mesh(scene: Scene, pressed: bool) -> int:
     turned = np.append(0.0, np.cumsum(np.linalg.norm(kappa, axis=1)[1:] * np.diff(s)))
     bent = float(turned[-1])
     twist = twisted(scene) / (LARGEST_TWIST_AT_REST if at_rest else largest)
-    intervals = bent / largest, twist, *(float(scene.rod.length) / scale for scale in _scales(scene))
+    scales = [load.scale for load in scene.loads if hasattr(load, "scale")]  # longer intervals may not feel the load
+    intervals = bent / largest, twist, *(float(scene.rod.length) / scale for scale in scales)
     mesh = max(ceil(log2(max(intervals) / first_intervals(scene) + 1e-9)), 0)
     while _misses(scene, places, turned, intervals_of(mesh)):
         mesh += 1
@@ -96,11 +97,6 @@ def with_nodes_at(places: Sequence[float], least: int) -> int:
         if (np.abs(beside - np.round(beside)) <= ON_NODE).all():
             return intervals
     return least
-
-
-def _scales(scene: Scene) -> list[float]:
-    """Lengths (m) of an interval that would be too long for some load."""
-    return [load.scale for load in scene.loads if hasattr(load, "scale")]
 
 
 def twisted(scene: Scene) -> float:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
 from math import pi
 from typing import Any
 
@@ -14,7 +14,7 @@ from solver.measures.frame import OUTPUTS, Frame, Statistics
 from solver.physics.elasticity import can_stretch, principal
 from solver.physics.section import sample
 from solver.run.resolution import refine
-from solver.run.side_by_side import Kind, SideBySide
+from solver.run.run import Run
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 
@@ -22,6 +22,7 @@ OF_WAVES, OF_SOUND = ("energy_bending", "energy_torsion", "energy_kinetic", "dis
 """Outputs that are wrong by as much energy (J) as waves lose that no run follows; and of rods that can stretch."""
 SHORTEST = 1e-300
 """A step (s) that stands for none, as at t = 0."""
+NAMES = tuple(field.name for field in fields(Frame))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,15 +32,41 @@ class VerifiedFrame(Frame):
     error: Frame
 
 
-class Verified(SideBySide):
-    """A run of a scene and of its refinement; its frames are `VerifiedFrame`."""
+class Verified(Run):
+    """A run of a scene and of its refinement: neither begins a frame before the other has ended the last one. The
+    frames are `VerifiedFrame`."""
 
-    def __init__(self, scene: Scene, kind: Kind, statistics: Statistics | None = None) -> None:
-        super().__init__((scene, refine(scene)), kind, statistics)
+    def __init__(self, scene: Scene, kind: Callable[[Scene, Statistics], Run],
+                 statistics: Statistics | None = None) -> None:  # fmt: skip
+        """`kind`: what makes the run of a scene, given the account that its cost goes to."""
+        super().__init__(scene, statistics)
+        self._runs = [kind(resolved, self.statistics) for resolved in (scene, refine(scene))]
+        self.remarks = self._runs[0].remarks
+        self._waiting: list[list[Any]] = []  # the values of frames, because a checkpoint holds no frames
         self._lost = 0.0
 
-    def _together(self, *frames: Frame) -> Frame:
-        coarse, fine = frames
+    @property
+    def s(self) -> Array:
+        """Arclengths of the nodes (n,), m."""
+        return self._runs[0].s
+
+    def warm(self) -> None:
+        """Have every kernel compiled."""
+        self._runs[0].warm()
+
+    def _first_frame(self) -> Frame | None:
+        return self._next_frame(0.0)
+
+    def _next_frame(self, output: float) -> Frame | None:
+        """Take one step of the run whose turn it is."""
+        frame = self._runs[len(self._waiting)].advance()
+        self.t = min(run.t for run in self._runs)
+        if frame is not None:
+            self._waiting.append([getattr(frame, name) for name in NAMES])
+        if len(self._waiting) < len(self._runs):
+            return None
+        coarse, fine = (Frame(**dict(zip(NAMES, values, strict=True))) for values in self._waiting)
+        self._waiting.clear()
         self._lost = float(np.fmax(self._lost, abs(fine.energy_balance)))
         least = unseen(self._scene.rod, self.s, self._lost, fine.dt)
         return extrapolate(coarse, fine, {**least, **dict.fromkeys(of_waves(self._scene.rod), self._lost)})

@@ -99,6 +99,13 @@ def matrices_of(quaternion: Array, R: Array) -> None:
         matrix_of(quaternion[j], R[j])
 
 
+def rotation_of(quaternion: Array) -> Array:
+    """The rotation matrix (3, 3) of a unit quaternion (4,)."""
+    R = np.empty((3, 3))
+    matrix_of(quaternion, R)
+    return R
+
+
 @inner
 def tangent_of(quaternion: Array, T: Array) -> None:
     """Write the tangent R a3 of a unit quaternion (4,) into `T` (3,)."""
@@ -140,9 +147,7 @@ def turn(quaternion: Array, theta: Array, turned: Array) -> None:
 @kernel
 def multiply(left: Array, right: Array, out: Array) -> None:
     """Write the quaternion left * right into `out` (4,): first `right`, then `left`."""
-    out[0], out[1], out[2], out[3] = product(
-        left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3]
-    )
+    out[0], out[1], out[2], out[3] = product(left[0], left[1], left[2], left[3], right[0], right[1], right[2], right[3])
 
 
 @inlined
@@ -178,12 +183,6 @@ def right_jacobian(x: float, y: float, z: float, first: float, second: float) ->
 
 
 @inlined
-def is_small(square: float, cosine: float) -> bool:
-    """Whether `angle_by_sine` is exact to rounding."""
-    return square < 0.04 * cosine * cosine
-
-
-@inlined
 def angle_by_sine(square: float, cosine: float) -> float:
     """The angle over sin(angle/2), from its square and cos(angle/2): 2 arctan(t) / t, t = sin / cos, by its series."""
     t, scale = square / (cosine * cosine), 0.0
@@ -202,8 +201,8 @@ def any_angle_by_sine(square: float, cosine: float) -> float:
 
 @inlined
 def is_large(square: float, cosine: float) -> bool:
-    """Whether `angle_by_sine` is not exact."""
-    return not is_small(square, cosine)
+    """Whether `angle_by_sine` is not exact to rounding."""
+    return not square < 0.04 * cosine * cosine
 
 
 series(angle_by_sine, is_large, any_angle_by_sine)
@@ -214,7 +213,7 @@ def relative_rotation(left: Array, right: Array, theta: Array) -> None:
     """Write the rotation vector of left^-1 right, shorter than pi, into `theta` (3,)."""
     cosine, x, y, z = product(left[0], -left[1], -left[2], -left[3], right[0], right[1], right[2], right[3])
     square = x * x + y * y + z * z
-    scale = angle_by_sine(square, cosine) if is_small(square, cosine) else any_angle_by_sine(square, cosine)
+    scale = any_angle_by_sine(square, cosine) if is_large(square, cosine) else angle_by_sine(square, cosine)
     theta[0], theta[1], theta[2] = scale * x, scale * y, scale * z
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import enter
-from solver.kernels.rotation import matrix_of, rotate_back
+from solver.kernels.rotation import matrices_of, rotate_back
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape
@@ -74,10 +74,8 @@ class StaggeredMethod(RadauMethod):
         compliance = axial_compliance(scene)
         self.driven.compliance[:], self._stretches = 0.5 * compliance, compliance > 0.0
         self._joints = self._bend(self.state.quaternion)[0]
-        R = np.zeros((N + 2, 3, 3))
-        for quaternion, matrix in zip(self.state.quaternion, R, strict=True):
-            matrix_of(quaternion, matrix)
-        self._R = R
+        self._R = R = np.zeros((N + 2, 3, 3))
+        matrices_of(self.state.quaternion, R)
         if can_stretch(scene.rod):
             self._stretch_at_start(scene)
         follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)

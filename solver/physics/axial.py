@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.rotation import matrix_of
+from solver.kernels.rotation import rotation_of
 from solver.physics.elasticity import can_stretch
 from solver.physics.ends import travel
 from solver.physics.section import sample
@@ -71,15 +71,9 @@ def _holds(end: End) -> bool:
 def _path(end: End, r: Array, quaternion: Array, times: Array) -> Array:
     """Where an end is held (times, 3), as far as its first conditions say, along the axes that it has at t = 0."""
     moved = np.array([[_moved(component, t) for component in end.translation] for t in times])
-    return np.asarray(r + (moved if end.frame == "lab" else moved @ _matrix(quaternion).T))
+    return np.asarray(r + (moved if end.frame == "lab" else moved @ rotation_of(quaternion).T))
 
 
 def _moved(component: Component, t: float) -> float:
     until = component[1].since if len(component) > 1 else t
     return travel(component[0], min(t, until))
-
-
-def _matrix(quaternion: Array) -> Array:
-    R = np.empty((3, 3))
-    matrix_of(quaternion, R)
-    return R

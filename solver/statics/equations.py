@@ -20,7 +20,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.kernel import kernel
-from solver.kernels.rotation import matrix_of, relative_rotation, turn
+from solver.kernels.rotation import matrices_of, relative_rotation, rotation_of, turn
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, segment_tangents
 from solver.methods.space.segments.chain import Chain, Residuals, Stages
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
@@ -72,8 +72,7 @@ def _turn_all(quaternion: Array, psi: Array, turned: Array) -> None:
 def _lay_down(chain: Chain, quaternion: Array, base: Array, F: Array, stages: Stages) -> None:
     """Write rotations, forces, places and moments of stage 0; velocities and accelerations stay zero."""
     copy(quaternion, stages.quaternion[0])
-    for a in range(len(quaternion)):
-        matrix_of(quaternion[a], stages.R[0, a])
+    matrices_of(quaternion, stages.R[0])
     copy(base, stages.base[0, 0])
     follow_segments(stages.R[0], stages.omega[0], stages.alpha[0], stages.base[0], chain.h,
                     stages.r[0], stages.V[0], stages.A[0])  # fmt: skip
@@ -270,10 +269,7 @@ class Equations:
             relative_rotation(there, quaternion, away)
             return away
         free = np.eye(3)[int(np.argmin(end.held[3:]))]
-        R, R_there = np.empty((3, 3)), np.empty((3, 3))
-        matrix_of(quaternion, R)
-        matrix_of(there, R_there)
-        return np.cross(R.T @ R_there @ free, free)
+        return np.cross(rotation_of(quaternion).T @ rotation_of(there) @ free, free)
 
     def look_at(self, point: Point) -> Array:
         """The residual (N + 2, 9) at a point, with `stages` and `tangents` there."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from solver.arrays import Array
 from solver.kernels.kernel import allocating
-from solver.kernels.rotation import matrix_of, multiply
+from solver.kernels.rotation import multiply, rotation_of
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 from solver.scene.view import View
@@ -74,10 +74,9 @@ class Axis:
 
 def axis_of(scene: Scene) -> Axis | None:
     """The axis about which all of a scene turns, or None: see `scene.view`."""
-    s, R = np.linspace(0.0, scene.rod.length, 2 * scene.numerics.intervals + 1), np.zeros((3, 3))
+    s = np.linspace(0.0, scene.rod.length, 2 * scene.numerics.intervals + 1)
     _, quaternion, kappa = nodes_at_rest(scene.initial, s)
-    matrix_of(quaternion[0], R)
-    views = (View(index, s, quaternion, kappa, R) for index in range(3))
+    views = (View(index, s, quaternion, kappa, rotation_of(quaternion[0])) for index in range(3))
     return next((_axis(view.index, quaternion[0]) for view in views if scene.keeps(view)), None)
 
 
@@ -86,8 +85,7 @@ def _axis(index: int, first: Array) -> Axis:
 
     Its real axis is the one nearest to the tangent, so that the force along a straight rod falls apart exactly.
     """
-    R, material = np.zeros((3, 3)), np.array((0.0, -1j, 1.0) if index == 0 else (1j, 0.0, 1.0))
-    matrix_of(first, R)
+    R, material = rotation_of(first), np.array((0.0, -1j, 1.0) if index == 0 else (1j, 0.0, 1.0))
     n, k = R[:, index].copy(), int(np.argmax(np.abs(R[:, index])))
     turned, phi = np.zeros(4), 0.0
     if index == 2:

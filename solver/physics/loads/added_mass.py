@@ -14,8 +14,10 @@ import numpy as np
 
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, outer, tangent_rate, times, vector
-from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
+from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
 from solver.scene.scene import Scene
+
+account = as_lost
 
 
 class Record(NamedTuple):
@@ -67,9 +69,3 @@ def entrained(load: Record, j: int, at: Point) -> Any:
     along, across = dot(u, at.T), minus(at.A, times(dot(at.A, at.T), at.T))
     rate = minus(minus(across, times(dot(u, turning), at.T)), times(along, turning))
     return load.mass[j], minus(u, times(along, at.T)), rate
-
-
-@inner
-def account(load: Record) -> int:
-    """Lost, but for what the current gives."""
-    return LOST

@@ -9,8 +9,10 @@ import numpy as np
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import vector
 from solver.physics.loads import given
-from solver.physics.loads.load import GIVEN, Point, Samples, Source
+from solver.physics.loads.load import Point, Samples, Source, as_given
 from solver.scene.scene import Scene
+
+account = as_given
 
 
 class Record(given.Record):
@@ -31,9 +33,3 @@ def about(record: Record, axis: Any) -> Record:
 def force(load: Record, i: int, j: int, at: Point) -> Any:
     """As given."""
     return vector(load.force[i], j), vector(load.moment[i], j)
-
-
-@inner
-def account(load: Record) -> int:
-    """Work of the loads."""
-    return GIVEN

@@ -12,8 +12,10 @@ import numpy as np
 
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, times, vector
-from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
+from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
 from solver.scene.scene import Scene
+
+account = as_lost
 
 
 class Record(NamedTuple):
@@ -70,9 +72,3 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
 def carrier(load: Record, i: int, j: int, at: Point) -> Any:
     """The current."""
     return vector(load.current, 0)
-
-
-@inner
-def account(load: Record) -> int:
-    """Lost, but for what the current gives."""
-    return LOST

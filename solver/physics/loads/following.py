@@ -7,8 +7,10 @@ from typing import Any
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import in_lab, in_lab_by_rotation, in_material, in_material_by_rotation, vector
 from solver.physics.loads import given
-from solver.physics.loads.load import GIVEN, Point, Samples, Source, Tangents
+from solver.physics.loads.load import Point, Samples, Source, Tangents, as_given
 from solver.scene.scene import Scene
+
+account = as_given
 
 
 class Record(given.Record):
@@ -36,9 +38,3 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """By rotation."""
     E, moment = in_lab_by_rotation(at.R, vector(load.force[i], j)), in_material(at.R, vector(load.moment[i], j))
     return Tangents(None, None, None, None, E, in_material_by_rotation(moment), None)
-
-
-@inner
-def account(load: Record) -> int:
-    """Work of the loads."""
-    return GIVEN

@@ -13,9 +13,11 @@ import numpy as np
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import lever, lever_by_rotation, times, vector
 from solver.physics.loads.given import is_steady, levers_of, points_within, turns_segments
-from solver.physics.loads.load import GIVEN, Point, Samples, Source, Tangents
+from solver.physics.loads.load import Point, Samples, Source, Tangents, as_given
 from solver.scene.loads import DistributedLoad, PointLoad
 from solver.scene.scene import Scene
+
+account = as_given
 
 
 class Record(NamedTuple):
@@ -67,9 +69,3 @@ def force(load: Record, i: int, j: int, at: Point) -> Any:
 def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """By rotation."""
     return Tangents(None, None, None, None, None, lever_by_rotation(vector(load.arm[i], j), at.R), None)
-
-
-@inner
-def account(load: Record) -> int:
-    """Work of the loads."""
-    return GIVEN

@@ -7,7 +7,7 @@ A load is a module of this folder, entered in `registry.LOADS`, with
     Record      a NamedTuple of `present` and arrays, a line for each point: what its kernels read;
     of          makes the `Source` of a scene: its record, and how that changes with time;
     force       kernel: force (lab) and moment (material) per length at point j at the i-th time within a step;
-    account     kernel: the `Account` of what becomes of its power, unless that is stored;
+    account     kernel: the `Account` of what becomes of its power, unless that is stored (`as_given`, `as_lost`);
 
 and, if it has one, `tangents`, `energy`, `conservative`, `carrier`, `entrained` (see below), and `about`, which gives
 its record in the plane of an axis: without it a scene with this load turns in space. The kernels are written with
@@ -210,7 +210,19 @@ def conservative(load: Any, i: int, j: int, at: Point) -> Any:
 @dispatched
 def account(load: Any) -> int:
     """The load's `Account`."""
-    return 0
+    return STORED
+
+
+@inner
+def as_given(load: Any) -> int:
+    """The `account` of a load whose power is all work of the loads."""
+    return GIVEN
+
+
+@inner
+def as_lost(load: Any) -> int:
+    """The `account` of a load that takes energy for good, but for what its carrier gives."""
+    return LOST
 
 
 @dispatched

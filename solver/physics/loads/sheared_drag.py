@@ -16,12 +16,13 @@ from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import dot, minus, outer, times, transform, vector
 from solver.physics.loads import drag
-from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
+from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
 from solver.scene.curve import Curve
 from solver.scene.fluid import EVERYWHERE, UNIFORM
 from solver.scene.scene import Scene
 
 SMALLEST = 1e-300
+account = as_lost
 
 
 class Record(NamedTuple):
@@ -116,9 +117,3 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
 def carrier(load: Record, i: int, j: int, at: Point) -> Any:
     """The current there."""
     return current(load, i, at)[0]
-
-
-@inner
-def account(load: Record) -> int:
-    """Lost, but for what the current gives."""
-    return LOST

@@ -25,9 +25,11 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, times, vector
-from solver.physics.loads.load import LOST, Point, Samples, Source, Tangents
+from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
 from solver.scene.checks import require_finite
 from solver.scene.scene import Scene
+
+account = as_lost
 
 LEAP = 0.5
 """Part of the way to an obstacle, or of its radius, that a node may come nearer in a step."""
@@ -61,10 +63,14 @@ class Floor:
             raise ValueError(f"floor normal must be finite and not zero, got {self.normal}")
         _check("floor", self, "stiffness", "slip")
 
+    @property
+    def up(self) -> Array:
+        """The unit vector (3,) along `normal`."""
+        return np.asarray(np.array(self.normal, dtype=float) / np.linalg.norm(self.normal))
+
     def depth(self, r: Array) -> Array:
         """How deep (m) below its surface places r (n, 3) are; negative outside."""
-        normal = np.array(self.normal) / np.linalg.norm(self.normal)
-        return np.asarray(self.height - r @ normal)
+        return np.asarray(self.height - r @ self.up)
 
 
 @dataclass(frozen=True)
@@ -220,23 +226,14 @@ class Near(NamedTuple):
 def of(scene: Scene, samples: Samples) -> Source:
     """The solids of a scene."""
     solids = [load for load in scene.loads if isinstance(load, Given)]
-    lines = [_flat(solid) if isinstance(solid, Floor) else _round(solid) for solid in solids]
+    lines = [(np.zeros(3), solid.up, solid.height) if isinstance(solid, Floor)
+             else (solid.start, np.subtract(solid.end, solid.start), solid.radius) for solid in solids]  # fmt: skip
     start, axis = (np.array([line[i] for line in lines], dtype=float).reshape(-1, 3) for i in range(2))
     radius = np.array([line[2] for line in lines], dtype=float)
     stiffness, friction, slip = (np.array([getattr(solid, name) for solid in solids], dtype=float)
                                  for name in ("stiffness", "friction", "slip"))  # fmt: skip
     flat = np.array([isinstance(solid, Floor) for solid in solids], dtype=bool)
     return Solids(Record(bool(solids), flat, start, axis, radius, stiffness, friction, slip))
-
-
-def _flat(floor: Floor) -> tuple[Array, Array, float]:
-    normal = np.array(floor.normal, dtype=float)
-    return np.zeros(3), normal / np.linalg.norm(normal), floor.height
-
-
-def _round(obstacle: Obstacle) -> tuple[Array, Array, float]:
-    start = np.array(obstacle.start, dtype=float)
-    return start, np.array(obstacle.end, dtype=float) - start, obstacle.radius
 
 
 @inner
@@ -321,9 +318,3 @@ def energy(load: Record, i: int, j: int, at: Point) -> float:
     for m in range(len(load.radius)):
         total += 0.5 * load.stiffness[m] * near(load, m, at).d ** 2
     return total
-
-
-@inner
-def account(load: Record) -> int:
-    """Friction is lost."""
-    return LOST

@@ -49,8 +49,7 @@ class UserLoads(Source):
 
     def __init__(self, loads: tuple[UserLoad, ...], samples: Samples, account: Account) -> None:
         n = len(samples.s)
-        r, V, forces, K, C = (np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3, 3)),
-                              np.zeros((n, 3, 3)))  # fmt: skip
+        (r, V, forces), (K, C) = np.zeros((3, n, 3)), np.zeros((2, n, 3, 3))
         self._loads, self._s, self._times = loads, samples.s, [0.0] * samples.times
         self._function = _CALL(self._call)
         address = np.array([cast(self._function, c_void_p).value], np.int64)
@@ -148,16 +147,13 @@ def account(load: Record) -> int:
     return load.account
 
 
-def _of_account(scene: Scene, name: str) -> tuple[UserLoad, ...]:
-    return tuple(load for load in scene.loads if isinstance(load, UserLoad) and load.account == name)
-
-
 def _kind(what: Account) -> SimpleNamespace:
     """The load that all the user's loads of an account make together."""
     name = what.name.lower()
 
     def of(scene: Scene, samples: Samples) -> Source:
-        return UserLoads(_of_account(scene, name), samples, what)
+        loads = (load for load in scene.loads if isinstance(load, UserLoad) and load.account == name)
+        return UserLoads(tuple(loads), samples, what)
 
     return SimpleNamespace(__name__=f"user_{name}", Given=UserLoad, Record=Record, of=of, prepare=prepare, force=force,
                            tangents=tangents, energy=energy, account=account)  # fmt: skip

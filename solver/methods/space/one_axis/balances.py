@@ -157,8 +157,6 @@ def _add_number(factor: float, x: Any, out: Array, j: int) -> None:
         out[j] += factor * x
 
 
-
-
 @inlined
 def along(T: complex, z: complex) -> float:
     """The component of z along T."""
@@ -211,7 +209,8 @@ def tangents_at(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages,
     """Write the tangents at stage i of the balances and of the ends' conditions."""
     h, N, F = chain.h, len(chain.mass), stages.F[i]
     copy(stages.T[i], tangents.T)
-    tangents.stiff[:] = 0.0
+    tangents.M[:], tangents.C[:], tangents.K[:], tangents.spin[:], tangents.stiff[:] = 0.0, 0.0, 0.0, 0.0, 0.0
+    tangents.E[:] = 0.0
     for j in range(N + 1):
         kappa = (stages.phi[i, j + 1] - stages.phi[i, j]) / chain.span[j]
         tangents.spring[j] = tangent(chain.elastic, j, kappa) / chain.span[j]
@@ -219,12 +218,8 @@ def tangents_at(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages,
         tangents.stiff[j] += tangents.spring[j]
         tangents.stiff[j + 1] += tangents.spring[j]
     for j in range(N):
-        M, C, K = tangents.M[j], tangents.C[j], tangents.K[j]
         for k in range(2):
-            for m in range(2):
-                M[k, m], C[k, m], K[k, m] = 0.0, 0.0, 0.0
-            M[k, k] = h * chain.mass[j]
-        tangents.spin[j], tangents.E[j] = 0.0, 0.0
+            tangents.M[j, k, k] = h * chain.mass[j]
         tangents.stiff[j + 1] += 0.5 * h * chain.swing * along(stages.T[i, j + 1], F[j + 1] + F[j])
     add_tangents(loads, i, motion_at(chain, stages, i), LoadTangents(tangents, h))
     for side in range(2):

@@ -192,10 +192,7 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
     for side in range(2):
         frame, node = (0, 0) if side == 0 else (N + 1, N)
         R = stages.R[i, frame]
-        if side == 0:
-            copy(stages.base[i, 1], V)
-        else:
-            _tip_velocity(chain, stages, i, V)
+        _end_velocity(chain, stages, i, side, V)
         kinds, values, dead = driven.kinds[side], driven.values[i, side], driven.dead[i, side]
         if driven.compliance[side] > 0.0:  # the rod's end and what holds it move apart along the tangent
             stretch = 0.0
@@ -223,8 +220,11 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
 
 
 @inner
-def _tip_velocity(chain: Chain, stages: Stages, i: int, V: Array) -> None:
-    """Write the velocity (3,) of the end of the rod."""
+def _end_velocity(chain: Chain, stages: Stages, i: int, side: int, V: Array) -> None:
+    """Write the velocity (3,) of the rod's start or end."""
+    if side == 0:
+        copy(stages.base[i, 1], V)
+        return
     N = len(chain.mass)
     w, Q, lever = stages.omega[i, N], stages.R[i, N], 0.5 * chain.h + stages.opening[i, 0, N]
     for k in range(3):
@@ -249,21 +249,16 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
     h, N = chain.h, len(chain.mass)
     joint_tangents(chain, stages.bend[i], stages.moment[i], tangents.ahead, tangents.back)
     copy(stages.R[i], tangents.R)
-    tangents.stiff[:] = 0.0
-    tangents.before[:] = 0.0
-    tangents.behind[:] = 0.0
-    g, swing = scratch(3), scratch((3, 3))
+    tangents.M[:], tangents.C[:], tangents.K[:], tangents.E[:], tangents.spin[:] = 0.0, 0.0, 0.0, 0.0, 0.0
+    tangents.stiff[:], tangents.before[:], tangents.behind[:] = 0.0, 0.0, 0.0
+    g = scratch(3)
     for j in range(N):
         R, w = stages.R[i, j + 1], stages.omega[i, j + 1]
         M, spin, stiff = tangents.M[j], tangents.spin[j], tangents.stiff[j + 1]
-        for k in range(3):
-            for m in range(3):
-                M[k, m] = 0.0
-                spin[k, m] = 0.0
-            M[k, k] = h * chain.mass[j]
         # with psi in a frame that does not turn, omega changes by psi_t and omega_t by psi_tt - omega x psi_t
         I0, I1, I2 = chain.inertia[j, 0], chain.inertia[j, 1], chain.inertia[j, 2]
         for k in range(3):
+            M[k, k] = h * chain.mass[j]
             g[k] = chain.inertia[j, k] * w[k]
         _cross_matrix(g, -h, spin)
         spin[0, 1] += h * w[2] * (I0 - I1)
@@ -289,11 +284,8 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
                 stiff[k, m] += tangents.back[j, 1, k, m] - tangents.ahead[j + 1, 0, k, m]
                 tangents.before[j + 1, k, m] = tangents.back[j, 0, k, m]
                 tangents.behind[j + 1, k, m] = -tangents.ahead[j + 1, 1, k, m]
-    tangents.C[:] = 0.0
-    tangents.K[:] = 0.0
-    tangents.E[:] = 0.0
     add_tangents(loads, i, motion_at(stages, i), LoadTangents(tangents, h))
-    _end_tangents(chain, driven, stages, i, tangents, swing)
+    _end_tangents(chain, driven, stages, i, tangents)
     if is_viscous(chain.elastic):
         rate_tangents(chain, stages.bend[i], tangents.stiff_t, tangents.before_t, tangents.behind_t)
     if stretches(chain.elastic):
@@ -301,10 +293,10 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
 
 
 @inner
-def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents: Tangents, swing: Array) -> None:
+def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
     """Tangents of the conditions on a loaded end's rotation (the start's with the opposite sign), and `turn`."""
     N = len(chain.mass)
-    g, V = scratch(3), scratch(3)
+    g, V, swing = scratch(3), scratch(3), scratch((3, 3))
     for side in range(2):
         frame, node = (0, 0) if side == 0 else (N + 1, N)
         R, dead = stages.R[i, frame], driven.dead[i, side]
@@ -312,10 +304,7 @@ def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents
             g[k] = R[0, k] * dead[3] + R[1, k] * dead[4] + R[2, k] * dead[5]
         swing[:, :] = 0.0
         _cross_matrix(g, -1.0, swing)
-        if side == 0:
-            copy(stages.base[i, 1], V)
-        else:
-            _tip_velocity(chain, stages, i, V)
+        _end_velocity(chain, stages, i, side, V)
         tangents.turn[side] = 0.0
         for k in range(3):
             for m in range(3):

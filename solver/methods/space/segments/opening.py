@@ -32,7 +32,7 @@ from solver.kernels.vectors import (
 )
 from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
 from solver.methods.space.segments.joints import add_moment, bend_joints, on_neighbours, share
-from solver.physics.elasticity import axial_strain, axial_tangent, moment_of_tension
+from solver.physics.elasticity import axial_strain, axial_tangent, moment_of_tension, stretches
 
 
 @inlined
@@ -58,14 +58,13 @@ def _acceleration(R: Any, omega: Any, alpha: Any) -> Any:
 @inner
 def tension(R: Array, F: Array, a: int) -> float:
     """N of joint a."""
-    N: float = dot(vector(F, a), _tangent(R, a))
-    return N
+    return float(dot(vector(F, a), _tangent(R, a)))
 
 
 @kernel
 def pull_joints(chain: Chain, R: Array, F: Array, bend: Array, moment: Array, left: Array, right: Array) -> None:
     """Add what the tension adds to q to what `bend_joints` wrote of it."""
-    if len(chain.elastic.compliance) == 0:
+    if not stretches(chain.elastic):
         return
     for a in range(len(bend)):
         add_moment(moment_of_tension(chain.elastic, a, tension(R, F, a)), a, bend, moment, left, right)
@@ -121,7 +120,7 @@ def shift_segments(R: Array, omega: Array, alpha: Array, opening: Array, r: Arra
 def shift_nodes(chain: Chain, R: Array, omega: Array, opening: Array, r: Array, V: Array) -> None:
     """Add to places and velocities of the nodes (N + 1, 3), those of the ends of the segments before them, the way to
     the middle of the opening, or to the end of the rod."""
-    if len(chain.elastic.compliance) == 0:
+    if not stretches(chain.elastic):
         return
     last = len(r) - 1
     for a in range(1, last + 1):

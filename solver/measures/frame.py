@@ -33,9 +33,7 @@ class Fields:
     kappa: Annotated[Array, Output("rad/m", "curvature and twist", "material", along_rod=True)]
     q: Annotated[Array, Output("N m", "internal moment", "material", along_rod=True)]
     r: Annotated[Array, Output("m", "position of the centreline", "lab", along_rod=True)]
-    orientation: Annotated[
-        Array, Output("1", "rotation from material to lab components", "quaternion", along_rod=True)
-    ]
+    orientation: Annotated[Array, Output("1", "rotation from material to lab components", "quaternion", along_rod=True)]
     strain: Annotated[Array, Output("1", "axial strain, 0 of a rod that cannot stretch", along_rod=True)]
 
 
@@ -64,9 +62,7 @@ class Frame(Fields):
     work_ends: Annotated[float, Output("J", "work of the ends since the start")]
     work_loads: Annotated[float, Output("J", "work of the loads since the start")]
     dissipation: Annotated[float, Output("J", "energy dissipated since the start")]
-    energy_balance: Annotated[
-        float, Output("J", "energy gained less work done plus energy dissipated, zero if exact")
-    ]
+    energy_balance: Annotated[float, Output("J", "energy gained less work done plus energy dissipated, zero if exact")]
     Tw: Annotated[float, Output("turn", "twist")]
     Wr: Annotated[float, Output("turn", "writhe of the centreline continued by straight rays")]
     Lk: Annotated[float, Output("turn", "linking number, the relative rotation of the ends")]
@@ -75,9 +71,7 @@ class Frame(Fields):
     ]
     contacts: Annotated[int, Output("1", "number of point pairs that press on each other", verified=False)]
     dt: Annotated[float, Output("s", "length of the time step that ended here", verified=False)]
-    newton_iterations: Annotated[
-        int, Output("1", "Newton iterations of the time step that ended here", verified=False)
-    ]
+    newton_iterations: Annotated[int, Output("1", "Newton iterations of the time step that ended here", verified=False)]
     parameter: Annotated[float, Output("s", "time in the schedules, which may go back", statics=True)] = nan
     negative_modes: Annotated[
         int, Output("1", "directions in which the energy falls, 0 if stable", statics=True, verified=False)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from math import atan2, sqrt
+from math import atan2
 from typing import Any
 
 from solver.kernels.kernel import inlined, inner
+from solver.kernels.vectors import dot, norm, vector_product
 
 
 @inner
@@ -14,18 +15,8 @@ def half_area(a: Any, b: Any, c: Any) -> float:
 
     By van Oosterom & Strackee (IEEE Trans. Biomed. Eng. 30 (1983) 125).
     """
-    volume = (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        + a[1] * (b[2] * c[0] - b[0] * c[2])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    )
-    la = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
-    lb = sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2])
-    lc = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2])
-    ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    bc = b[0] * c[0] + b[1] * c[1] + b[2] * c[2]
-    ca = c[0] * a[0] + c[1] * a[1] + c[2] * a[2]
-    return angle(la * lb * lc + ab * lc + bc * la + ca * lb, volume)
+    la, lb, lc = norm(a), norm(b), norm(c)
+    return angle(la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb, dot(a, vector_product(b, c)))
 
 
 @inlined

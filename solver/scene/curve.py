@@ -7,13 +7,15 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from solver.arrays import Array
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
 Interpolation = Literal["linear", "smoothstep", "pchip", "cubic"]
-Number = TypeVar("Number", float, NDArray[np.float64])
+Number = TypeVar("Number", float, Array)
 
 
 class Curve:
@@ -24,7 +26,7 @@ class Curve:
     which the step control aligns the steps).
     """
 
-    def __init__(self, knots: NDArray[np.float64], coefficients: NDArray[np.float64]) -> None:
+    def __init__(self, knots: Array, coefficients: Array) -> None:
         """Polynomial of degree 3 on each piece; `coefficients[k]` multiplies (x - knot)^(3-k)."""
         self._knots: list[float] = [float(x) for x in knots]
         self._pieces: list[tuple[float, float, float, float]] = [
@@ -74,7 +76,7 @@ class Curve:
         return not self._pieces
 
     @property
-    def polynomials(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def polynomials(self) -> tuple[Array, Array]:
         """The points (m,) of its table, and the coefficients (m - 1, 4) of the cubics between them, of x less the point
         before, highest power first; of a constant one point and no cubic."""
         return np.array(self._knots), np.array(self._pieces).reshape(-1, 4)
@@ -113,7 +115,7 @@ class Curve:
         i = bisect_right(self._knots, x) - 1
         return self._integral_at_knots[i] + _primitive(self._pieces[i], x - self._knots[i])
 
-    def __call__(self, x: ArrayLike) -> NDArray[np.float64]:
+    def __call__(self, x: ArrayLike) -> Array:
         """The values at an array of x, of the same shape."""
         xs = np.asarray(x, dtype=float)
         if not self._pieces:
@@ -137,9 +139,7 @@ def _primitive(piece: tuple[float, float, float, float], u: float) -> float:
     return (((a / 4 * u + b / 3) * u + c / 2) * u + d) * u
 
 
-def _power_coefficients(
-    x: NDArray[np.float64], y: NDArray[np.float64], interpolation: Interpolation
-) -> NDArray[np.float64]:
+def _power_coefficients(x: Array, y: Array, interpolation: Interpolation) -> Array:
     flat, width, rise = np.zeros(len(x) - 1), np.diff(x), np.diff(y)
     if interpolation == "linear":
         return np.array([flat, flat, rise / width, y[:-1]])

@@ -88,7 +88,7 @@ class End:
     def holds_tangent(self) -> bool:
         """Whether the tangent stays as it is at all times."""
         conditions = [condition for component in self.rotation[:2] for condition in component]
-        return all(condition.kind != "load" and _is_rest(condition.kind, condition.curve) for condition in conditions)
+        return all(condition.kind != "load" and _is_rest(condition) for condition in conditions)
 
     def keeps(self, view: View) -> bool:
         """Whether the end asks for no motion and no load but along the motion about an axis, at all times."""
@@ -99,13 +99,10 @@ class End:
                 return False
             moves = along if view.index == 2 else ~along
         asked = [*zip(self.translation, moves, strict=True), *zip(self.rotation, view.turns, strict=True)]
-        return all(allowed or _is_nothing(component) for component, allowed in asked)
+        return all(allowed or all(map(_is_rest, component)) for component, allowed in asked)
 
 
-def _is_nothing(component: Component) -> bool:
-    """Whether the conditions ask for rest and no load at all times."""
-    return all(_is_rest(condition.kind, condition.curve) for condition in component)
-
-
-def _is_rest(kind: str, curve: Curve) -> bool:
+def _is_rest(condition: Condition) -> bool:
+    """Whether a condition asks for rest, or for no load, at all times."""
+    kind, curve = condition.kind, condition.curve
     return kind == "stop" or (curve.is_constant if kind == "position" else curve.is_zero)

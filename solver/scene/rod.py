@@ -106,11 +106,7 @@ class Rod:
     ) -> Rod:
         """A solid circular section: A = pi D^2/4, J1 = J2 = A D^2/16, J3 = A D^2/8, I = rho_c J."""
         width: Profile = Curve.constant(diameter) if isinstance(diameter, (int, float)) else diameter
-        for name, value in (
-            ("youngs_modulus", youngs_modulus),
-            ("shear_modulus", shear_modulus),
-            ("density", density),
-        ):
+        for name, value in (("youngs_modulus", youngs_modulus), ("shear_modulus", shear_modulus), ("density", density)):
             if not (np.isfinite(value) and value > 0):
                 raise ValueError(f"{name} must be > 0, got {value}")
 

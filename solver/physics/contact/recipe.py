@@ -26,7 +26,6 @@ from solver.kernels.rotation import rotate
 from solver.physics.contact.automatic import POWER
 from solver.physics.elasticity import elasticity_of, principal
 from solver.scene.contact import Contact
-from solver.scene.curve import Curve
 from solver.scene.ends import Component, Condition
 from solver.scene.layout import nodes_at_rest
 from solver.scene.rod import Rod
@@ -195,20 +194,16 @@ def _loads(component: Component, t: Array) -> Array:
 def _largest_pull(scene: Scene, t: Array) -> float:
     """The largest force (N) at an end, in a point or along the rod, its weight or a current's drag."""
     forces = [np.linalg.norm([_loads(c, t) for c in end.translation], axis=0).max() for end in (scene.start, scene.end)]
-    forces += [np.linalg.norm([_at(c, t) for c in load.force], axis=0).max() for load in scene.points]
+    forces += [np.linalg.norm([c(t) for c in load.force], axis=0).max() for load in scene.points]
     s = np.linspace(0.0, scene.rod.length, SAMPLES)
 
     def along(density: Array) -> float:
         return float(np.trapezoid(density + np.zeros_like(s), s))
 
     forces += [along(np.linalg.norm([p(s) + np.zeros_like(s) for p in load.force], axis=0))
-               * np.abs(_at(load.schedule, t)).max() for load in scene.distributed]  # fmt: skip
+               * np.abs(load.schedule(t)).max() for load in scene.distributed]  # fmt: skip
     if scene.fluid:
         drag = 0.5 * scene.fluid.density * (scene.fluid.drag_normal + pi * scene.fluid.drag_tangential)
         forces.append(drag * scene.fluid.fastest**2 * along(np.asarray(scene.rod.diameter(s))))
     weight = along(np.asarray(scene.rod.mass(s))) * float(np.linalg.norm(scene.gravity))
     return float(max([*forces, weight]))
-
-
-def _at(curve: Curve, t: Array) -> Array:
-    return np.asarray(curve(t))

@@ -117,10 +117,7 @@ class BoxMethod:
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> Array:
-        """Make the trial the state; return the energy (4,) in J that flowed in the step.
-
-        From the ends, from the loads, dissipated, into contact.
-        """
+        """Make the trial the state; return the energy (4,) that flowed: see `Method`."""
         old, new = self.state, self.trial
         force_rate(old.Y, new.Y, dt, self._F_rate)
         # a step that finds forces knows none at its begin: there those of its end count

@@ -347,10 +347,7 @@ def strain_energy(elastic: Elasticity, j: int, x: Any) -> Any:
 
 @inner
 def _energy_of_bend(elastic: Elasticity, j: int, bend: float) -> float:
-    if is_linear(elastic):
-        return 0.0
-    energy: float = _of_bend(elastic, j, bend)[0]
-    return energy
+    return 0.0 if is_linear(elastic) else float(_of_bend(elastic, j, bend)[0])
 
 
 @inner
@@ -381,8 +378,7 @@ def stretches(elastic: Elasticity) -> bool:
 @inner
 def axial_strain(elastic: Elasticity, j: int, kappa: Any, N: float) -> float:
     """eps, at the curvature kappa and the tension N."""
-    strain: float = elastic.compliance[j] * N - elastic.by_tension[j] * (kappa[2] - elastic.kappa0[j, 2])
-    return strain
+    return float(elastic.compliance[j] * N - elastic.by_tension[j] * (kappa[2] - elastic.kappa0[j, 2]))
 
 
 @inner
@@ -401,5 +397,4 @@ def moment_of_tension(elastic: Elasticity, j: int, N: float) -> Any:
 @inner
 def stretch_energy(elastic: Elasticity, j: int, N: float) -> float:
     """What the tension stores, 1/2 N^2 d eps / dN: all that U is more than the energies of bending and torsion."""
-    energy: float = 0.5 * elastic.compliance[j] * N * N
-    return energy
+    return float(0.5 * elastic.compliance[j] * N * N)

@@ -33,8 +33,7 @@ TIMES = 101
 
 
 def first_mesh(scene: Scene, pressed: bool) -> int:
-    """How many times `first_intervals` are to be doubled, see `plan`. `pressed`: whether strands press on each other.
-    """
+    """How many times to double `first_intervals`, see `plan`. `pressed`: whether strands press on each other."""
     at_rest = scene.analysis == "static"
     largest = LARGEST_TURN_PRESSED if pressed and not at_rest else LARGEST_TURN
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)

@@ -75,4 +75,3 @@ class Watch:
     def _see_overlap(self, frame: Frame) -> None:
         if -frame.min_gap > self._remarks.deepest_overlap:  # NaN is not
             self._remarks.deepest_overlap, self._remarks.deepest_overlap_at = -frame.min_gap, frame.t
-

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.methods.linear.krylov import Krylov, begin, combine, follow, set_out, unsolved
 from solver.methods.linear.system import LinearSolver, System, solve
@@ -106,9 +107,7 @@ def solve_with_contact(linear: LinearSolver, c0: float, h: float, system: System
         used += 1
     combine(krylov, used, size)
     _solve_for_forces(linear, krylov.y, h, system, touch, -1.0, 1.0, coupling)
-    for j in range(len(coupling.x)):
-        for k in range(12):
-            system.x[j, k] = coupling.x[j, k]
+    copy(coupling.x, system.x)
     return used
 
 

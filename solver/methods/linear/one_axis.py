@@ -1,4 +1,4 @@
-"""Newton's linear system about one axis: that of `staggered.tridiagonal` with 3 x 3 blocks.
+"""Newton's linear system about one axis: that of `tridiagonal` with 3 x 3 blocks.
 
 Unknown at block a = 0 ... N + 1: the rotation psi of orientation a and the force F at node a, as a pair (none in the
 last block). With P = M lambda^2 + C lambda + K and X = P^-1, a segment moves by

@@ -22,13 +22,7 @@ from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.methods.space.segments.joints import share
 from solver.methods.space.segments.opening import shift_nodes
-from solver.physics.contact.forces import (
-    Touch,
-    allowed_fraction,
-    change_forces,
-    move_points,
-    press,
-)
+from solver.physics.contact.forces import Touch, allowed_fraction, change_forces, move_points, press
 from solver.physics.contact.members import Members
 
 SOLVED = 1e-3

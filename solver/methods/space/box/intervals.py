@@ -1,6 +1,6 @@
 """The balances over an interval: residuals and 12 x 24 tangents of equations (2) to (5).
 
-With mean values over the interval (subscript m) and differences (Delta), the box scheme reads (space.py has its
+With mean values over the interval (subscript m) and differences (Delta), the box scheme reads (schemes.py has its
 family), with R_m the mean of the two nodes' rotations:
 
     (2)  Delta omega + h kappa_m x omega_m - h (kappa_t)_m                                       = 0   material

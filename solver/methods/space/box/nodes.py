@@ -144,5 +144,3 @@ def _take_tangents(unknowns: Unknowns, j: int, at: Point, tangents: Tangents) ->
     add_product(-1.0, tangent_by_rotation(tangents.by_T, at.R), unknowns.J[j], unknowns.P_w[j])
     add_product(-1.0, tangents.moment_E, unknowns.J[j], unknowns.W_w[j])
     add_matrix(-1.0, tangents.moment_omega, unknowns.W_w[j])
-
-

@@ -1,4 +1,4 @@
-"""The motion of the chain at a stage, from angles to places: `staggered.motion` where all turn about one axis.
+"""The motion of the chain at a stage, from angles to places: `segments.motion` where all turn about one axis.
 
     phi = phi_n + omega_n tau + theta,   omega = omega_n + theta_t,   alpha = theta_tt,
 

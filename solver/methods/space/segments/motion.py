@@ -253,8 +253,7 @@ def _extrapolate(start, omega_before, quaternion, omega, first, second, third, u
 @kernel
 def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Array, weights: Array, ratio: float,
                 ahead: Array) -> None:  # fmt: skip
-    """Guess theta of a step of ratio dt into `ahead`: the last step's motion, `theta` from the state `before`, goes on.
-    """
+    """Write theta of a step of ratio dt, if the last step's motion, `theta` from the state `before`, goes on."""
     for i in range(STAGES):
         back, on = dt * ratio * nodes[i], dt * (1.0 + ratio * nodes[i])
         _extrapolate(before.quaternion, before.omega, state.quaternion, state.omega, theta[0], theta[1], theta[2],

@@ -90,10 +90,7 @@ class RadauMethod(ABC):
         return max(turn_error / (turned + small), move_error / (moved + small * float(self.s[-1])))
 
     def take_step(self, t: float, dt: float) -> Array:
-        """Make the trial the state; return the energy (4,) in J that flowed in the step.
-
-        From the ends, from the loads, dissipated, into contact. By Radau's own quadrature, of order 5.
-        """
+        """Make the trial the state; return the energy (4,) that flowed, by Radau's quadrature: see `Method`."""
         stages, weights = self.stages, tableau.A[-1] * dt
         self._follow_ends(weights)
         for name in self.trial._fields:

@@ -75,3 +75,7 @@ class Fluid:
     def keeps(self, view: View) -> bool:
         """Whether the current is the same everywhere and always, and flows along the motion about an axis."""
         return not self.varies and view.moved_by(self.current)
+
+
+NO_FLUID = Fluid(0.0)
+"""What is around a rod in a vacuum."""

@@ -14,10 +14,12 @@ import numpy as np
 
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, outer, tangent_rate, times, vector
+from solver.physics.loads import drag
 from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
+from solver.scene.fluid import NO_FLUID
 from solver.scene.scene import Scene
 
-account = as_lost
+account, about, carrier = as_lost, drag.about, drag.carrier  # which know the current alone
 
 
 class Record(NamedTuple):
@@ -30,15 +32,9 @@ class Record(NamedTuple):
 
 def of(scene: Scene, samples: Samples) -> Source:
     """The added mass of a scene's fluid."""
-    fluid = scene.fluid
-    area, ratio = samples.section.area, fluid.density * fluid.added_mass if fluid else 0.0
-    current = np.array([fluid.current if fluid and not fluid.varies else (0.0, 0.0, 0.0)], dtype=float)
-    return Source(Record(ratio > 0.0, ratio * area, current))
-
-
-def about(record: Record, axis: Any) -> Record:
-    """In the plane of an axis."""
-    return record._replace(current=record.current @ axis.lab)
+    fluid = scene.fluid or NO_FLUID
+    ratio, current = fluid.density * fluid.added_mass, NO_FLUID.current if fluid.varies else fluid.current
+    return Source(Record(ratio > 0.0, ratio * samples.section.area, np.array([current], dtype=float)))
 
 
 @inner
@@ -54,12 +50,6 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     M = add(identity(-m, at.T), outer(times(m, at.T), at.T))
     by_T = add(outer(times(m, at.T), at.A), identity(m * along, at.T))
     return Tangents(None, None, M, by_T, None, None, None)
-
-
-@inner
-def carrier(load: Record, i: int, j: int, at: Point) -> Any:
-    """The current."""
-    return vector(load.current, 0)
 
 
 @inner

@@ -13,6 +13,7 @@ import numpy as np
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, times, vector
 from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
+from solver.scene.fluid import NO_FLUID
 from solver.scene.scene import Scene
 
 account = as_lost
@@ -29,12 +30,10 @@ class Record(NamedTuple):
 
 def of(scene: Scene, samples: Samples) -> Source:
     """The drag of a scene's fluid, whose current is the same everywhere and always: else see `sheared_drag`."""
-    fluid = scene.fluid
-    half = 0.5 * fluid.density * samples.section.diameter if fluid else 0.0 * samples.section.diameter
-    normal, tangential = (fluid.drag_normal, fluid.drag_tangential) if fluid else (0.0, 0.0)
-    current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)], dtype=float)
-    present = bool(fluid and not fluid.varies and fluid.density * (normal + tangential) > 0.0)
-    return Source(Record(present, half * normal, pi * half * tangential, current))
+    fluid = scene.fluid or NO_FLUID
+    half, normal, tangential = 0.5 * fluid.density * samples.section.diameter, fluid.drag_normal, fluid.drag_tangential
+    present = not fluid.varies and fluid.density * (normal + tangential) > 0.0
+    return Source(Record(present, half * normal, pi * half * tangential, np.array([fluid.current], dtype=float)))
 
 
 def about(record: Record, axis: Any) -> Record:

@@ -18,7 +18,7 @@ from solver.kernels.vectors import dot, minus, outer, times, transform, vector
 from solver.physics.loads import drag
 from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
 from solver.scene.curve import Curve
-from solver.scene.fluid import EVERYWHERE, UNIFORM
+from solver.scene.fluid import EVERYWHERE, NO_FLUID, UNIFORM
 from solver.scene.scene import Scene
 
 SMALLEST = 1e-300
@@ -64,16 +64,14 @@ class ShearedDrag(Source):
 
 def of(scene: Scene, samples: Samples) -> Source:
     """The drag of a scene's fluid in a current that varies."""
-    fluid = scene.fluid
-    at_rest = fluid and replace(fluid, current=(0.0, 0.0, 0.0), shear=None, schedule=UNIFORM)
+    fluid = scene.fluid or NO_FLUID
+    at_rest = replace(fluid, current=NO_FLUID.current, shear=None, schedule=UNIFORM)
     still = drag.of(replace(scene, fluid=at_rest), samples).record
-    shear, schedule = (fluid.shear or EVERYWHERE, fluid.schedule) if fluid else (EVERYWHERE, UNIFORM)
-    current = np.array([fluid.current if fluid else (0.0, 0.0, 0.0)], dtype=float)
+    shear, current = fluid.shear or EVERYWHERE, np.array([fluid.current], dtype=float)
     heights, pieces = shear.factor.polynomials
-    present = bool(fluid and fluid.varies and still.present)
-    now = np.full(samples.times, schedule.value(0.0))
+    present, now = fluid.varies and still.present, np.full(samples.times, fluid.schedule.value(0.0))
     record = Record(present, still, current, shear.up[None], heights, pieces, shear.factor(np.array([-inf, inf])), now)
-    return ShearedDrag(record, schedule, shear is not EVERYWHERE)
+    return ShearedDrag(record, fluid.schedule, fluid.shear is not None)
 
 
 @inner

@@ -9,6 +9,7 @@ import numpy as np
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import dot, vector
 from solver.physics.loads.load import Point, Samples, Source
+from solver.scene.fluid import NO_FLUID
 from solver.scene.scene import Scene
 
 
@@ -21,9 +22,7 @@ class Record(NamedTuple):
 
 def of(scene: Scene, samples: Samples) -> Source:
     """The weight of a scene's rod in its fluid."""
-    mass = samples.section.mass.copy()
-    if scene.fluid:
-        mass -= scene.fluid.density * samples.section.area
+    mass = samples.section.mass - (scene.fluid or NO_FLUID).density * samples.section.area
     return Source(Record(any(scene.gravity), np.outer(mass, np.array(scene.gravity, dtype=float))))
 
 

@@ -250,20 +250,22 @@ def tangent_by_rotation(G: Any, R: Any) -> Any:
 
 @inner
 def add_vector(factor: float, x: Any, out: Array) -> None:
-    """Add factor x to `out` (3,), but nothing of None."""
+    """Add factor x to `out` (3,), in a plane (2,), but nothing of None."""
     if x is not None:
         out[0] += factor * x[0]
         out[1] += factor * x[1]
-        out[2] += factor * x[2]
+        if len(x) == 3:
+            out[2] += factor * x[2]
 
 
 @inner
 def add_matrix(factor: float, A: Any, out: Array) -> None:
-    """Add factor A to `out` (3, 3), but nothing of None."""
+    """Add factor A to `out` (3, 3), in a plane (2, 2), but nothing of None."""
     if A is not None:
         add_vector(factor, A[0], out[0])
         add_vector(factor, A[1], out[1])
-        add_vector(factor, A[2], out[2])
+        if len(A) == 3:
+            add_vector(factor, A[2], out[2])
 
 
 @inner

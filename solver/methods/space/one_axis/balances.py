@@ -13,7 +13,7 @@ from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inlined, inner, kernel
-from solver.kernels.vectors import tangent_by_rotation, vector
+from solver.kernels.vectors import add_matrix, add_vector, tangent_by_rotation, vector
 from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages
 from solver.methods.space.one_axis.motion import bend_joints
@@ -117,10 +117,8 @@ def _point(motion: Motion, j: int) -> Point:
 @variant(take_force, Balance)
 @inner
 def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) -> None:
-    balance.translation[j, 0] -= balance.h * force[0]
-    balance.translation[j, 1] -= balance.h * force[1]
-    if moment is not None:
-        balance.rotation[j + 1] -= balance.h * moment
+    add_vector(-balance.h, force, balance.translation[j])
+    _add_number(-balance.h, moment, balance.rotation, j + 1)
 
 
 @variant(take_tangents, LoadTangents)
@@ -128,21 +126,13 @@ def _take_force(balance: Balance, j: int, at: Point, force: Any, moment: Any) ->
 def _take_tangents(load: LoadTangents, j: int, at: Point, by: LoadTangent) -> None:
     """As in `space.segments.balances`."""
     tangents, h = load.tangents, load.h
-    _add_matrix(-h, by.M, tangents.M[j])
-    _add_matrix(-h, by.C, tangents.C[j])
-    _add_matrix(-h, by.K, tangents.K[j])
+    add_matrix(-h, by.M, tangents.M[j])
+    add_matrix(-h, by.C, tangents.C[j])
+    add_matrix(-h, by.K, tangents.K[j])
     _add_turning(h, by.E, tangents.E, j)
     _add_turning(h, tangent_by_rotation(by.by_T, at.R), tangents.E, j)
     _add_number(-h, by.moment_E, tangents.stiff, j + 1)
     _add_number(-h, by.moment_omega, tangents.spin, j)
-
-
-@inner
-def _add_matrix(factor: float, A: Any, out: Array) -> None:
-    if A is not None:
-        for k in range(2):
-            out[k, 0] += factor * A[k][0]
-            out[k, 1] += factor * A[k][1]
 
 
 @inner

@@ -137,7 +137,7 @@ class OneAxisMethod(RadauMethod):
                 shift = axis.in_material(weights @ (V / stages.T[:, frame]))
             end.follow(shift, axis.about(weights @ stages.omega[:, frame]))
 
-    def _extrapolate(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
+    def _extrapolate(self, dt: float, weights: Array, theta: Array) -> None:
         departed = np.matmul(weights, theta, out=self.stages.theta_t)  # which is not known yet
         extrapolate(self.trial, self.state, self._last_dt, tableau.C, dt, departed, self.stages.theta)
 

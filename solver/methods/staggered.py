@@ -72,7 +72,7 @@ class StaggeredMethod(RadauMethod):
         self._make_records(chain, state, (Stages, Driven, Residuals, Tangents, Factors),
                            Coupling.empty(N if scene.contact is not None else 0))  # fmt: skip
         compliance = axial_compliance(scene)
-        self.driven.compliance[:], self._stretches = 0.5 * compliance, compliance > 0.0
+        self.driven.compliance[:], self._ends_give = 0.5 * compliance, compliance > 0.0
         self._joints = self._bend(self.state.quaternion)[0]
         self._R = R = np.zeros((N + 2, 3, 3))
         matrices_of(self.state.quaternion, R)
@@ -274,7 +274,7 @@ class StaggeredMethod(RadauMethod):
         stage_powers(self._handed.reference, ends, self._powers)
         for side, (end, frame) in enumerate(((self.start, 0), (self.end, -1))):
             velocity = ends[:, side]
-            if self._stretches:
+            if self._ends_give:
                 velocity = velocity + (2.0 * side - 1.0) * self._stretching(side, frame)
             if not end.in_lab:
                 velocity = rotate_back(stages.quaternion[:, frame].copy(), velocity)
@@ -291,7 +291,7 @@ class StaggeredMethod(RadauMethod):
         if len(self._strain):
             np.divide(self.stages.opening[-1, 0], self.chain.span, out=self._strain)
             return float(max(self._strain.max(), -self._strain.min()))
-        if not self._stretches:
+        if not self._ends_give:
             return 0.0
         forces, tangents = self.stages.F[-1, [0, -1]], self.stages.R[-1, [0, -1], :, 2]
         stretch = self.driven.compliance * np.abs(np.sum(forces * tangents, axis=1))
@@ -310,7 +310,8 @@ class StaggeredMethod(RadauMethod):
         if self.contact.touching and not self._guess_keeps_apart(dt):
             self._guess_standstill(dt)
 
-    def _extrapolate(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
+    def _extrapolate(self, dt: float, weights: Array, theta: Array) -> None:
+        ratio = dt / self._last_dt
         extrapolate(self.trial, theta, self._last_dt, self.state, tableau.C, weights, ratio, self.stages.theta)
 
     def _guess_keeps_apart(self, dt: float) -> bool:

@@ -23,7 +23,7 @@ from solver.kernels.kernel import kernel
 from solver.kernels.rotation import matrices_of, relative_rotation, rotation_of, turn
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, segment_tangents
 from solver.methods.space.segments.chain import Chain, Residuals, Stages
-from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
+from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments
 from solver.methods.space.segments.joints import bend_joints, total_bending
 from solver.methods.space.segments.motion import follow_segments
 from solver.methods.space.segments.opening import add_levers, measure_openings, pull_joints, shift_segments
@@ -93,7 +93,7 @@ class Equations:
         self.s, self.t_end = np.linspace(0.0, length, N + 1), scene.t_end
         self.applied = loads_on_segments(scene, self.s, times=1)
         self.loads = self.applied.records
-        self.chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
+        self.chain = chain_of(scene.rod, self.applied.entrained, self.s)
         state, self.offset = lay_out(scene, self.chain, self.s)
         self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
         self.stages, self.tangents, self._stored = Stages.empty(N), Tangents.empty(N), Tangents.empty(N)
@@ -220,18 +220,18 @@ class Equations:
         across = end.axes.T @ (sign * (point.F[frame] - force)) / self._unit(X)
         place = point.base if side == 0 else self.tip()
         if self.compliance > 0.0:
-            place = place + self._stretch(side, R) @ point.F[frame]
+            place = place + self._give(side, R) @ point.F[frame]
         away = (end.axes.T @ (place - self._home[1][side]) - values[:3]) / self.units[3]
         moment = sign * (inner - R.T @ dead[3:] - follower[3:] - loaded[3:]) / self._unit(PSI)
         turned = self._turned(side, values[3:], point.quaternion[frame])
         left[frame, PSI] = np.where(end.held[3:], turned, moment) * self._unit(PSI)
         left[frame, X] = np.where(end.held[:3], away, across) * self._unit(X)
 
-    def _stretch(self, side: int, R: Array) -> Array:
+    def _give(self, side: int, R: Array) -> Array:
         """What takes the force at an end to how far what holds it is from the rod's end (3, 3): see `physics.axial`."""
         return np.asarray((2.0 * side - 1.0) * self.compliance * np.outer(R[:, 2], R[:, 2]))
 
-    def _stretch_by_rotation(self, side: int, R: Array, F: Array) -> Array:
+    def _give_by_rotation(self, side: int, R: Array, F: Array) -> Array:
         """How that times the force (3,) changes with a rotation of the end's frame (3, 3): the tangent turns."""
         turned = np.column_stack([-R[:, 1], R[:, 0], np.zeros(3)])
         changed = turned * (R[:, 2] @ F) + np.outer(R[:, 2], F @ turned)
@@ -359,8 +359,8 @@ class Equations:
                 continue
             force = upper[0] if side == 0 else D[-1]
             rows = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
-            force[X, FORCE][end.held[:3]] = rows @ self._stretch(side, R[a])
-            D[a, X, PSI][end.held[:3]] = rows @ self._stretch_by_rotation(side, R[a], self.stages.F[0, a])
+            force[X, FORCE][end.held[:3]] = rows @ self._give(side, R[a])
+            D[a, X, PSI][end.held[:3]] = rows @ self._give_by_rotation(side, R[a], self.stages.F[0, a])
         scale = self._rows[:, None] * self.units
         return D * scale, lower * scale, upper * scale
 

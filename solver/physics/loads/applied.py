@@ -28,10 +28,8 @@ class AppliedLoads:
                  times: int = 1, axis: Any = None) -> None:  # fmt: skip
         acting = nodes_act(s) if segments is None else (s, segments)
         samples = Samples(s, section, *acting, times, rigid=segments is not None)
-        self._sources, self._axis, self._times = sources_of(scene, samples), axis, times
-        self.records = records_of(self._sources)
-        if axis is not None:
-            self.records = records_about(axis, self._sources)
+        self._sources, self._axis = sources_of(scene, samples), axis
+        self.records = records_of(self._sources) if axis is None else records_about(axis, self._sources)
         self._at_ends = tuple(load for load in scene.points if load.s in (0.0, scene.rod.length))
         self._moving = tuple(source for source in self._sources if not source.steady)
         self._barring = tuple(source for source in self._sources if source.bars)

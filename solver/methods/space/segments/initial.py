@@ -41,9 +41,9 @@ def loads_on_segments(scene: Scene, s: Array, times: int, axis: Any = None) -> A
     return AppliedLoads(scene, segments_of(scene.rod, s), middles, np.diff(s), times, axis)
 
 
-def chain_of(rod: Rod, section: Section, entrained: Array, s: Array) -> Chain:
-    """The chain of a rod with nodes `s` (N + 1,), its segments' `section` and the mass `entrained` (N,) by loads."""
-    h = float(s[1] - s[0])
+def chain_of(rod: Rod, entrained: Array, s: Array) -> Chain:
+    """The chain of a rod with nodes `s` (N + 1,), whose segments take the mass `entrained` (N,) along by loads."""
+    section, h = segments_of(rod, s), float(s[1] - s[0])
     span = np.full(len(s), h)
     span[0] = span[-1] = 0.5 * h
     wet = section.inertia + np.outer(entrained, _across(s))

@@ -14,7 +14,7 @@ from solver.kernels.handed import Handed, Reference
 from solver.methods.linear.stages import Scheme
 from solver.methods.method import NOTHING_AHEAD, Ahead
 from solver.methods.space.segments.chain import STAGES, Chain, State
-from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
+from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments
 from solver.methods.space.stages import Record
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
@@ -151,8 +151,8 @@ class RadauMethod(ABC):
         """Write what is given at an end at the stages: `values` (3, 6) of its conditions, `dead` lab loads (3, 6)."""
 
     @abstractmethod
-    def _extrapolate(self, dt: float, ratio: float, weights: Array, theta: Array) -> None:
-        """Guess theta of the stages of a step of dt, `ratio` as long as the last one, whose `theta` goes on."""
+    def _extrapolate(self, dt: float, weights: Array, theta: Array) -> None:
+        """Guess theta of the stages of a step of dt, by `weights` (3, 3) of that of the last one, `theta`."""
 
     @abstractmethod
     def _follow_ends(self, weights: Array) -> None:
@@ -196,7 +196,7 @@ class RadauMethod(ABC):
 
     def _lay_out(self, scene: Scene) -> tuple[Chain, State, Array]:
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
-        chain = chain_of(scene.rod, segments_of(scene.rod, self.s), self.applied.entrained, self.s)
+        chain = chain_of(scene.rod, self.applied.entrained, self.s)
         self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
         return chain, *lay_out(scene, chain, self.s)
 
@@ -232,7 +232,7 @@ class RadauMethod(ABC):
             ratio = dt / self._last_dt
             weights = tableau.extrapolation(ratio)
             theta, shift, force = self._last
-            self._extrapolate(dt, ratio, weights, theta)
+            self._extrapolate(dt, weights, theta)
             stages.shift[:] = weights @ shift - shift[-1]
             by_stage = STAGES, -1
             np.matmul(tableau.quadratic_extrapolation(ratio), force.reshape(by_stage), out=stages.F.reshape(by_stage))

@@ -41,7 +41,6 @@ def end_conditions(Y: Array, node: int, kinds: Kinds, targets: Array, dead: Arra
             b[row] = nodes.q[node, i] - targets[row]
             for k in range(3):
                 A[row, KAPPA + k] = nodes.K[node, i, k]
-            for k in range(3):
                 b[row] -= nodes.R[node, k, i] * dead[3 + k]
                 _turn_axis(nodes.R[node], nodes.J[node], i, k, -dead[3 + k], A[row])
         _scale(row, rows[0] if kinds[row] == RATE else rows[9], columns, b, A)

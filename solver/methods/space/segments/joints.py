@@ -147,10 +147,11 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
 
     `ahead` (N + 1, 2, 3, 3): d(B q) by a rotation of the left and of the right neighbour; `back` likewise d(B^t q).
     """
-    B, G = scratch((3, 3)), scratch((3, 3))
+    B, G, h = scratch((3, 3)), scratch((3, 3)), scratch(3)
     for i in range(len(bend)):
         x, y, z = bend[i, 0], bend[i, 1], bend[i, 2]
-        b, slope = coefficient(x * x + y * y + z * z)
+        square = x * x + y * y + z * z
+        b, slope = coefficient(square)
         theta, q, per = bend[i], moment[i], 1.0 / chain.span[i]
         spring = scale(per, tangent(chain.elastic, i, times(per, vector(bend, i))))
         q0, q1, q2 = q[0], q[1], q[2]
@@ -159,7 +160,6 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
         along = x * q0 + y * q1 + z * q2
         cross = ((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0))
         turned = ((0.0, -q2, q1), (q2, 0.0, -q0), (-q1, q0, 0.0))
-        square = x * x + y * y + z * z
         for m in range(3):
             for n in range(3):
                 B[m, n] = 0.5 * cross[m][n] + b * theta[m] * theta[n] + ((1.0 - b * square) if m == n else 0.0)
@@ -171,20 +171,13 @@ def joint_tangents(chain: Chain, bend: Array, moment: Array, ahead: Array, back:
             target = ahead if side == 0 else back
             sign = 1.0 if side == 0 else -1.0
             for m in range(3):
-                h0, h1, h2 = 0.0, 0.0, 0.0
                 for n in range(3):
-                    value = G[m, n] - 0.5 * sign * turned[m][n]
+                    h[n] = G[m, n] - 0.5 * sign * turned[m][n]
                     for k in range(3):
-                        value += (B[m, k] if side == 0 else B[k, m]) * spring[k][n]
-                    if n == 0:
-                        h0 = value
-                    elif n == 1:
-                        h1 = value
-                    else:
-                        h2 = value
+                        h[n] += (B[m, k] if side == 0 else B[k, m]) * spring[k][n]
                 for n in range(3):
-                    target[i, 0, m, n] = -(h0 * B[n, 0] + h1 * B[n, 1] + h2 * B[n, 2])
-                    target[i, 1, m, n] = h0 * B[0, n] + h1 * B[1, n] + h2 * B[2, n]
+                    target[i, 0, m, n] = -(h[0] * B[n, 0] + h[1] * B[n, 1] + h[2] * B[n, 2])
+                    target[i, 1, m, n] = h[0] * B[0, n] + h[1] * B[1, n] + h[2] * B[2, n]
 
 
 @kernel

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -107,11 +107,11 @@ def errors_of(error: Columns, size: Array) -> Array:
     return np.asarray(np.column_stack([place, kappa, energies, topology.max(axis=-1)]) / size)
 
 
-def judge(target: float, errors: Array, names: Sequence[str] = QUANTITIES) -> Accuracy:
+def judge(target: float, errors: Array) -> Accuracy:
     """What the errors (frames, 4) of a run say."""
     return Accuracy(
-        target, len(errors), dict(zip(names, map(float, errors.max(axis=0)), strict=True)),
-        dict(zip(names, map(int, (~(errors <= target)).sum(axis=0)), strict=True)),
+        target, len(errors), dict(zip(QUANTITIES, map(float, errors.max(axis=0)), strict=True)),
+        dict(zip(QUANTITIES, map(int, (~(errors <= target)).sum(axis=0)), strict=True)),
     )  # fmt: skip
 
 

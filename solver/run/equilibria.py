@@ -60,7 +60,10 @@ class Equilibria(Run):
         turning, tense = WAYS[way]
         self._equations.hold(first_forces(self._equations) if tense else None, turning)
         self._path = Path(self._equations, MOST_STEPS if WAYS[way] is WAYS[-1] else PATIENCE)
-        self._count_turns_at_start()
+        start = self._equations.start  # from whose shape the turns are counted
+        self._equations.residual(start)
+        self._follow_ends(start)
+        self._linking.of(0.0, self._twist(start), self._writhe(self._fields(start)))
 
     @property
     def s(self) -> Array:
@@ -129,13 +132,6 @@ class Equilibria(Run):
         """Values of q at which a schedule bends."""
         times = [t for end in self._equations.ends for t in end.corners()] + self._equations.applied.corners()
         return [t / self._scene.t_end for t in times]
-
-    def _count_turns_at_start(self) -> None:
-        """Of the initial shape."""
-        equations = self._equations
-        equations.residual(equations.start)
-        self._follow_ends(equations.start)
-        self._linking.of(0.0, self._twist(equations.start), self._writhe(self._fields(equations.start)))
 
     def _frame(self, t: float) -> Frame:
         """The frame of the point that the path has reached."""

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from solver.arrays import Array
-from solver.measures.frame import Frame, Statistics
+from solver.measures.frame import Frame
 from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
 from solver.run.first_mesh import first_intervals, first_mesh
@@ -46,8 +46,8 @@ MOST_ROWS = 1_000_000
 class Refined(Run):
     """A run at the resolutions that its tolerance needs; all of them come before its first frame."""
 
-    def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
-        super().__init__(scene, statistics)
+    def __init__(self, scene: Scene) -> None:
+        super().__init__(scene)
         self._history: list[tuple[float, ...]] = []
         self._recorded: list[Array] = []
         """The rows of each attempt (frames, ...); none of one that failed once another is complete."""

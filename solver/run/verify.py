@@ -36,10 +36,9 @@ class Verified(Run):
     """A run of a scene and of its refinement: neither begins a frame before the other has ended the last one. The
     frames are `VerifiedFrame`."""
 
-    def __init__(self, scene: Scene, kind: Callable[[Scene, Statistics], Run],
-                 statistics: Statistics | None = None) -> None:  # fmt: skip
+    def __init__(self, scene: Scene, kind: Callable[[Scene, Statistics], Run]) -> None:
         """`kind`: what makes the run of a scene, given the account that its cost goes to."""
-        super().__init__(scene, statistics)
+        super().__init__(scene)
         self._runs = [kind(resolved, self.statistics) for resolved in (scene, refine(scene))]
         self.remarks = self._runs[0].remarks
         self._waiting: list[list[Any]] = []  # the values of frames, because a checkpoint holds no frames

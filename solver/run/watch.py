@@ -42,7 +42,8 @@ class Watch:
 
     def see(self, frame: Frame) -> str:
         """Enter the next frame. Why the run must end, or nothing."""
-        self._see_overlap(frame)
+        if -frame.min_gap > self._remarks.deepest_overlap:  # NaN is not
+            self._remarks.deepest_overlap, self._remarks.deepest_overlap_at = -frame.min_gap, frame.t
         if not self._holds and isnan(frame.Wr):
             return ""
         shape, turns = shape_of(frame), frame.Tw + frame.Wr - frame.Lk
@@ -71,7 +72,3 @@ class Watch:
         self._remarks.crossings += abs(seen.crossings)
         self._remarks.end_hops += abs(seen.hops)
         self._remarks.unclear_jumps += abs(jumps - seen.crossings - seen.hops)
-
-    def _see_overlap(self, frame: Frame) -> None:
-        if -frame.min_gap > self._remarks.deepest_overlap:  # NaN is not
-            self._remarks.deepest_overlap, self._remarks.deepest_overlap_at = -frame.min_gap, frame.t

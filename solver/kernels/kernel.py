@@ -283,8 +283,7 @@ def inlined_late(function: Function) -> Function:
 def inlined(function: Function) -> Function:
     """Compile a function that is to vanish into its callers: one that is called for every node or interval.
 
-    LLVM does not always inline what is small. One call left in the loop over the intervals (`_take_means`) made the
-    same code a third slower in processes that load their kernels from the cache than in the one that compiled them:
-    212 and 163 us to factor 400 intervals. What makes such a call slow there is not known.
+    LLVM does not always inline what is small, and one call that is left in such a loop makes it a third slower in
+    processes that load their kernels from the cache. Why is not known.
     """
     return _compiled(function, inline="always")

@@ -57,11 +57,7 @@ def series(function: Any, beyond: Any, otherwise: Any) -> None:
 
 def abreast(arrays: str) -> Callable[[Callable[..., Any]], Any]:
     """Make a kernel over all lines of arrays from a function of one line; see the module."""
-
-    def write(function: Callable[..., Any]) -> Any:
-        return kernel(_Loop(function, arrays).compiled())
-
-    return write
+    return lambda function: kernel(_Loop(function, arrays).compiled())
 
 
 class _Loop:

@@ -92,8 +92,7 @@ def _smooth(t: Array) -> NDArray[np.bool_]:
     """Of each block, whether its tangents and those of its neighbours turn by less than a right angle in all."""
     turned, segments = np.zeros(len(t)), len(t) - 2
     for i in range(1, len(t)):
-        x, y, z = t[i, 0] - t[i - 1, 0], t[i, 1] - t[i - 1, 1], t[i, 2] - t[i - 1, 2]
-        turned[i] = turned[i - 1] + sqrt(x * x + y * y + z * z)
+        turned[i] = turned[i - 1] + norm(minus(vector(t, i), vector(t, i - 1)))
     smooth = np.empty((segments + BLOCK - 1) // BLOCK, np.bool_)
     for block in range(len(smooth)):
         start, end = max(BLOCK * (block - 1) + 1, 0), min(BLOCK * (block + 2), segments + 1)
@@ -128,10 +127,8 @@ def _alone(r: Array, first: Vector, last: Vector) -> NDArray[np.bool_]:
         if block < blocks - 1 and not _ray_apart(leaves, radii[block], last):
             alone[block] = False
         for other in range(block + 2, blocks):
-            apart = 0.0
-            for k in range(3):
-                apart += (centres[block, k] - centres[other, k]) ** 2
-            if not apart > (radii[block] + radii[other]) ** 2:
+            way = minus(vector(centres, block), vector(centres, other))
+            if not dot(way, way) > (radii[block] + radii[other]) ** 2:
                 alone[block] = alone[other] = False
     return alone
 

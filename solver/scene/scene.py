@@ -87,7 +87,7 @@ class Scene:
         """The times (s) of the frames, but for that of t = 0."""
         count = round(self.t_end / self.output_interval)
         times = [min(k * self.output_interval, self.t_end) for k in range(1, count + 1)]
-        if not times or times[-1] < self.t_end * (1 - 1e-12):
+        if times[-1] < self.t_end * (1 - 1e-12):
             times.append(self.t_end)
         return times
 

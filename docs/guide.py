@@ -58,8 +58,8 @@ def _by_frames(kind: str) -> str:
 
 def _at_rest() -> str:
     dearer = ", ".join(f"{times:g} {what}" for what, times in outlook.DEARER.items())
-    return (f"{outlook.STATIC:g} (frames + {outlook.STATIC_START}) {outlook.STATIC_DOUBLED:g}^m, with a first mesh of 16 "
-            f"2^m intervals; so many times more: {dearer}")  # fmt: skip
+    return (f"{outlook.STATIC:g} (frames + {outlook.STATIC_START}) {outlook.STATIC_DOUBLED:g}^m, with a first mesh of "
+            f"16 2^m intervals; so many times more: {dearer}")  # fmt: skip
 
 
 def costs() -> str:

@@ -43,7 +43,8 @@ def load_case(name_or_path: str | Path) -> dict[str, Any]:
     try:
         return _read(path.read_text(encoding="utf-8-sig"), str(path))
     except UnicodeDecodeError as error:
-        raise CaseError([FieldError("", None, f"must be UTF-8 text in {path}, which byte {error.start} is not")]) from None
+        fault = f"must be UTF-8 text in {path}, which byte {error.start} is not"
+        raise CaseError([FieldError("", None, fault)]) from None
 
 
 def apply_settings(raw: Mapping[str, Any], settings: Mapping[str, Any]) -> dict[str, Any]:

@@ -91,6 +91,8 @@ def _read(text: str, name: str) -> dict[str, Any]:
         raise CaseError([FieldError("", None, fault)]) from None
     except RecursionError:
         raise CaseError([FieldError("", None, f"must not be nested so deeply as in {name}")]) from None
+    except ValueError as error:  # of a number of thousands of digits
+        raise CaseError([FieldError("", None, f"is not JSON in {name}: {error}")]) from None
     if not isinstance(raw, dict):
         raise CaseError([FieldError("", None, f"must be a JSON object in {name}")])
     return raw

@@ -39,6 +39,8 @@ BEYOND = 1.0 + 1e-6
 """Part of the rod's length up to which a table ends at the rod's end."""
 BESIDE, WITHIN = 8.0, 0.9
 """In D: how far along the rod places are neighbours; and how near others overlap."""
+JERK = 1e-3
+"""Part of the largest speed that an end which is held may have at first: that of a rod which begins to swing."""
 GREENHILL = 8.987
 """A straight rod with clamped ends buckles at the twist moment GREENHILL EJ/L (Greenhill 1883)."""
 
@@ -245,13 +247,20 @@ def _is_clamp(end: End) -> bool:
 
 
 def _held_back(scene: Scene) -> Iterator[FieldError]:
-    """A rod that begins to move as a whole while an end of it stays where it is."""
-    speed = float(np.linalg.norm(scene.initial.velocity))
-    for name, end in (("start", scene.start), ("end", scene.end)):
-        stays = all(c[0].kind != "load" and c[0].curve.is_zero for c in end.translation)
-        if stays and speed > 0.0 and not any(scene.initial.angular_velocity):
-            rule = f"is of the whole rod, whose {name} is held where it is: it begins with a jerk"
-            yield FieldError("/initial/velocity", speed, rule)
+    """A rod that begins to move as a whole while an end of it stays where it is, or as it is turned."""
+    velocity, spin = (np.array(v) for v in (scene.initial.velocity, scene.initial.angular_velocity))
+    s = np.linspace(0.0, scene.rod.length, 101)
+    r = nodes_at_rest(scene.initial, s)[0]
+    moves = velocity + np.cross(spin, r - np.average(r, axis=0, weights=scene.rod.mass(s) + 0.0 * s))
+    speeds = np.linalg.norm(moves, axis=1)
+    field, value = ("angular_velocity", spin) if spin.any() else ("velocity", velocity)
+    for at, name, end in ((0, "start", scene.start), (-1, "end", scene.end)):
+        stays, as_turned = (all(c[0].kind != "load" and c[0].curve.is_zero for c in components)
+                            for components in (end.translation, end.rotation))  # fmt: skip
+        if (stays and speeds[at] > JERK * speeds.max()) or (as_turned and spin.any()):
+            held = "where" if stays else "as"
+            rule = f"is of the whole rod, whose {name} is held {held} it is: it begins with a jerk"
+            yield FieldError(f"/initial/{field}", float(np.linalg.norm(value)), rule)
 
 
 def _too_fast(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:

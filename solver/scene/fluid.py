@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.arrays import Array
-from solver.scene.checks import require_finite
+from solver.scene.checks import require_finite, unit_vector
 from solver.scene.curve import Curve
 from solver.scene.view import View
 
@@ -22,14 +22,12 @@ class Shear:
     normal: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
     def __post_init__(self) -> None:
-        require_finite("shear normal", self.normal)
-        if not any(self.normal):
-            raise ValueError(f"shear normal must not be zero, got {self.normal}")
+        unit_vector("shear normal", self.normal)
 
     @property
     def up(self) -> Array:
         """n (3,)."""
-        return np.asarray(np.array(self.normal) / np.linalg.norm(self.normal))
+        return unit_vector("shear normal", self.normal)
 
 
 EVERYWHERE = Shear(UNIFORM)

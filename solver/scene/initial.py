@@ -9,7 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
-from solver.scene.checks import require_finite
+from solver.scene.checks import require_finite, unit_vector
 from solver.scene.curve import Curve
 from solver.scene.rod import Profile
 from solver.scene.view import NONE, View
@@ -55,11 +55,7 @@ class Initial:
         **others: object,
     ) -> Initial:
         """A straight rod from `origin` along `direction` (of any length > 0)."""
-        start, along = np.array(origin, dtype=float), np.array(direction, dtype=float)
-        norm = float(np.linalg.norm(along))
-        if not norm > 0:
-            raise ValueError(f"direction must not be zero, got {direction}")
-        along /= norm
+        start, along = np.array(origin, dtype=float), unit_vector("direction", direction)
         unit = (float(along[0]), float(along[1]), float(along[2]))
         return cls(centreline=lambda s: start + np.outer(s, along), direction=unit, **others)  # type: ignore[arg-type]
 

@@ -222,6 +222,7 @@ def test_data_that_json_cannot_hold_is_refused():
         (b'{"t_end": 1, "t_end": 2}', "name twice"),
         ('{"t_end": 1}'.encode("utf-16"), "must be UTF-8 text in .*case.json, which byte 0 is not"),
         (b"[" * 100_000, "must not be nested so deeply"),
+        (b'{"t_end": ' + b"1" * 5000 + b"}", "is not JSON in .*5000 digits"),
     ],
 )
 def test_a_file_that_is_no_case_is_refused(tmp_path: Path, text: bytes, told: str):

@@ -172,6 +172,7 @@ LATER = {"t": [2.0, 3.0], "value": [0.0, 1.0], "interpolation": "linear"}
     ({"ends": {"start": "clamp", "end": {"preset": "free", "switches": [{"at": 1.0, "v1": 0.0}]}}},
      "/ends/end/switches"),
     ({"initial": {"shape": "straight", "velocity": [0.0, 2.0, 0.0]}}, "/initial/velocity"),
+    ({"initial": {"shape": "straight", "angular_velocity": [0.0, 2.0, 0.0]}}, "/initial/angular_velocity"),
     ({"ends": {"start": "clamp", "end": {"preset": "clamp", "frame": "lab", "x1": {
         "t": [0.0, 0.5, 0.5001], "value": [0.0, 0.0, 0.2], "interpolation": "linear"}}}}, "/ends/end/x1"),
 ])  # fmt: skip
@@ -179,6 +180,17 @@ def test_what_does_nothing_and_what_comes_with_a_jerk_is_told(change: dict[str, 
     bare = {"ends": {"start": "clamp", "end": "free"}}
     assert _warned(PRESSED | bare) == []
     assert {warning.pointer for warning in _warned(PRESSED | bare | change)} == {pointer}
+
+
+@pytest.mark.parametrize(("velocity", "start", "warned"), [
+    ([0.0, 1.0, 0.0], "pin", False), ([0.0, 1.0, 0.0], "clamp", True), ([0.0, 2.0, 0.0], "pin", True),
+])  # fmt: skip
+def test_a_rod_that_begins_to_swing_about_its_pin_has_no_jerk(velocity: list[float], start: str, warned: bool):
+    """A metre along e3 that turns about e1 by -2 rad/s: its middle, half a metre above the pin, moves by 1 m/s."""
+    swinging = {"initial": {"shape": "straight", "velocity": velocity, "angular_velocity": [-2.0, 0.0, 0.0]},
+                "ends": {"start": start, "end": "free"}}  # fmt: skip
+    found = {warning.pointer for warning in _warned(PRESSED | swinging)}
+    assert ("/initial/angular_velocity" in found) == warned
 
 
 @pytest.mark.parametrize(("rise", "warned"), [(0.0, True), (0.03, False)])

@@ -26,7 +26,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, times, vector
 from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
-from solver.scene.checks import require_finite
+from solver.scene.checks import require_finite, unit_vector
 from solver.scene.scene import Scene
 
 account = as_lost
@@ -59,14 +59,13 @@ class Floor:
     slip: float = 1e-3
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.normal).all() and any(self.normal)):
-            raise ValueError(f"floor normal must be finite and not zero, got {self.normal}")
+        unit_vector("floor normal", self.normal)
         _check("floor", self, "stiffness", "slip")
 
     @property
     def up(self) -> Array:
         """The unit vector (3,) along `normal`."""
-        return np.asarray(np.array(self.normal, dtype=float) / np.linalg.norm(self.normal))
+        return unit_vector("floor normal", self.normal)
 
     def depth(self, r: Array) -> Array:
         """How deep (m) below its surface places r (n, 3) are; negative outside."""

@@ -12,6 +12,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Condition, Contact, Curve, End, Fluid, Initial, Numerics, PointLoad, Rod, Scene
+from solver.physics.loads.solids import Floor
 from solver.scene.ends import FIXED, FREE
 
 CONTACT = Contact(k1=1e-7, k2=3.0, k3=1e-6, k4=1.0, aperture=1.0, cutoff=0.1, skip=0.3, spacing=0.05)
@@ -148,6 +149,13 @@ def test_the_presets_hold_what_their_names_say() -> None:
 def test_a_straight_rod_has_unit_tangents_whatever_its_direction() -> None:
     initial = Initial.straight(origin=(1.0, 2.0, 3.0), direction=(0.0, 3.0, 4.0))
     assert_allclose(initial.centreline(np.array([0.0, 5.0])), [[1.0, 2.0, 3.0], [1.0, 5.0, 7.0]])
+
+
+@pytest.mark.parametrize("size", [1e200, 1e-200, 1e-320])
+def test_a_direction_may_have_any_length(size: float) -> None:
+    initial = Initial.straight(direction=(size, 0.0, -size))
+    assert_allclose(initial.centreline(np.array([2.0])), [[2.0**0.5, 0.0, -(2.0**0.5)]])
+    assert_allclose(Floor(stiffness=1.0, normal=(size, 0.0, -size)).up, [0.5**0.5, 0.0, -(0.5**0.5)])
 
 
 def test_a_straight_rod_needs_a_direction() -> None:

@@ -32,9 +32,9 @@ from solver.scene.layout import nodes_at_rest
 
 SLOWLY, RINGING = "slow in space", "undamped"
 SECONDS = {
-    "wound up": 12.0, "lies on itself": 12.0, "pulled taut": 10.0, "held straight and twisted": 3.5,
-    "held straight and moved": 1.2, "held straight": 0.4, "on a floor": 4.2, "slides as a whole": 0.12,
-    "overdamped": 0.12,
+    "wound up": 12.0, "lies on itself": 12.0, "may spring onto itself": 4.0, "pulled taut": 10.0,
+    "held straight and twisted": 3.5, "held straight and moved": 1.2, "held straight": 0.4,
+    "on a floor": 4.2, "slides as a whole": 0.12, "overdamped": 0.12,
     "in space and moved or let go": 4.0, "flying freely": 0.12, "settling in space": 0.18, SLOWLY: 0.36,
     "long and heavy in water": 0.8, "shaken in water": 0.45, "towed through water": 0.18, "in water": 0.36,
     "let go or loaded at once": 1.8, "let go and settling": 0.65, "let go gently": 0.5, "let go between pins": 0.9,
@@ -63,6 +63,8 @@ SNAPS = 16.0
 """Force, in EJ/L^2, for every radian by which an arch between its ends is bent, that pushes it through."""
 TIED = 6.0
 """Rotation (rad) by which the shape of a rod that touches itself bends, in all, at the least."""
+BOWED = 1.0
+"""Likewise of one that nothing holds, whose parts may meet."""
 FARTHER = 1e-6
 """Part of their distance by which ends that come apart pull the rod taut."""
 MUCH = 100.0
@@ -106,6 +108,8 @@ def kind_of(scene: Scene) -> str:
         return "wound up"
     if scene.contact is not None and urged.bent > TIED and not overdamped:
         return "lies on itself"
+    if scene.contact is not None and (urged.stress > SMALL or (urged.bent > BOWED and not held)):
+        return "may spring onto itself"
     if has_to_stretch(scene):
         if _come_apart(scene):
             return "pulled taut"

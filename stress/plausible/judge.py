@@ -22,10 +22,11 @@ from time import process_time
 import numpy as np
 
 from service.cases import build_scene, parse_case
-from solver import Frame, RunFailed, Scene
+from solver import Frame, Run, RunFailed, Scene
 from solver.arrays import Array
 from solver.run import plan
 from solver.run.accuracy import errors_of, excess, sizes
+from solver.run.equilibria import Equilibria
 from solver.run.first_mesh import first_intervals
 from solver.run.recording import Columns, columns_of, row_of
 from solver.run.refined import Refined
@@ -38,7 +39,8 @@ from validation.error_bars import MISSED, missed, misses
 from validation.provenance import provenance
 
 TRUTH, WORK, SMALL = 0.02, 12.0, 0.1
-FIXED = [(plan.FIRST_INTERVALS * 2**mesh, 0.1**steps) for mesh in range(7) for steps in range(1, 5)]
+STEPS = 4
+FIXED = [(plan.FIRST_INTERVALS * 2**mesh, 0.1**steps) for mesh in range(7) for steps in range(1, STEPS + 1)]
 LONGEST, DEAR = 300.0, 2.0
 """Seconds of CPU time after which a truth is given up; and how many times the answer's a fixed run may take."""
 HEADER = ("kind", "scenes", "values outside 3 bars", "largest", "CPU s, median", "over the cheapest fixed run, median",
@@ -68,9 +70,6 @@ def judge(kind: str, number: int) -> Verdict:
     """Run a scene, its truth and fixed runs."""
     built = build_scene(parse_case(scene(kind, number)))
     verdict = Verdict(kind, number)
-    if not built.numerics.tolerance or built.analysis == "static":
-        verdict.unjudged = "statics have no tolerance"
-        return verdict
     try:
         answer, verdict.cpu, _ = _refined(built)
         truth, told = _true(built)
@@ -80,12 +79,13 @@ def judge(kind: str, number: int) -> Verdict:
     counts = misses(answer, truth)
     verdict.outside = missed(counts)
     verdict.by_variable = {name: round(far / many, 3) for name, (far, many) in counts.items() if far > MISSED * many}
-    errors, known = _errors(built, answer, truth), excess(built.numerics.tolerance, told)
+    errors, known = _errors(built, answer, truth), excess(built.numerics.tolerance or 0.0, told)
     verdict.error, verdict.error_of_truth = float(errors.max()), float(known.max())
     bounds = np.maximum(np.maximum(errors, known), SMALL)
     too_dear: list[tuple[int, float]] = []
     alike = first_intervals(built) / plan.FIRST_INTERVALS  # meshes that have nodes in common with those of the answer
-    for sixteenths, tolerated in FIXED:
+    at_rest = built.analysis == "static"  # whose steps are no choice
+    for sixteenths, tolerated in FIXED[:: STEPS if at_rest else 1]:
         intervals = int(sixteenths * alike)
         if any(intervals >= mesh and tolerated <= steps for mesh, steps in too_dear):
             continue
@@ -134,7 +134,8 @@ def _fixed(scene: Scene, intervals: int, tolerated: float, most: float) -> tuple
     """The frames of a fixed run and its CPU time (s). Raises TimeoutError after `most` s."""
     numerics = replace(scene.numerics, tolerance=None, method="staggered", intervals=intervals,
                        dt_max=scene.output_interval, increment_tolerance=tolerated)  # fmt: skip
-    begun = Simulation(replace(scene, numerics=numerics), goes_on=True)
+    resolved = replace(scene, numerics=numerics)
+    begun: Run = Equilibria(resolved) if scene.analysis == "static" else Simulation(resolved, goes_on=True)
     begun.warm()
     started, frames = process_time(), []
     while not begun.finished:

@@ -63,6 +63,19 @@ def test_a_static_analysis_costs_by_its_frames():
     assert estimate(told).seconds < 1.0
 
 
+def test_a_static_analysis_to_a_tolerance_costs_by_its_frames_and_by_what_makes_it_dear():
+    def seconds(**more):
+        settings = {"numerics.tolerance": 1e-3} | {key.replace("__", "."): value for key, value in more.items()}
+        return estimate(parse_case(apply_settings(load_case("static-elastica"), settings))).seconds
+
+    alone = seconds()
+    assert alone == pytest.approx(outlook.STATIC * (10 + outlook.STATIC_START))
+    assert seconds(output__interval=0.1) == pytest.approx(alone * (100 + 15) / (10 + 15))
+    assert seconds(loads__floor={"stiffness": 1.0}) == pytest.approx(alone * outlook.DEARER["on solids"])
+    assert seconds(contact={}) == pytest.approx(alone * outlook.DEARER["touching"])
+    assert seconds(numerics__tolerance=1e-5) == pytest.approx(alone * 100.0**0.25)
+
+
 def told_of(case, **settings):
     return estimate(parse_case(apply_settings(load_case(case), {k.replace("__", "."): v for k, v in settings.items()})))
 
@@ -133,6 +146,8 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"ends__end": moved(theta3=True)}, "wound up"),
     ({"ends__end": moved(theta3=True), "loads__damping": 1e3}, "wound up"),
     ({"contact": {}, "initial": RING}, "lies on itself"),
+    ({"contact": {}, "initial": arc(2.0)}, "may spring onto itself"),
+    ({"contact": {}, "initial": arc(2.0), "rod__kappa0": "initial", "ends__start": "free"}, "may spring onto itself"),
     (PINNED | {"loads__gravity": LYING}, "let go between pins"),
     (PINNED | {"loads__point": pushed(15.0)}, "followed by the frames"),
     (PINNED | {"loads__point": pushed(17.0)}, "snapping through"),

@@ -120,7 +120,7 @@ class Outcome(StrEnum):
     PATH_TURNED_BACK = (
         "path_turned_back",
         "statics: the branch of equilibria led back past the start of the schedules",
-        "take a smaller t_end, or begin the schedules earlier",
+        "take a smaller t_end, or let what is driven begin beyond its start: a load with the other sign",
         "solver",
     )
     TOLERANCE_NOT_REACHED = (

@@ -108,9 +108,9 @@ class Equations:
         self.contact.prepare(self.bending(), self.nodes(), np.zeros((N + 1, 3)))
         self._home = (state.quaternion[[0, -1]].copy(), np.stack([self.start.base, self.tip()]))
         self.stiffness = mean_bending(self.chain.elastic)
-        moment, force = self.stiffness / length, self.stiffness / length**2
-        self.units = np.repeat([1.0, length, force], 3)
-        self._rows = 1.0 / np.repeat([moment, force, length], 3)
+        self._moment, self._force = self.stiffness / length, self.stiffness / length**2
+        self.units = np.repeat([1.0, length, self._force], 3)
+        self._rows = 1.0 / np.repeat([self._moment, self._force, length], 3)
         self.hold()
 
     def hold(self, F: Array | None = None, turning: bool = False) -> None:
@@ -217,15 +217,15 @@ class Equations:
         self._moments[side] = loaded[3:] + follower[3:]
         self._follower(side)[:] = follower[:3] + (loaded[:3] if end.follows else 0.0)
         force = dead[:3] + R @ self._follower(side) + (0.0 if end.follows else loaded[:3])
-        across = end.axes.T @ (sign * (point.F[frame] - force)) / self._unit(X)
+        across = end.axes.T @ (sign * (point.F[frame] - force)) / self._force
         place = point.base if side == 0 else self.tip()
         if self.compliance > 0.0:
             place = place + self._give(side, R) @ point.F[frame]
         away = (end.axes.T @ (place - self._home[1][side]) - values[:3]) / self.units[3]
-        moment = sign * (inner - R.T @ dead[3:] - follower[3:] - loaded[3:]) / self._unit(PSI)
+        moment = sign * (inner - R.T @ dead[3:] - follower[3:] - loaded[3:]) / self._moment
         turned = self._turned(side, values[3:], point.quaternion[frame])
-        left[frame, PSI] = np.where(end.held[3:], turned, moment) * self._unit(PSI)
-        left[frame, X] = np.where(end.held[:3], away, across) * self._unit(X)
+        left[frame, PSI] = np.where(end.held[3:], turned, moment) * self._moment
+        left[frame, X] = np.where(end.held[:3], away, across) * self._force
 
     def _give(self, side: int, R: Array) -> Array:
         """What takes the force at an end to how far what holds it is from the rod's end (3, 3): see `physics.axial`."""
@@ -255,9 +255,6 @@ class Equations:
     def _follower(self, side: int) -> Array:
         """Forces (3,) that follow an end's frame."""
         return self._driven.values[0, side, :3]
-
-    def _unit(self, rows: slice) -> float:
-        return float(1.0 / self._rows[rows.start])
 
     def _turned(self, side: int, values: Array, quaternion: Array) -> Array:
         """By how much an end's frame is turned away from where it is held (3,), by the rotations in `values` (3,)."""
@@ -334,7 +331,7 @@ class Equations:
         D[1:, PSI, FORCE], upper[:-1, PSI, FORCE] = lever[1:], lever[:-1]
         D[1:-1, X, PSI], D[1:-1, X, X] = -T.E, T.K + SOFTEST_PLACE * np.abs(T.K).max() * one
         if self.letting_go and self._turning:
-            D[1:-1, X, PSI] += self._held * self._unit(X) * R[1:-1] @ _cross(self.holding[1:-1, X])
+            D[1:-1, X, PSI] += self._held * self._force * R[1:-1] @ _cross(self.holding[1:-1, X])
         D[1:, X, FORCE], upper[:-1, X, FORCE] = one, -one
         D[1:, FORCE, PSI], lower[1:, FORCE, PSI] = lever[1:].transpose(0, 2, 1), lever[:-1].transpose(0, 2, 1)
         D[1:, FORCE, X], lower[1:, FORCE, X] = one, -one
@@ -348,17 +345,18 @@ class Equations:
             upper[:-1, PSI, FORCE] -= before.transpose(0, 2, 1)
         for side, end in enumerate(self.ends):
             a, sign = -side, 2.0 * side - 1.0
-            D[a, X, PSI] = sign * R[a] @ _cross(self._follower(side))
+            if self._follower(side).any():
+                D[a, X, PSI] = sign * R[a] @ _cross(self._follower(side))
             for block in (D[a], lower[a], upper[a]):
                 block[X] = end.axes.T @ block[X]
                 block[PSI][end.held[3:]] = 0.0
                 block[X][end.held[:3]] = 0.0
-            D[a, PSI, PSI][end.held[3:]] = one[end.held[3:]] * self._unit(PSI)
-            D[a, X, X][end.held[:3]] = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
+            D[a, PSI, PSI][end.held[3:]] = one[end.held[3:]] * self._moment
+            D[a, X, X][end.held[:3]] = end.axes.T[end.held[:3]] * self._force / self.units[3]
             if self.compliance == 0.0:
                 continue
             force = upper[0] if side == 0 else D[-1]
-            rows = end.axes.T[end.held[:3]] * self._unit(X) / self.units[3]
+            rows = end.axes.T[end.held[:3]] * self._force / self.units[3]
             force[X, FORCE][end.held[:3]] = rows @ self._give(side, R[a])
             D[a, X, PSI][end.held[:3]] = rows @ self._give_by_rotation(side, R[a], self.stages.F[0, a])
         scale = self._rows[:, None] * self.units
@@ -387,7 +385,10 @@ def _turned_by(R: Array, forces: Array) -> Array:
 
 def _cross(x: Array) -> Array:
     """The matrices [x] (..., 3, 3) of vectors (..., 3)."""
-    return np.asarray(np.cross(x[..., None, :], np.eye(3)).swapaxes(-1, -2))
+    matrices = np.zeros((*x.shape, 3))
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        matrices[..., k, j], matrices[..., j, k] = x[..., i], -x[..., i]
+    return matrices
 
 
 @cache

@@ -48,7 +48,7 @@ def _count(equations: Equations, softest: float) -> int:
     T = equations.tangents
     bands = _second_variation(T.stiff, T.behind, equations, softest) * (length / equations.stiffness)
     G, W, ties = _conditions(equations)
-    if coupled(equations):
+    if equations.contact.pressing or K.any():
         return _all_together(equations, K, bands, G, W, softest) - ties
     full = np.zeros((3 * BAND + 1, bands.shape[1]))
     full[2 * BAND :] = bands

@@ -91,7 +91,7 @@ class NumericsSpec(Spec):
         """Where nothing is said about the resolution or the box method, a tolerance; else all of the resolution."""
         if not isinstance(raw, dict):
             return raw
-        values = _given(raw)
+        values = _settings(raw)
         if _to_tolerance(raw):
             return {"method": "staggered", "tolerance": TOLERANCE, **values}
         return {"intervals": INTERVALS, "dt_max": DT_MAX, **values}
@@ -123,14 +123,14 @@ class NumericsSpec(Spec):
         return Numerics(**{name: value for name, value in self if value is not None}, most_intervals=most)
 
 
-def _given(raw: dict[str, Any]) -> dict[str, Any]:
-    """Of the numerics of a case those that say something."""
+def _settings(raw: dict[str, Any]) -> dict[str, Any]:
+    """The numerics of a case, without those that are null."""
     return {name: value for name, value in raw.items() if value is not None or name not in NULLABLE}
 
 
 def _to_tolerance(raw: dict[str, Any]) -> bool:
     """Whether numerics ask for a tolerance: where they say nothing about the resolution or the box method, too."""
-    values = _given(raw)
+    values = _settings(raw)
     return "tolerance" in values or (values.keys() <= {"method", "verify"} and values.get("method") != "box")
 
 

@@ -90,10 +90,10 @@ class Together:
         value, error = self._of_frames(slice(first, last))
         magnitudes = [np.linalg.norm(value.along[..., rows], axis=-1).max(axis=-1) for rows in (OMEGA, FORCE)]
         rows = self._recorded[self._chosen.finest]
-        frames, given = [], 0 if self._at_rest else 1
+        frames, exact = [], 0 if self._at_rest else 1  # how many frames at the start are given
         for k in here:
-            after = min(k + BESIDE + 1, last) if k >= given else 1
-            beside = slice(max(k - BESIDE, min(k, given)) - first, after - first)
+            after = min(k + BESIDE + 1, last) if k >= exact else 1
+            beside = slice(max(k - BESIDE, min(k, exact)) - first, after - first)
             largest = [float(magnitude[beside].max()) for magnitude in magnitudes]
             columns = Columns(value.along[k - first], value.numbers[k - first])
             along, numbers = error.along[beside].max(axis=0), error.numbers[beside].max(axis=0)
@@ -143,8 +143,8 @@ class Together:
             steps.append(errors_of(self._of_steps(series, here, judged=True), size))
         unknown = np.full(len(QUANTITIES), np.inf)
         of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else unknown
-        told = len(series) > 1 or self._at_rest
-        of_steps = excess(target, self._with_lost(np.concatenate(steps), size)) if told else unknown
+        known = len(series) > 1 or self._at_rest
+        of_steps = excess(target, self._with_lost(np.concatenate(steps), size)) if known else unknown
         if self._diagonal:
             of_steps = np.minimum(of_steps, 0.5 * of_mesh)
             of_mesh = of_mesh - of_steps

@@ -43,6 +43,8 @@ converges to: a rod that may spin freely about its own axis has one state, the n
 SOFTEST_PLACE = 1e-12
 """Likewise of the largest stiffness of loads by place, given to every place: a rod that may slide along a floor has one
 state, the nearest."""
+MOST_LOADED = 1e5
+"""Force in EJ/L^2 above which a rod counts as loaded by so much: a long cable's tension says nothing of its twist."""
 PSI, X, FORCE = slice(0, 3), slice(3, 6), slice(6, 9)
 
 
@@ -134,6 +136,11 @@ class Equations:
         """The schedules' time (s) at the parameter q."""
         return 0.0 if self.letting_go else q * self.t_end
 
+    def loading(self) -> float:
+        """The largest force in the rod in EJ/L^2, of the point evaluated last, between 1 and MOST_LOADED: beside it
+        stiffnesses and forces are compared with none."""
+        return float(np.clip(np.abs(self.stages.F[0]).max() / self._force, 1.0, MOST_LOADED))
+
     def tip(self) -> Array:
         """Where the end of the rod is (3,), of the point evaluated last."""
         lever = 0.5 * self.chain.h + self.stages.opening[0, 0, -1]
@@ -193,15 +200,20 @@ class Equations:
             self._balance_end(side, t, point, left)
         left *= self._rows
         self._held = 1.0 - point.q if self.letting_go else 0.0
-        if self.letting_go:
-            left -= self._held * self.holding
-            if self._turning:
-                forces = self.holding[1:-1, X]
-                left[1:-1, X] -= self._held * (_turned_by(stages.R[0], forces) - forces)
-        return left
+        return left - self._held * self._what_holds() if self.letting_go else left
+
+    def _what_holds(self) -> Array:
+        """What holds the initial shape (N + 2, 9), dimensionless, lab, at the point evaluated last."""
+        if not self._turning:
+            return self.holding
+        holds = self.holding.copy()
+        holds[1:-1, X] = _turned_by(self.stages.R[0], self.holding[1:-1, X])
+        return holds
 
     def slope(self, point: Point, ahead: float, step: float = 1e-6) -> Array:
         """How the residual changes with q beside the point evaluated last, at q + `ahead` (N + 2, 9)."""
+        if self.letting_go:
+            return self._what_holds()
         sides = [Point(point.quaternion, point.base, point.F, point.q + ahead + x) for x in (step, -step)]
         up, down = (self._left(side) for side in sides)
         return (up - down) / (2.0 * step)

@@ -31,6 +31,11 @@ TOLERANCE = 1e-10
 """Remaining correction, rotation (rad) and force relative to EJ/L^2 and to its largest, at an equilibrium."""
 ROUNDING = 1e-7
 """A correction below which no smaller one need follow: rounding moves a buckle so that may lie anywhere, nearly."""
+BALANCED = 1e-10
+"""What is left of the forces, relative to the largest, below which no less need follow: a buckle turns about a round
+rod for next to nothing."""
+NO_LONGER = 0.3
+"""Part of what it was before, above which a correction, or what is left, no longer falls."""
 LARGEST_CORRECTION = 1.0
 MOST_STEPS = 5000
 """Steps from one frame to the next after which a branch is given up."""
@@ -175,10 +180,14 @@ class Path:
 
     def _correct(self, guess: Point, across: Direction | None) -> Point | None:
         """The equilibrium across a direction from a guess, or at the guess's own q; None if there is none near."""
-        before = np.inf
+        before = unbalanced = np.inf
         for iteration in range(1, MOST_ITERATIONS + 1):
             self.iterations += 1
+            self._easy, self.last_iterations = iteration <= EASY_ITERATIONS, iteration
             left, solver = self._equations.linearise(guess)
+            rest = float(np.abs(left).max())
+            if BALANCED * self._equations.loading() > rest > NO_LONGER * unbalanced:
+                return guess
             if solver.singular:
                 return None
             z, dq = -solver.solve(left), 0.0
@@ -187,16 +196,16 @@ class Path:
                 dq = -across.dot(z, 0.0) / across.dot(w, 1.0)
                 z += dq * w
             size = self._size(z, guess)
-            at_rest = ROUNDING > size > 0.3 * before
-            if not (at_rest or size < min(LARGEST_CORRECTION, 2.0 * before)) or not self._equations.keeps_apart(z):
+            at_rest = ROUNDING > size > NO_LONGER * before
+            falls = size < 2.0 * before or rest < NO_LONGER * unbalanced
+            if not (at_rest or (falls and size < LARGEST_CORRECTION)) or not self._equations.keeps_apart(z):
                 return None
             guess = guess.moved(z, dq)
             # Newton converges quadratically: what remains is some size^2, measured by the correction before
             quadratic = iteration > 1 and size < 0.1 * before and size * size / before < TOLERANCE
             if size < TOLERANCE or quadratic or at_rest:
-                self._easy, self.last_iterations = iteration <= EASY_ITERATIONS, iteration
                 return guess
-            before = size
+            before, unbalanced = size, rest
         return None
 
     def _size(self, z: Array, point: Point) -> float:

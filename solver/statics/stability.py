@@ -20,15 +20,16 @@ from solver.statics.equations import SOFTEST_PLACE, Equations, levers
 
 BAND = 5
 NEUTRAL = 1e-7
-"""Stiffness, in EJ/L shared by all segments as `SOFTEST` is, that makes a direction one of rising or falling energy:
-below it the energy stays the same, as where a rod spins about its own axis or an arch swings about its pins."""
+"""Stiffness, in EJ/L shared by all segments as `SOFTEST` is, that makes a direction one of rising energy, and in
+proportion to what loads the rod one of falling energy: within these the energy stays the same, as where a rod spins
+about its own axis, a buckle turns about it, or an arch swings about its pins."""
 NEUTRAL_PLACE = 10.0 * SOFTEST_PLACE
 """Likewise in the largest stiffness of loads by place: of a rod that slides along a floor."""
 
 
 def negative_modes(equations: Equations) -> int:
     """Directions of falling energy at the point that `equations` looked at last; loads are held as they are."""
-    return _count(equations, NEUTRAL)
+    return _count(equations, NEUTRAL * equations.loading())
 
 
 def neutral_modes(equations: Equations, falling: int) -> int:

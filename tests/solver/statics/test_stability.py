@@ -228,3 +228,14 @@ def test_loads_by_place_count_like_as_many_springs_on_the_nodes() -> None:
     assert_allclose(by_rotations[blocks], whole[3:, 3:][blocks], atol=1e-12)
     assert_allclose(by_both, whole[3:, :3], atol=1e-12)
     assert_allclose(by_place, whole[:3, :3], atol=1e-12)
+
+
+def test_a_buckle_that_may_turn_about_a_twisted_round_rod_for_next_to_nothing_is_followed() -> None:
+    """Its phase about the axis is held by the seed alone, the less the more turns it has; that stiffness goes through
+    zero, as that of no other direction does, and the other way round the energy hardly differs."""
+    seed = DistributedLoad((Curve.constant(3e-3 * EJ / LENGTH**3), ZERO, ZERO), (ZERO, ZERO, ZERO))
+    turned = End(moved_clamp(ZERO, ZERO, ramp(-0.1 * LENGTH)).translation,
+                 (FIXED, FIXED, (Condition("position", ramp(2.0 * pi * 6.9)),)), "lab")  # fmt: skip
+    rest = last(static(end=turned, distributed=(seed,), numerics=Numerics("staggered", intervals=64)))
+    assert rest.parameter == 1.0
+    assert_allclose(rest.Tw + rest.Wr, 6.9, atol=1e-3)

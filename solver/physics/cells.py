@@ -92,6 +92,20 @@ class Cells(NamedTuple):
             return np.zeros(len(self.points))
         return self.mean(np.asarray(profile(self.points), dtype=float) * self.offsets)
 
+    def placed_mean_of(self, profile: Profile, lengths: Array, apart: float) -> Array:
+        """What a property counts for in cells of `lengths` (n,), so that its place counts too.
+
+        What lies beside a cell's own point is shared with the next one, `apart` from it, as hat functions share it.
+        """
+        means, arms = self.mean_of(profile), self.arms_of(profile)
+        passed, onwards = arms * lengths / apart, means * arms >= 0.0
+        onwards[0], onwards[-1] = True, False
+        ahead, back = np.where(onwards, passed, 0.0), np.where(onwards, 0.0, -passed)
+        placed = means * lengths - ahead - back
+        placed[1:] += ahead[:-1]
+        placed[:-1] += back[1:]
+        return np.asarray(placed / lengths)
+
 
 def around_nodes(s: Array, corners: Sequence[float]) -> Cells:
     """Those that nodes `s` (n,) stand for: up to halfway to the next."""

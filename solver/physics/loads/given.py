@@ -36,9 +36,9 @@ class GivenLoads(Source):
         acting = [load for load in loads if self._has_lever(load, samples)
                   or any(not _is_zero(c) for c in self._part(load))]  # fmt: skip
         super().__init__(kind(bool(acting), *arrays))
-        self._distributed = [(self._target(load), np.stack([samples.mean(p) for p in self._part(load)], axis=1),
-                              load.schedule) for load in acting if isinstance(load, DistributedLoad)]  # fmt: skip
-        self._points = [(self._target(load)[..., k], samples.weights(load.s), curve)
+        self._distributed = [(self._target(load), self._spread(load, samples), load.schedule)
+                             for load in acting if isinstance(load, DistributedLoad)]
+        self._points = [(self._target(load)[..., k], self._concentrated(load, samples), curve)
                         for load in acting if isinstance(load, PointLoad)
                         for k, curve in enumerate(self._part(load)) if not curve.is_zero]  # fmt: skip
         for load in acting:
@@ -71,6 +71,13 @@ class GivenLoads(Source):
 
     def _part(self, load: DistributedLoad | PointLoad) -> Any:
         return load.force if self._acts_by_force(load) else load.moment
+
+    def _spread(self, load: DistributedLoad, samples: Samples) -> Array:
+        mean = samples.mean if self._acts_by_force(load) else samples.placed_mean
+        return np.stack([mean(profile) for profile in self._part(load)], axis=1)
+
+    def _concentrated(self, load: PointLoad, samples: Samples) -> Array:
+        return samples.weights(load.s) if self._acts_by_force(load) else samples.shares(load.s)
 
     def _target(self, load: DistributedLoad | PointLoad) -> Array:
         return self.record.force if self._acts_by_force(load) else self.record.moment  # type: ignore[no-any-return]

@@ -134,6 +134,12 @@ class Samples:
         """What a density along the rod counts for (n,) in the segments, or around the nodes."""
         return self._cells(profile).mean_of(profile)
 
+    def placed_mean(self, profile: Profile) -> Array:
+        """The same of moments, which act on rigid segments: see `Cells.placed_mean_of`."""
+        if not self.rigid:
+            return self.mean(profile)
+        return self._cells(profile).placed_mean_of(profile, self.lengths, float(self.lengths[0]))
+
     def arms(self, profile: Profile) -> Array:
         """How far (n,) from their middles a density acts on rigid segments, times its mean."""
         return self._cells(profile).arms_of(profile)
@@ -144,23 +150,24 @@ class Samples:
         return Cells.at(self.s, edges, corners_of(profile))
 
     def weights(self, at: float) -> Array:
-        """Densities (n,) in 1/m that act like a unit point load at arclength `at`, together with its `levers`.
-
-        On the segments that are there; else two neighbours are weighted so that force and moment are those of the
-        point.
-        """
-        weights = np.zeros_like(self.centres)
-        if self.rigid:
-            segments = self._segments(at)
-            weights[segments] = 1.0 / (len(segments) * self.lengths[segments])
-            return weights
-        i = int(np.clip(np.searchsorted(self.centres, at) - 1, 0, len(self.centres) - 2))
-        share = (at - self.centres[i]) / (self.centres[i + 1] - self.centres[i])
-        weights[i], weights[i + 1] = (1.0 - share) / self.lengths[i], share / self.lengths[i + 1]
+        """Densities (n,) in 1/m that act like a unit point force at arclength `at`, together with its `levers`: on the
+        segments that are there, else as `shares`."""
+        if not self.rigid:
+            return self.shares(at)
+        weights, segments = np.zeros_like(self.centres), self._segments(at)
+        weights[segments] = 1.0 / (len(segments) * self.lengths[segments])
         return weights
 
+    def shares(self, at: float) -> Array:
+        """Densities (n,) in 1/m of a unit at arclength `at`, shared by two neighbours so that its place counts."""
+        shares = np.zeros_like(self.centres)
+        i = int(np.clip(np.searchsorted(self.centres, at) - 1, 0, len(self.centres) - 2))
+        share = (at - self.centres[i]) / (self.centres[i + 1] - self.centres[i])
+        shares[i], shares[i + 1] = (1.0 - share) / self.lengths[i], share / self.lengths[i + 1]
+        return shares
+
     def levers(self, at: float) -> Array:
-        """How far (n,) from their middles a unit point load at arclength `at` acts on rigid segments, per length."""
+        """How far (n,) from their middles a unit point force at arclength `at` acts on rigid segments, per length."""
         levers: Array = self.weights(at) * (at - self.centres) if self.rigid else np.zeros_like(self.centres)
         return levers
 

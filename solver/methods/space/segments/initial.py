@@ -44,20 +44,25 @@ def loads_on_segments(scene: Scene, s: Array, times: int, axis: Any = None) -> A
 def chain_of(rod: Rod, entrained: Array, s: Array) -> Chain:
     """The chain of a rod with nodes `s` (N + 1,), whose segments take the mass `entrained` (N,) along by loads."""
     section, h = segments_of(rod, s), float(s[1] - s[0])
-    span = np.full(len(s), h)
-    span[0] = span[-1] = 0.5 * h
     wet = section.inertia + np.outer(entrained, _across(s))
     joints = around_nodes(s, rod.corners)
     elastic = elasticity_over(elasticity_of(rod, joints.points), joints)
     if corners_of(*rod.kappa0):
         elastic = elastic._replace(kappa0=_in_joints(rod.kappa0, rod, s))
-    return Chain(h, section.mass, wet, section.inertia, span, elastic)
+    return Chain(h, section.mass, wet, section.inertia, _span(s), elastic)
 
 
 def _in_joints(curvature: Profiles, rod: Rod, s: Array) -> Array:
     """What a curvature along the rod counts for in the joints at `s` (n,), where the natural one has corners."""
-    joints = around_nodes(s, corners_of(*rod.kappa0))
-    return np.stack([joints.mean_of(component) for component in curvature], axis=1)
+    joints, h, span = around_nodes(s, corners_of(*rod.kappa0)), float(s[1] - s[0]), _span(s)
+    return np.stack([joints.placed_mean_of(component, span, h) for component in curvature], axis=1)
+
+
+def _span(s: Array) -> Array:
+    """The lengths (n,) that joints at `s` (n,) stand for."""
+    span = np.full(len(s), float(s[1] - s[0]))
+    span[0] = span[-1] = 0.5 * span[0]
+    return span
 
 
 def _has_steps(rod: Rod, chain: Chain, s: Array) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.physics.ends import ABOUT_A3, DrivenEnd
+from solver.run.hidden import Creases, Hidden, hidden_in
 from solver.run.plan import FIRST_INTERVALS, intervals_of
 from solver.scene.fluid import Shear
 from solver.scene.layout import nodes_at_rest
@@ -17,16 +18,18 @@ from solver.scene.scene import Scene
 LARGEST_TURN, LARGEST_TURN_PRESSED, LARGEST_TWIST_AT_REST = 1.2, 0.6, 2.4
 """Rotation (rad) within an interval that the first mesh has at the most; where strands press on each other; and about
 its axis where nothing moves: a twist that is the same all along needs no mesh."""
-LARGEST_CORNER, FINEST_FOR_CORNERS = 0.5, 128
+LARGEST_CORNER, FINEST_FOR_SHAPES = 0.5, 128
 """By what angle (rad) the shape may turn more within an interval than in the mean, in a static analysis; and how fine
-the first mesh becomes for it at the most."""
+the first mesh becomes for it, and for what is hidden, at the most."""
 LARGEST_MISS, FINEST_FOR_LAYERS = 0.25, 512
 """What part of a current's drag the middles of intervals may miss; and how fine the first mesh becomes for it."""
 LAYERS = 8192
 """Places at which a current is looked at."""
 ON_NODE = 1e-6
 """Part of an interval by which a load may be beside a node."""
-LOOKED_AT = 513
+LARGEST_HIDDEN = 1e-3
+"""How far (rod lengths) what cancels within an interval of the second mesh may move the rod."""
+LOOKED_AT = 1025
 """Nodes at which the initial shape is looked at."""
 TIMES = 101
 """Times at which the ends are looked at."""
@@ -44,17 +47,23 @@ def first_mesh(scene: Scene, pressed: bool) -> int:
     scales = [load.scale for load in scene.loads if hasattr(load, "scale")]  # longer intervals may not feel the load
     intervals = bent / largest, twist, *(float(scene.rod.length) / scale for scale in scales)
     mesh = max(ceil(log2(max(intervals) / first_intervals(scene) + 1e-9)), 0)
-    while _misses(scene, places, turned, intervals_of(mesh)):
+    hidden = hidden_in(scene, s, kappa)
+    while _misses(scene, places, turned, hidden, intervals_of(mesh)):
         mesh += 1
     return mesh
 
 
-def _misses(scene: Scene, places: Array, turned: Array, intervals: int) -> bool:
-    """Whether a mesh misses a layer of the current, or a corner of the shape in a static analysis."""
-    shear = scene.fluid.shear if scene.fluid else None
+def _misses(scene: Scene, places: Array, turned: Array, hidden: Sequence[Hidden | Creases], intervals: int) -> bool:
+    """Whether a mesh misses a layer of the current, what cancels within an interval of the next one, or a corner of the
+    shape in a static analysis."""
+    shear, length = scene.fluid.shear if scene.fluid else None, float(scene.rod.length)
     if shear is not None and intervals < FINEST_FOR_LAYERS and _flows_between(shear, places, intervals):
         return True
-    return scene.analysis == "static" and intervals < FINEST_FOR_CORNERS and _cornered(turned, intervals)
+    if intervals >= FINEST_FOR_SHAPES:
+        return False
+    if any(something.moves(0.5 * length / intervals, length) > LARGEST_HIDDEN for something in hidden):
+        return True
+    return scene.analysis == "static" and _cornered(turned, intervals)
 
 
 def _cornered(turned: Array, intervals: int) -> bool:

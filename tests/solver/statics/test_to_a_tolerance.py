@@ -94,7 +94,8 @@ def test_the_first_mesh_shows_the_corners_of_the_shape() -> None:
     frame = np.array([*([0.0, 0.0, x] for x in s), *([x, 0.0, 0.5] for x in s[1:])]) * LENGTH
     cornered = static(initial=Initial.through(frame, LENGTH))
     assert intervals_of(first_mesh(cornered, pressed=False)) >= 64
-    assert intervals_of(first_mesh(replace(cornered, analysis="dynamic"), pressed=False)) == 16
+    dynamic = replace(cornered, analysis="dynamic")
+    assert intervals_of(first_mesh(dynamic, pressed=False)) == 64  # a spline bends to and fro about a corner
 
 
 def test_twist_that_is_the_same_all_along_needs_no_fine_mesh() -> None:

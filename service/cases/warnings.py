@@ -49,8 +49,9 @@ def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
             *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_begins_inside(scene),
-            *_touches_itself(scene), *_degrees(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec),
-            *_frames(spec), *_idle(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
+            *_friction_at_rest(spec), *_touches_itself(scene), *_degrees(scene), *_stretched(scene),
+            *_pulled_apart(scene), *_tables(spec), *_frames(spec), *_idle(scene), *_held_back(scene),
+            *_too_fast(spec, scene)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -150,6 +151,16 @@ def _begins_inside(scene: Scene) -> Iterator[FieldError]:
         if deepest > _widest(scene):
             rule = f"has the rod in it at t = 0, by {deepest:.3g} m: it would throw the rod out"
             yield FieldError(where, None, rule)
+
+
+def _friction_at_rest(spec: CaseSpec) -> Iterator[FieldError]:
+    if spec.analysis != "static":
+        return
+    solids = [("/loads/obstacles/" + str(i), obstacle) for i, obstacle in enumerate(spec.loads.obstacles)]
+    for where, solid in [("/loads/floor", spec.loads.floor), *solids]:
+        if solid is not None and solid.friction:
+            rule = "counts for nothing in a static analysis: friction needs a motion to act against"
+            yield FieldError(f"{where}/friction", solid.friction, rule)
 
 
 def _touches_itself(scene: Scene) -> Iterator[FieldError]:

@@ -208,3 +208,13 @@ def test_a_ring_does_not_begin_within_itself():
     ring = [[np.cos(x) / (2 * pi), np.sin(x) / (2 * pi), 0.0] for x in np.linspace(0.0, 2 * pi, 81)]
     shape = {"initial": {"shape": "centreline", "points": ring}, "contact": {}}
     assert "/initial" not in [warning.pointer for warning in _warned(PRESSED | shape)]
+
+
+@pytest.mark.parametrize(("analysis", "pointers"), [
+    ("static", ["/loads/floor/friction", "/loads/obstacles/1/friction"]), ("dynamic", []),
+])  # fmt: skip
+def test_friction_counts_for_nothing_at_rest(analysis: str, pointers: list[str]):
+    bar = {"start": [5.0, 0.0, 0.0], "end": [6.0, 0.0, 0.0], "radius": 0.1, "stiffness": 1e3}
+    floor = {"stiffness": 1e3, "height": -9.0, "friction": 0.2}
+    settings = {"loads.floor": floor, "loads.obstacles": [bar, bar | {"friction": 0.3}], "analysis": analysis}
+    assert [warning.pointer for warning in told(settings)] == pointers

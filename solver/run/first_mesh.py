@@ -61,7 +61,7 @@ def _misses(scene: Scene, places: Array, turned: Array, hidden: Sequence[Hidden 
         return True
     if intervals >= FINEST_FOR_SHAPES:
         return False
-    if any(something.moves(0.5 * length / intervals, length) > LARGEST_HIDDEN for something in hidden):
+    if any(part.moves(0.5 * length / intervals, length) > LARGEST_HIDDEN for part in hidden):
         return True
     return scene.analysis == "static" and _cornered(turned, intervals)
 

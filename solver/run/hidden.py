@@ -43,7 +43,8 @@ class Hidden(NamedTuple):
 
 
 class Creases(NamedTuple):
-    """By what angles (n, 2), rad, a rod is bent by nature at `places` (n,). Two joints share what lies between them."""
+    """The angles (n, 2), rad, by which a rod is bent by nature at `places` (n,). Two joints share what lies between
+    them."""
 
     places: Array
     angles: Array
@@ -73,7 +74,9 @@ def hidden_in(scene: Scene, s: Array, kappa: Array) -> list[Hidden | Creases]:
         middles = 0.5 * (grid[1:] + grid[:-1])
         natural = _bends(grid, np.stack([profile(middles) for profile in scene.rod.kappa0], axis=1))
         bends += [Hidden(*natural, 1, 0.5), Creases(*natural)]
-    return bends + [load for t in _times(scene) for load in _loads(scene, t)]
+    s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
+    softest = min(float(np.min(profile(s))) for profile in scene.rod.stiffness)
+    return bends + [load for t in _times(scene) for load in _loads(scene, t, softest)]
 
 
 def _bends(grid: Array, kappa: Array) -> tuple[Array, Array]:
@@ -86,10 +89,10 @@ def _times(scene: Scene) -> Sequence[float]:
     return [0.0] if all(is_steady(load) for load in loads) else np.linspace(0.0, scene.t_end, TIMES).tolist()
 
 
-def _loads(scene: Scene, t: float) -> Iterator[Hidden]:
-    """Forces and moments along lab and material axes at time t, each component for itself."""
+def _loads(scene: Scene, t: float, softest: float) -> Iterator[Hidden]:
+    """Forces and moments along lab and material axes at time t, each component for itself; `softest`: the rod's least
+    stiffness (N m^2)."""
     length = float(scene.rod.length)
-    softest = min(float(np.min(profile(np.linspace(0.0, length, LOOKED_AT)))) for profile in scene.rod.stiffness)
     for part, power, share in (("moment", 1, 0.5 * length / softest), ("force", 2, 0.125 * length**2 / softest)):
         for frame in ("lab", "material"):
             places, values = _along(scene, part, frame, t)

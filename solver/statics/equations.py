@@ -137,8 +137,8 @@ class Equations:
         return 0.0 if self.letting_go else q * self.t_end
 
     def loading(self) -> float:
-        """The largest force in the rod in EJ/L^2, of the point evaluated last, between 1 and MOST_LOADED: beside it
-        stiffnesses and forces are compared with none."""
+        """The scale on which a stiffness or a force counts as none: the largest force in the rod in EJ/L^2, of the
+        point evaluated last, between 1 and MOST_LOADED."""
         return float(np.clip(np.abs(self.stages.F[0]).max() / self._force, 1.0, MOST_LOADED))
 
     def tip(self) -> Array:

@@ -32,8 +32,8 @@ TOLERANCE = 1e-10
 ROUNDING = 1e-7
 """A correction below which no smaller one need follow: rounding moves a buckle so that may lie anywhere, nearly."""
 BALANCED = 1e-10
-"""What is left of the forces, relative to the largest, below which no less need follow: a buckle turns about a round
-rod for next to nothing."""
+"""Unbalanced forces, relative to the largest in the rod, that are small enough once they no longer fall: a buckle turns
+about a round rod for next to nothing."""
 NO_LONGER = 0.3
 """Part of what it was before, above which a correction, or what is left, no longer falls."""
 LARGEST_CORRECTION = 1.0

@@ -18,6 +18,9 @@ from solver.scene.scene import Scene
 LARGEST_TURN, LARGEST_TURN_PRESSED, LARGEST_TWIST_AT_REST = 1.2, 0.6, 2.4
 """Rotation (rad) within an interval that the first mesh has at the most; where strands press on each other; and about
 its axis where nothing moves: a twist that is the same all along needs no mesh."""
+LARGEST_WITHIN, FINEST_FOR_TURNS = 2.4, 1024
+"""Rotation (rad) of the shape, or of its natural one, within any one interval at the most: a joint counts a turn of
+2 pi as none; and how fine the first mesh becomes for it."""
 LARGEST_CORNER, FINEST_FOR_SHAPES = 0.5, 128
 """By what angle (rad) the shape may turn more within an interval than in the mean, in a static analysis; and how fine
 the first mesh becomes for it, and for what is hidden, at the most."""
@@ -29,7 +32,7 @@ ON_NODE = 1e-6
 """Part of an interval by which a load may be beside a node."""
 LARGEST_HIDDEN = 1e-3
 """How far (rod lengths) what cancels within an interval of the second mesh may move the rod."""
-LOOKED_AT = 1025
+LOOKED_AT = 4097
 """Nodes at which the initial shape is looked at."""
 TIMES = 101
 """Times at which the ends are looked at."""
@@ -41,8 +44,8 @@ def first_mesh(scene: Scene, pressed: bool) -> int:
     largest = LARGEST_TURN_PRESSED if pressed and not at_rest else LARGEST_TURN
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
     places, _, kappa = nodes_at_rest(scene.initial, s)
-    turned = np.append(0.0, np.cumsum(np.linalg.norm(kappa, axis=1)[1:] * np.diff(s)))
-    bent = float(turned[-1])
+    turned = _turned(s, kappa), _turned(s, np.stack([profile(s) for profile in scene.rod.kappa0], axis=1))
+    bent = float(turned[0][-1])
     twist = twisted(scene) / (LARGEST_TWIST_AT_REST if at_rest else largest)
     scales = [load.scale for load in scene.loads if hasattr(load, "scale")]  # longer intervals may not feel the load
     intervals = bent / largest, twist, *(float(scene.rod.length) / scale for scale in scales)
@@ -53,26 +56,37 @@ def first_mesh(scene: Scene, pressed: bool) -> int:
     return mesh
 
 
-def _misses(scene: Scene, places: Array, turned: Array, hidden: Sequence[Hidden | Creases], intervals: int) -> bool:
-    """Whether a mesh misses a layer of the current, what cancels within an interval of the next one, or a corner of the
-    shape in a static analysis."""
+def _turned(s: Array, kappa: Array) -> Array:
+    """By what angle (rad) a shape with a curvature-twist (n, 3) has turned until each of `s` (n,)."""
+    return np.append(0.0, np.cumsum(np.linalg.norm(kappa, axis=1)[1:] * np.diff(s)))
+
+
+def _most_within(turned: Array, intervals: int) -> float:
+    """The largest angle (rad) within an interval, wherever that begins; `turned`: until each of `LOOKED_AT` nodes."""
+    s = np.linspace(0.0, 1.0, LOOKED_AT)
+    return float(np.max(np.interp(s + 1.0 / intervals, s, turned) - turned))
+
+
+def _misses(scene: Scene, places: Array, turned: Sequence[Array], hidden: Sequence[Hidden | Creases],
+            intervals: int) -> bool:  # fmt: skip
+    """Whether a mesh misses a layer of the current, what cancels within an interval of the next one, a loop of the
+    initial or the natural shape (see `_turned`), or a corner of the initial one in a static analysis."""
     shear, length = scene.fluid.shear if scene.fluid else None, float(scene.rod.length)
+    if intervals < FINEST_FOR_TURNS and max(_most_within(shape, intervals) for shape in turned) > LARGEST_WITHIN:
+        return True
     if shear is not None and intervals < FINEST_FOR_LAYERS and _flows_between(shear, places, intervals):
         return True
     if intervals >= FINEST_FOR_SHAPES:
         return False
     if any(part.moves(0.5 * length / intervals, length) > LARGEST_HIDDEN for part in hidden):
         return True
-    return scene.analysis == "static" and _cornered(turned, intervals)
+    return scene.analysis == "static" and _cornered(turned[0], intervals)
 
 
 def _cornered(turned: Array, intervals: int) -> bool:
     """Whether somewhere the initial shape turns by so much more within an interval than in the mean that meshes as
-    coarse as this do not show it alike, and finer ones may. `turned`: by what angle (rad), until each of `LOOKED_AT`
-    nodes."""
-    s = np.linspace(0.0, 1.0, LOOKED_AT)
-    most = np.max(np.interp(s + 1.0 / intervals, s, turned) - turned)
-    return bool(most - turned[-1] / intervals > LARGEST_CORNER)
+    coarse as this do not show it alike, and finer ones may."""
+    return bool(_most_within(turned, intervals) - turned[-1] / intervals > LARGEST_CORNER)
 
 
 def _flows_between(shear: Shear, places: Array, intervals: int) -> bool:

@@ -10,9 +10,12 @@ from numpy.testing import assert_allclose
 
 from solver import Curve, DistributedLoad, Initial, Numerics, PointLoad, constant_vector
 from solver.arrays import Array
+from solver.measures.topology import writhe
 from solver.methods.space.segments.initial import chain_of, lay_out
 from solver.run.first_mesh import first_mesh
 from solver.run.hidden import cancelled
+from solver.run.plan import intervals_of
+from solver.scene.layout import nodes_at_rest
 from tests.solver.scenes import EJ, LENGTH, ROD, last
 from tests.solver.statics.resting import ZERO, ramp, static
 
@@ -95,6 +98,36 @@ def sines(waves: int, angle: float) -> tuple[Curve, Curve, Curve]:
 def test_the_first_mesh_sees_many_waves_and_needs_none_for_one(waves: int, mesh: int) -> None:
     scene = static(rod=replace(ROD, kappa0=sines(waves, 0.3)), numerics=BY_TOLERANCE)
     assert first_mesh(scene, pressed=False) == mesh
+
+
+def curl(part: float) -> Initial:
+    """A straight rod with one turn of a helix on a part of its length in the middle."""
+    s = np.linspace(0.0, LENGTH, 4001)
+    along = np.clip((s / LENGTH - 0.5) / part + 0.5, 0.0, 1.0)
+    turn, rise = 2.0 * np.pi * along - np.sin(2.0 * np.pi * along), 0.15 * np.sin(np.pi * along) ** 2
+    tangent = np.stack([np.sin(turn) * np.cos(rise), np.sin(rise), np.cos(turn) * np.cos(rise)], axis=1)
+    middles = 0.5 * (tangent[1:] + tangent[:-1]) * (s[1] - s[0])
+    points = np.vstack([np.zeros(3), np.cumsum(middles, axis=0)])
+    return Initial.through(points[(np.arange(4001) % 10 == 0) | (abs(s / LENGTH - 0.5) < part)], LENGTH)
+
+
+@pytest.mark.parametrize("part", [0.3, 0.03])
+def test_a_small_loop_in_a_long_rod_has_its_writhe_from_the_first_mesh_on(part: float) -> None:
+    """A joint about which the rod turned by 2 pi would count it as none."""
+    scene = replace(static(initial=curl(part), numerics=BY_TOLERANCE), analysis="dynamic")
+    intervals = intervals_of(first_mesh(scene, pressed=False))
+    r = nodes_at_rest(scene.initial, np.linspace(0.0, LENGTH, intervals + 1))[0]
+    z = np.array([0.0, 0.0, 1.0])
+    assert_allclose(writhe(r, z, z), 0.89, atol=0.03)
+    assert intervals <= 10.0 / part
+
+
+def test_a_natural_turn_within_an_interval_is_seen() -> None:
+    """kappa0 of a whole turn in a 50th of the rod, which is straight at first."""
+    s = LENGTH * np.array([0.4, 0.41, 0.42])
+    kappa0 = table((list(s), [0.0, 2.0 * np.pi / (0.01 * LENGTH), 0.0]))
+    scene = replace(static(rod=replace(ROD, kappa0=kappa0), numerics=BY_TOLERANCE), analysis="dynamic")
+    assert intervals_of(first_mesh(scene, pressed=False)) == 256
 
 
 def test_loads_that_do_not_cancel_ask_for_no_finer_mesh() -> None:

@@ -37,6 +37,8 @@ from numba.core.caching import CompileResultCacheImpl, FunctionCache, UserProvid
 from numba.core.registry import cpu_target
 from numba.extending import overload
 
+from solver.kernels import compiler
+
 log = logging.getLogger(__name__)
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -121,6 +123,7 @@ def _temporary_folder() -> Path | None:
         return None
 
 
+compiler.spare()
 numba.config.CACHE_DIR = str(cache_folder() or "")  # type: ignore[attr-defined]
 
 

@@ -33,7 +33,7 @@ import textwrap
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple, get_args, get_type_hints
 
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner
 from solver.kernels.scratch import scratch
 
 LANES = 8
@@ -56,8 +56,8 @@ def series(function: Any, beyond: Any, otherwise: Any) -> None:
 
 
 def abreast(arrays: str) -> Callable[[Callable[..., Any]], Any]:
-    """Make a kernel over all lines of arrays from a function of one line; see the module."""
-    return lambda function: kernel(_Loop(function, arrays).compiled())
+    """Make a function for kernels, over all lines of arrays from a function of one line; see the module."""
+    return lambda function: inner(_Loop(function, arrays).compiled())
 
 
 class _Loop:

@@ -66,7 +66,7 @@ def _translate(tangents: Tangents, eigenvalue: complex, factors: Factors) -> Non
         Y[0], Y[1] = X[0, 0] * E.real + X[0, 1] * E.imag, X[1, 0] * E.real + X[1, 1] * E.imag
 
 
-@kernel
+@inner
 def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
     """Write the blocks of all rows as if the ends were loaded in rotation and held in place."""
     N, half = len(chain.mass), 0.5 * chain.h * chain.swing
@@ -171,7 +171,7 @@ def _reduce(lower: Array, inverse: Array, upper: Array) -> bool:
     return True
 
 
-@kernel
+@inner
 def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> bool:
     """Factor the system for one eigenvalue; False if it is singular."""
     _translate(tangents, eigenvalue, factors)
@@ -180,7 +180,7 @@ def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex
     return bool(_reduce(factors.lower, factors.inverse, factors.upper))
 
 
-@kernel
+@inner
 def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
     """Write the rows of F into x and condition the ends; rotation, with minus, is there."""
     N, X, b, load, ends = len(chain.mass), factors.X, factors.x, factors.load, factors.ends
@@ -208,7 +208,7 @@ def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: compl
                 b[node, 1 + k] = d.real * x + d.imag * y - sign * ends[side, k] / eigenvalue
 
 
-@kernel
+@inner
 def solve(factors: Factors) -> None:
     """Replace the right-hand side in x by the solution, and write the displacements of the centres."""
     x, X, Y, n = factors.x, factors.X, factors.Y, len(factors.x)
@@ -228,7 +228,7 @@ def solve(factors: Factors) -> None:
             factors.moved[j, k] = X[j, k, 0] * p + X[j, k, 1] * q + Y[j, k] * x[j + 1, 0]
 
 
-@kernel
+@inner
 def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transform: Array, back: Array, inverse: Array,
                        gamma: float, lam: complex, dt: float, residuals: Residuals, real: Factors, pair: Factors,
                        touch: None, coupling: None, first: bool, fresh: bool) -> float:  # fmt: skip

@@ -93,7 +93,7 @@ def _translate(chain: Chain, tangents: Tangents, eigenvalue: complex, P: Array, 
                 Y[k, m] = X[k, 0] * tangents.E[j, 0, m] + X[k, 1] * tangents.E[j, 1, m] + X[k, 2] * tangents.E[j, 2, m]
 
 
-@kernel
+@inner
 def _open(tangents: Tangents, a: int, lower: Array, D: Array, upper: Array) -> None:
     """Add what openings do to the blocks of a row in the middle of the chain."""
     here, before = tangents.opens[a], tangents.opens[a - 1]
@@ -106,7 +106,7 @@ def _open(tangents: Tangents, a: int, lower: Array, D: Array, upper: Array) -> N
             lower[m, 3 + k] -= before[1, k, m]
 
 
-@kernel
+@inner
 def _open_end(driven: Driven, tangents: Tangents, a: int, lower: Array, D: Array, upper: Array) -> None:
     """Add what openings do to the blocks of rows 0, N and N + 1: to loaded rotations, and to held translations."""
     last, side = len(tangents.opens) - 1, 0 if a == 0 else 1
@@ -141,7 +141,7 @@ def _resist(tangents: Tangents, eigenvalue: complex, a: int, k: int, lower: Arra
         upper[k, m] += tangents.behind_t[a, k, m] * eigenvalue
 
 
-@kernel
+@inner
 def _fill(chain: Chain, tangents: Tangents, eigenvalue: complex, factors: Factors, a: int,
           lower: Array, D: Array, upper: Array) -> None:  # fmt: skip
     """Write the blocks of row a of a chain that goes on at both sides. The zero blocks of lower and upper stay."""
@@ -320,7 +320,7 @@ def _invert6(D: Array, room: Array, inverse: Array) -> bool:
     return True
 
 
-@kernel
+@inner
 def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> bool:
     """Factor the system for one eigenvalue; False if it is singular."""
     blocks = scratch_like((3, 6, 6), factors.lower)
@@ -355,7 +355,7 @@ def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex
     return True
 
 
-@kernel
+@inner
 def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
     """Write the rows of F into x and condition the ends; rotation, with minus, is there."""
     N = len(chain.mass)
@@ -397,7 +397,7 @@ def _row(A: Array, k: int, x: tuple) -> complex:  # type: ignore[type-arg]
     return total
 
 
-@kernel
+@inner
 def solve(factors: Factors) -> None:
     """Replace the right-hand side in x by the solution, and write the displacements of the centres.
 
@@ -423,7 +423,7 @@ def solve(factors: Factors) -> None:
     _displace(factors)
 
 
-@kernel
+@inner
 def _displace(factors: Factors) -> None:
     """Write the displacements of the centres that belong to the solution."""
     x, X, Y = factors.x, factors.X, factors.Y

@@ -10,6 +10,7 @@ from numpy.testing import assert_array_equal
 
 from solver import End, Numerics, Scene
 from solver.arrays import Array
+from solver.kernels.kernel import kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import cross, matrix_of, relative_rotation, turn
 from solver.methods.box import BoxMethod
@@ -111,17 +112,22 @@ def moment_of(a, b, weight, factor):
     return weight * lever, (b[1], b[0], a[1], a[0]), weight
 
 
-def test_a_function_of_one_line_becomes_a_kernel_of_all_lines() -> None:
+@kernel
+def moments_of(a: Any, b: Any, weight: Any, factor: float, moment: Any, swapped: Any) -> Any:
+    return moment_of(a, b, weight, factor, moment, swapped)
+
+
+def test_a_function_of_one_line_becomes_one_of_all_lines() -> None:
     rng = np.random.default_rng(1)
     a, b, weight = rng.normal(size=(13, 3)), rng.normal(size=(13, 5)), rng.normal(size=13)
     moment, swapped = np.empty((13, 3)), np.empty((13, 2, 2))
-    largest = moment_of(a, b, weight, 2.0, moment, swapped)
+    largest = moments_of(a, b, weight, 2.0, moment, swapped)
     assert moment == pytest.approx(weight[:, None] * np.cross(a, 2.0 * b[:, :3]), abs=1e-14)
     assert_array_equal(swapped, np.stack([b[:, 1::-1], a[:, 1::-1]], axis=1))
     assert largest == max(weight.max(), 0.0)
 
 
-def test_a_generated_kernel_has_the_place_of_its_function_for_the_cache_on_disk() -> None:
+def test_a_generated_function_has_the_place_of_its_function_for_the_cache_on_disk() -> None:
     loop = moment_of.py_func
     assert (loop.__module__, loop.__qualname__, loop.__code__.co_filename) == (__name__, "moment_of", __file__)
 

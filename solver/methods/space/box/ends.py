@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from solver.arrays import Array
-from solver.kernels.kernel import inner, kernel
+from solver.kernels.kernel import inner
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, Nodes, V
 from solver.physics.ends import LOAD, RATE, RATE_LAB, Kinds
 
@@ -54,7 +54,7 @@ def _turn_axis(R: Array, J: Array, i: int, k: int, component: float, row: Array)
         row[OMEGA + m] += component * (R[k, a] * J[c, m] - R[k, c] * J[a, m])
 
 
-@kernel
+@inner
 def _scale(row: int, scale: float, columns: Array, b: Array, A: Array) -> None:
     b[row] *= scale
     for k in range(12):

@@ -78,7 +78,7 @@ def measure_openings(chain: Chain, R: Array, F: Array, bend: Array, e: Array) ->
         e[a] = chain.span[a] * axial_strain(chain.elastic, a, kappa, tension(R, F, a))
 
 
-@kernel
+@inner
 def open_joints(chain: Chain, state: State, stages: Stages, inverse: Array, dt: float) -> None:
     """Write the openings of all stages and their rates, as those of `base`, and shift the segments accordingly."""
     opening = stages.opening
@@ -116,7 +116,7 @@ def shift_segments(R: Array, omega: Array, alpha: Array, opening: Array, r: Arra
         add_vector(1.0, growth, A[j])
 
 
-@kernel
+@inner
 def shift_nodes(chain: Chain, R: Array, omega: Array, opening: Array, r: Array, V: Array) -> None:
     """Add to places and velocities of the nodes (N + 1, 3), those of the ends of the segments before them, the way to
     the middle of the opening, or to the end of the rod."""
@@ -146,7 +146,7 @@ def add_levers(R: Array, F: Array, e: Array, rotation: Array) -> None:
             rotation[o, 1] -= 0.5 * e[a] * f[0]
 
 
-@kernel
+@inner
 def opening_tangents(chain: Chain, stages: Stages, i: int, stiff: Array, before: Array, behind: Array,
                      opens: Array) -> None:  # fmt: skip
     """Write `opens` at stage i, and add to the tangents of rotation by rotation: see `balances.Tangents`.

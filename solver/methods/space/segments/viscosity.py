@@ -53,7 +53,7 @@ def dissipated(chain: Chain, omega: Array, bend: Array) -> float:
     return power
 
 
-@kernel
+@inner
 def rate_tangents(chain: Chain, bend: Array, stiff: Array, before: Array, behind: Array) -> None:
     """Write the tangents of rotation's balances by the rates of rotation, (N + 2, 3, 3) each: see `balances.Tangents`.
 

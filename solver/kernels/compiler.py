@@ -1,0 +1,103 @@
+"""What spares numba work when it compiles kernels: by its internals, and none of it changes what a kernel computes.
+
+Half of the time is numba's own Python, which types every call of every kernel. Of `a + b` it asks all that may ever be
+meant by +, each time; here it asks once for each kind of a and b. And it makes machine code of each kernel by itself,
+also of those that only kernels call, which are part of their callers' code; here only of what somebody asks the address
+of (docs/decisions/0005).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from numba.core.codegen import JITCodeLibrary
+from numba.core.registry import cpu_target
+from numba.core.targetconfig import ConfigStack
+from numba.core.types.functions import BaseFunction
+
+
+class _Resolved(NamedTuple):
+    """What numba takes a call for: its signature, and the key of what implements it."""
+
+    signature: Any
+    implementation: Any
+
+
+class Calls:
+    """The calls that were typed already: by function, kinds of arguments, and how their caller is compiled."""
+
+    def __init__(self) -> None:
+        self._resolve = BaseFunction.get_call_type
+        self.known: dict[Any, _Resolved] = {}
+        self._alike: dict[Any, Any] = {}
+        """Of all flags that are equal the first, whose identity stands for them: they are slow to compare."""
+        self._flags: Any = None
+        self._first: Any = None
+
+    def resolve(self, function: Any, context: Any, arguments: Any, named: Any) -> Any:
+        """The signature of a call, as numba's own `get_call_type`."""
+        if named:
+            return self._resolve(function, context, arguments, named)
+        key = function, context, tuple(arguments), id(self._flags_like_those_of_the_caller())
+        call = self.known.get(key)
+        if call is None:
+            signature = self._resolve(function, context, arguments, named)
+            call = self.known[key] = _Resolved(signature, function.get_impl_key(signature))
+        function._impl_keys[call.signature.args] = call.implementation
+        return call.signature
+
+    def _flags_like_those_of_the_caller(self) -> Any:
+        flags = ConfigStack.top_or_none()
+        if flags is not self._flags or self._first is None:
+            self._flags, self._first = flags, self._alike.setdefault(flags, flags)
+        return self._first
+
+
+class _Library(JITCodeLibrary):
+    """A kernel's code with all that it calls: machine code once somebody asks for an address in it."""
+
+    has_machine_code = False
+
+    def get_pointer_to_function(self, name: str) -> Any:
+        """The address of one of its functions; 0 if it has none of that name."""
+        self._ensure_finalized()
+        if not self.has_machine_code and any(function.name == name for function in self.get_defined_functions()):
+            self._make_machine_code()
+        return super().get_pointer_to_function(name)
+
+    def serialize_using_object_code(self) -> Any:
+        """What a cache keeps of it."""
+        return super().serialize_using_object_code() if self.has_machine_code else self.serialize_using_bitcode()
+
+    def _finalize_final_module(self) -> None:
+        if getattr(self, "_compiled_object", None):  # from a cache
+            self._make_machine_code()
+            return
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+    def _make_machine_code(self) -> None:
+        self.has_machine_code = True
+        super()._finalize_final_module()
+        for variable in self._final_module.global_variables:
+            if variable.name in _WAITING:
+                _SET_AT_ONCE(variable.name, _WAITING.pop(variable.name))
+
+
+def _set_environment(name: str, environment: Any) -> None:
+    """Tell a function what it raises its exceptions with: at once, or when there is machine code of it."""
+    if CODE._engine.get_global_value_address(name):
+        _SET_AT_ONCE(name, environment)
+    else:
+        _WAITING[name] = environment
+
+
+CALLS, CODE = Calls(), cpu_target.target_context.codegen()
+_SET_AT_ONCE, _WAITING = CODE.set_env, dict[str, Any]()
+
+
+def spare() -> None:
+    """Have numba work like this from now on."""
+    BaseFunction.get_call_type = lambda *call: CALLS.resolve(*call)  # type: ignore[method-assign]
+    CODE._library_class, CODE.set_env = _Library, _set_environment

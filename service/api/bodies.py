@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from fastapi import Request
 
 from service.api.problems import Problem
+from service.cases.slips import Slip
 
 Result = TypeVar("Result")
 LARGEST_BODY = 1_000_000
@@ -48,7 +49,10 @@ def parse(body: bytes) -> Any:
             json.dumps(value, ensure_ascii=False).encode()  # half a surrogate pair is not text
     except RecursionError:
         raise Problem(400, "malformed_json", "the body is nested too deeply") from None
-    except ValueError as error:  # of the text, of the JSON, of a number with too many digits
+    except json.JSONDecodeError as error:
+        slip = Slip.of(error)
+        raise Problem(400, "malformed_json", f"the body is not strict JSON: {slip}: {slip.text.strip()!r}") from None
+    except ValueError as error:  # of the text, of a number with too many digits
         raise Problem(400, "malformed_json", f"the body is not strict JSON: {error}"[:300]) from None
     return value
 

@@ -13,6 +13,7 @@ from pydantic import ValidationError
 from service.cases.build import build_scene
 from service.cases.case import CaseSpec
 from service.cases.errors import CaseError, FieldError
+from service.cases.slips import Slip
 from service.cases.suggestions import suggested
 
 RESOLUTION = ("intervals", "dt_max", "increment_tolerance")
@@ -87,7 +88,8 @@ def _read(text: str, name: str) -> dict[str, Any]:
     try:
         raw = json.loads(text, object_pairs_hook=_without_repeats)
     except json.JSONDecodeError as error:
-        fault = f"is not JSON in {name}, line {error.lineno}, column {error.colno}: {error.msg}"
+        slip = Slip.of(error)
+        fault = f"is not JSON in {name}, {slip}\n  {slip.text}\n  {slip.mark}"
         raise CaseError([FieldError("", None, fault)]) from None
     except RecursionError:
         raise CaseError([FieldError("", None, f"must not be nested so deeply as in {name}")]) from None

@@ -83,6 +83,14 @@ def test_what_is_not_a_json_object_is_refused(client, where, name):
     assert client.get("/v1/jobs").json()["jobs"] == []
 
 
+def test_a_slip_in_a_body_is_told_with_its_place_and_what_was_meant(client):
+    body = b'{"case": "goyal-2003",\n "set": {"rod.length": 1,5}}'
+    problem = assert_problem(client.post("/v1/validate", content=body, headers=JSON), 400)
+    assert problem["type"] == "urn:hockle:problem:malformed_json"
+    assert problem["detail"] == ("the body is not strict JSON: line 2, column 26: a number has a decimal point, not a "
+                                 """comma: write 1.5, not 1,5: '"set": {"rod.length": 1,5}}'""")
+
+
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_faulty_case_is_refused_with_a_pointer_to_each_fault(client, case, name):
     key, value = CHANGES[name]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import chain, pairwise
 from math import hypot, pi
 from typing import Any
@@ -11,9 +11,11 @@ import numpy as np
 
 from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
+from service.cases.extents import forces, largest, times, widest
 from service.cases.initial import Straight
 from service.cases.quantities import ProfileTable, ScheduleTable
 from service.cases.size import tables_in
+from service.cases.units import units_of
 from solver import Curve, End, Scene
 from solver.kernels.rotation import matrix_of
 from solver.physics.axial import LARGEST_STRAIN, distances, has_to_stretch
@@ -25,16 +27,12 @@ from solver.scene.view import View
 
 WIDEST, THICKEST = 3.0, 0.2
 """Diameter in m, as of the largest pipes, and in rod lengths, beyond which the theory of thin rods says little."""
-MATERIALS = {"density": (10.0, 25e3), "youngs_modulus": (1e3, 2e12), "shear_modulus": (3e2, 1e12)}
-"""kg/m³ and Pa: from foam and soft gels to osmium and diamond; DNA (1,700 kg/m³, 0.3 GPa) is well within."""
 GRAVITY = (1.0, 30.0)
 """m/s²: less than on the moon, more than on Jupiter."""
 SHORTENED = 1e-4
 """Part of its length by which a straight rod may be pressed shorter."""
 SHEARED = 0.5
 """Shear strain of a rod's surface beyond that of any material but rubber."""
-TURNED_OVER = 4.0 * pi
-"""Rotation (rad) of an end about an axis across the rod, beyond which it is likely to be in degrees."""
 BEYOND = 1.0 + 1e-6
 """Part of the rod's length up to which a table ends at the rod's end."""
 BESIDE, WITHIN = 8.0, 0.9
@@ -47,35 +45,21 @@ GREENHILL = 8.987
 
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
-    return [*_thickness(spec, scene), *_materials(spec), *_gravity(spec), *_contact(spec, scene),
+    return [*_thickness(spec, scene), *units_of(spec, scene), *_gravity(spec), *_contact(spec, scene),
             *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_begins_inside(scene),
-            *_friction_at_rest(spec), *_touches_itself(scene), *_degrees(scene), *_stretched(scene),
+            *_friction_at_rest(spec), *_touches_itself(scene), *_stretched(scene),
             *_pulled_apart(scene), *_tables(spec), *_frames(spec), *_idle(scene), *_held_back(scene),
             *_too_fast(spec, scene)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
-    widest = _widest(scene)
-    if widest > THICKEST * spec.rod.length:
+    diameter = widest(scene)
+    if diameter > THICKEST * spec.rod.length:
         rule = f"is more than a fifth of the rod's length of {spec.rod.length:g} m: the rod is not thin"
-        yield FieldError("/rod/diameter", widest, rule)
-    if widest > WIDEST:
-        yield FieldError("/rod/diameter", widest, f"is more than {WIDEST:g} m: is it given in m?")
-
-
-def _widest(scene: Scene) -> float:
-    """The largest diameter (m)."""
-    return float(np.max(scene.rod.diameter(np.linspace(0.0, scene.rod.length, 201))))
-
-
-def _materials(spec: CaseSpec) -> Iterator[FieldError]:
-    if spec.rod.density == 1.0:  # units in which the rod's own density is one
-        return
-    for name, (least, most) in MATERIALS.items():
-        value = getattr(spec.rod, name)
-        if value is not None and not least <= value <= most:
-            unit = "kg/m³" if name == "density" else "Pa"
-            yield FieldError(f"/rod/{name}", value, f"is that of no material ({least:g} to {most:g} {unit})")
+        rule += "; is it given in mm?" if diameter > spec.rod.length else ""
+        yield FieldError("/rod/diameter", diameter, rule)
+    if diameter > WIDEST:
+        yield FieldError("/rod/diameter", diameter, f"is more than {WIDEST:g} m: is it given in m?")
 
 
 def _gravity(spec: CaseSpec) -> Iterator[FieldError]:
@@ -103,7 +87,7 @@ def _contact(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
 def _sheared(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     """Ends that wring the rod, as where turns were meant for rad, or rad/s last too long."""
     turned = _turned(scene)
-    strain = 0.5 * _widest(scene) * turned / spec.rod.length
+    strain = 0.5 * widest(scene) * turned / spec.rod.length
     if strain > SHEARED:
         rule = (f"turn against each other by {turned / (2 * pi):.3g} turns: what is left as twist shears the rod's "
                 f"surface by up to {strain:.2g}")
@@ -119,7 +103,7 @@ def _column(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     matrix_of(quaternion[0], R)
     if not scene.keeps(View(2, s, quaternion, kappa, R)):
         return
-    shortest = min(_travel(scene.end, R, t) - _travel(scene.start, R, t) for t in _times(scene)[::20])
+    shortest = min(_travel(scene.end, R, t) - _travel(scene.start, R, t) for t in times(scene)[::20])
     if shortest < -SHORTENED * spec.rod.length:
         rule = (f"has nothing across the rod, which is straight and whose ends come {-shortest:.3g} m nearer to each "
                 "other: it would be pressed shorter instead of buckling; a small load says to which side it is to bend")
@@ -148,7 +132,7 @@ def _begins_inside(scene: Scene) -> Iterator[FieldError]:
         where = "/loads/floor" if isinstance(solid, Floor) else f"/loads/obstacles/{count}"
         count += not isinstance(solid, Floor)
         deepest = float(np.max(solid.depth(r)))
-        if deepest > _widest(scene):
+        if deepest > widest(scene):
             rule = f"has the rod in it at t = 0, by {deepest:.3g} m: it would throw the rod out"
             yield FieldError(where, None, rule)
 
@@ -181,26 +165,12 @@ def _touches_itself(scene: Scene) -> Iterator[FieldError]:
         yield FieldError("/initial", float(apart[one, other]), rule)
 
 
-def _degrees(scene: Scene) -> Iterator[FieldError]:
-    """An end that is turned over several times."""
-    for name, end in (("start", scene.start), ("end", scene.end)):
-        for i in (0, 1):
-            condition = end.rotation[i][0]
-            largest = float(np.max(np.abs(condition.curve(_times(scene)))))
-            if condition.kind == "position" and largest > TURNED_OVER:
-                turns = largest / (2 * pi)
-                rule = f"is an angle in rad, of {turns:.3g} turns about an axis across the rod: is it in degrees?"
-                yield FieldError(f"/ends/{name}/theta{i + 1}", largest, rule)
-
-
 def _stretched(scene: Scene) -> Iterator[FieldError]:
     """A rod that loads, or its weight, would stretch by more than the theory bears."""
     s = np.linspace(0.0, scene.rod.length, 11)
     stiffness = min((float(np.min(law.EA(s))) for law in scene.rod.laws if isinstance(law, Stretch)), default=np.inf)
-    ends = ([c[0].curve for c in end.translation if c[0].kind == "load"] for end in (scene.start, scene.end))
-    vectors: list[Iterable[Curve]] = [*(load.force for load in scene.points), *ends]
     weight = float(np.mean(scene.rod.mass(s))) * scene.rod.length * hypot(*scene.gravity)
-    strain = max([weight, *(_largest(vector, scene) for vector in vectors)]) / stiffness
+    strain = max(weight, *forces(scene).values()) / stiffness
     if strain > LARGEST_STRAIN:
         rule = (f"is so small that loads or the weight may stretch the rod by {strain:.2g} of its length, more than "
                 f"the {LARGEST_STRAIN:g} up to which a run goes on")  # fmt: skip
@@ -227,14 +197,14 @@ def _idle(scene: Scene) -> Iterator[FieldError]:
     """Loads that are zero, or that an end bears, a current that drags at nothing, and switches that come too late."""
     ends = {0.0: scene.start, scene.rod.length: scene.end}
     for i, load in enumerate(scene.points):
-        if _largest(load.force, scene) == _largest(load.moment, scene) == 0.0:
+        if largest(load.force, scene) == largest(load.moment, scene) == 0.0:
             yield FieldError(f"/loads/point/{i}", None, "has neither a force nor a moment until t_end: it does nothing")
         elif load.s in ends and _is_clamp(ends[load.s]):
             yield FieldError(f"/loads/point/{i}", load.s, "is where a clamp bears the load: the rod does not feel it")
     for i, spread in enumerate(scene.distributed):
         parts = (*spread.force, *spread.moment)
         zero = all(isinstance(part, Curve) and part.is_zero for part in parts)
-        if zero or _largest((spread.schedule,), scene) == 0.0:
+        if zero or largest((spread.schedule,), scene) == 0.0:
             rule = "has neither a force nor a moment until t_end: it does nothing"
             yield FieldError(f"/loads/distributed/{i}", None, rule)
     fluid = scene.fluid
@@ -287,12 +257,6 @@ def _too_fast(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
                 yield FieldError(where, speed, rule)
 
 
-def _largest(vector: Iterable[Curve], scene: Scene) -> float:
-    """The largest length of a vector in time."""
-    components = [np.asarray(curve(_times(scene))) for curve in vector]
-    return float(np.max(np.linalg.norm(components, axis=0))) if components else 0.0
-
-
 def _travel(end: End, R: Any, t: float) -> float:
     """How far an end has gone along a rod that stays straight, where it is held all the time."""
     along = R[:, 2] if end.frame == "lab" else np.array([0.0, 0.0, 1.0])
@@ -304,7 +268,7 @@ def _gives_way(spec: CaseSpec, scene: Scene) -> bool:
     """Whether the rod is slack, or its ends can come nearer to each other."""
     components = chain(scene.start.translation, scene.end.translation)
     conditions = [condition for component in components for condition in component]
-    moved = any(condition.kind == "load" or np.any(condition.curve(_times(scene))) for condition in conditions)
+    moved = any(condition.kind == "load" or np.any(condition.curve(times(scene))) for condition in conditions)
     return moved or not isinstance(spec.initial, Straight)
 
 
@@ -315,21 +279,17 @@ def _turned(scene: Scene) -> float:
 
 
 def _turn(end: End, scene: Scene) -> Any:
-    """How far an end is turned about the rod at `_times`; None where its moment is given."""
-    times = _times(scene)
+    """How far an end is turned about the rod at `times`; None where its moment is given."""
+    t = times(scene)
     condition, *later = end.rotation[2]
-    value = np.asarray(condition.curve(times))
+    value = np.asarray(condition.curve(t))
     if condition.kind == "load":
         return None
     if condition.kind == "rate":
-        steps = 0.5 * (value[1:] + value[:-1]) * np.diff(times)
+        steps = 0.5 * (value[1:] + value[:-1]) * np.diff(t)
         value = np.concatenate([[0.0], np.cumsum(steps)])
-    driven = times <= later[0].since if later else np.full(len(times), True)
+    driven = t <= later[0].since if later else np.full(len(t), True)
     return np.where(driven, value, value[driven][-1]) - value[0]
-
-
-def _times(scene: Scene) -> Any:
-    return np.linspace(0.0, scene.t_end, 2001)
 
 
 def _frames(spec: CaseSpec) -> Iterator[FieldError]:

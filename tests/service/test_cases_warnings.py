@@ -65,9 +65,9 @@ def test_a_rod_that_buckles_by_twist_needs_contact(turns: float, end: str, warne
 
 
 
-@pytest.mark.parametrize(("turned", "warned"), [(720.0, True), (72.0, False)])
+@pytest.mark.parametrize(("turned", "warned"), [(725.0, True), (72.0, False)])
 def test_a_rod_that_its_ends_wring_is_told_so(turned: float, warned: bool):
-    """Of D = L / 100 the surface is sheared by 720 / 200."""
+    """Of D = L / 100 the surface is sheared by 725 / 200."""
     twist = {"t": [0.0, 1.0], "value": [0.0, turned], "interpolation": "linear"}
     found = _warned(PRESSED | {"ends": {"start": {"preset": "clamp", "theta3": twist}, "end": "clamp"}})
     assert [warning.pointer for warning in found] == ["/ends"] * warned

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from service.cases.bends import bends_of
 from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
 from service.cases.extents import forces, largest, times, widest
@@ -45,9 +46,9 @@ GREENHILL = 8.987
 
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
-    return [*_thickness(spec, scene), *units_of(spec, scene), *_gravity(spec), *_contact(spec, scene),
-            *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec), *_begins_inside(scene),
-            *_friction_at_rest(spec), *_touches_itself(scene), *_stretched(scene),
+    return [*_thickness(spec, scene), *units_of(spec, scene), *bends_of(spec, scene), *_gravity(spec),
+            *_contact(spec, scene), *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec),
+            *_begins_inside(scene), *_friction_at_rest(spec), *_touches_itself(scene), *_stretched(scene),
             *_pulled_apart(scene), *_tables(spec), *_frames(spec), *_idle(scene), *_held_back(scene),
             *_too_fast(spec, scene)]  # fmt: skip
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,6 +27,8 @@ _RULES = {
     "int_from_float": "must be an integer",
     "int_type": "must be an integer",
     "int_parsing": "must be an integer",
+    "string_type": "must be a text",
+    "bool_type": "must be true or false",
     "string_pattern_mismatch": "must match {pattern}",
     "string_too_short": "must have at least {min_length} characters",
     "string_too_long": "must have at most {max_length} characters",
@@ -37,12 +40,20 @@ _RULES = {
     "enum": "must be {expected}",
     "value_error": "{error}",
 }
+_NUMBERS = (
+    (r"[-+]?\d+\.?\d*([eE][-+]?\d+)?", " without quotation marks"),
+    (r"[-+]?\d+,\d+.*", " with a point, not a comma"),
+    (r"[-+]?\d+\.?\d*([eE][-+]?\d+)?\s*[^\W\d].*", " alone, in SI units"),
+)
+"""Texts that were meant as numbers, and what is said of them."""
 TAG = re.compile("<[a-z]+>")
 """What tells the kinds of a value apart; it is no field."""
 MOST_ERRORS = 100
 """Faults of a case that are listed one by one."""
 LONGEST_POINTER = 300
 _LONGEST_VALUE = 60
+_JSON = (bool, list, tuple, dict)
+"""What Python writes in other words than JSON."""
 _LARGEST_INTEGER = 10**15
 """Beyond it an integer is told by its size, not by its digits."""
 
@@ -54,6 +65,11 @@ class FieldError:
     pointer: str
     value: Any
     rule: str
+
+    @property
+    def no_list(self) -> bool:
+        """Whether there must be a list."""
+        return self.rule.startswith(_RULES["tuple_type"])
 
     @property
     def unknown(self) -> bool:
@@ -76,7 +92,7 @@ class CaseError(ValueError):
     @classmethod
     def of(cls, error: ValidationError) -> CaseError:
         """The same faults as pydantic found them, in the words of this package."""
-        details = error.errors(include_url=False)
+        details = [detail for detail in error.errors(include_url=False) if not _is_long_enough(detail)]
         return cls([field_error(detail) for detail in details[:MOST_ERRORS]], max(len(details) - MOST_ERRORS, 0))
 
 
@@ -95,18 +111,44 @@ def field_error(detail: ErrorDetails) -> FieldError:
     kind, value = detail["type"], detail["input"]
     if kind == "refused":
         at = context["at"]
-        refused = value.get(at) if isinstance(value, dict) else value
-        return FieldError(pointer + (f"/{at}" if at else ""), plain(context.get("value", refused)), context["rule"])
+        if "value" not in context and not isinstance(value, dict):  # of what tells the kinds of an object apart
+            return FieldError(pointer, value, f"must be an object, whose {at} {context['rule']}")
+        refused = context["value"] if "value" in context else value.get(at)
+        return FieldError(pointer + (f"/{at}" if at else ""), plain(refused), context["rule"])
     if kind == "string_pattern_mismatch" and (words := IN_WORDS.get(context["pattern"])):
         return FieldError(pointer, value, words)
     if kind in _RULES:
-        return FieldError(pointer, None if kind == "missing" else plain(value), _RULES[kind].format(**context))
+        return FieldError(pointer, None if kind == "missing" else plain(value), _rule(detail))
     return FieldError(pointer, plain(value), detail["msg"].replace("Input should", "must"))
 
 
+def _rule(detail: ErrorDetails) -> str:
+    """The rule that a fault of a known kind breaks, and what else the value tells."""
+    kind, value, place = detail["type"], detail["input"], detail["loc"]
+    rule = _RULES[kind].format(**detail.get("ctx", {}))
+    if kind == "missing":
+        short_list = isinstance(value, (list, tuple)) and isinstance(place[-1], int)
+        return rule + (f": the list ends after {len(value)} entries" if short_list else "")
+    if value is None:
+        return f"{rule}, not null"
+    if isinstance(value, str) and kind in ("float_type", "int_type"):
+        return rule + next((words for texts, words in _NUMBERS if re.fullmatch(texts, value.strip(), re.S)), "")
+    if isinstance(value, list) and kind == "float_type" and place[-1] == "<number>":
+        return f"{rule} or a table, which is an object"
+    return rule
+
+
+def _is_long_enough(detail: ErrorDetails) -> bool:
+    """Whether a list is refused for too few entries only because some of them are refused."""
+    return detail["type"] == "too_short" and len(detail["input"]) >= detail["ctx"]["min_length"]
+
+
 def short(value: object) -> str:
-    """A value as a message quotes it: large integers as 1e300, long texts by their start."""
-    text = repr(plain(value))
+    """A value as a message quotes it: large integers as 1e300, lists and objects as JSON, long texts by their start."""
+    told = plain(value)
+    text = repr(told)
+    if isinstance(told, _JSON):
+        text = json.dumps(told, ensure_ascii=not text.isprintable(), default=repr)
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."
 
 

@@ -1,29 +1,44 @@
-"""What a field that does not exist was meant to be."""
+"""What a field that does not exist was meant to be, and where it belongs; and what a list must hold."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from difflib import get_close_matches
-from typing import Any, get_args
+from functools import cache
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel
 
 from service.cases.errors import CaseError, FieldError
+from service.cases.other_names import named_otherwise
+
+LIKE, ALIKE = 0.6, 0.8
+"""How much of its letters a name shares with one that is like it; and with one that it is likely a slip of."""
+MOST_PLACES = 3
+"""Places of fields of one name that are told."""
 
 
 def suggested(error: CaseError, whole: type[BaseModel]) -> CaseError:
-    """The same faults; where a field of `whole` is unknown, with the name that is most like it."""
+    """The same faults; where a field of `whole` is unknown, with the name or the place that was likely meant; and where
+    there is no list, with what it must be of."""
     return CaseError([_suggested(fault, whole) for fault in error.errors], error.more)
 
 
 def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
-    if not fault.unknown or not fault.pointer:  # a field that is named as what tells kinds apart has no pointer
+    if not fault.pointer or not (fault.unknown or fault.no_list):  # what is named as a kind of value has no pointer
         return fault
     *path, name = (part.replace("~1", "/").replace("~0", "~") for part in fault.pointer.split("/")[1:])
+    if fault.no_list:
+        listed = fault.rule.replace("a list", f"a list{_entries(whole, [*path, name])}", 1)
+        return FieldError(fault.pointer, fault.value, listed)
     known = fields_at(whole, path)
     if name in known:  # of the kinds that may stand there
         return FieldError(fault.pointer, fault.value, f"{fault.rule} of this kind of {path[-1]}, but of another")
-    return with_suggestion(fault, name, known)
+    meant = named_otherwise(name, known)
+    if meant:
+        return FieldError(fault.pointer, fault.value, f"{fault.rule}: did you mean {meant}?")
+    hint = did_you_mean(name, known, ALIKE) or _elsewhere(name, whole) or did_you_mean(name, known)
+    return FieldError(fault.pointer, fault.value, fault.rule + hint)
 
 
 def with_suggestion(fault: FieldError, name: str, names: Sequence[str]) -> FieldError:
@@ -31,21 +46,64 @@ def with_suggestion(fault: FieldError, name: str, names: Sequence[str]) -> Field
     return FieldError(fault.pointer, fault.value, fault.rule + did_you_mean(name, names))
 
 
-def did_you_mean(name: str, names: Sequence[str]) -> str:
+def did_you_mean(name: str, names: Sequence[str], least: float = LIKE) -> str:
     """The known name that is most like an unknown one, in whatever letters, as the end of a message; if one is."""
     spellings = {known.lower(): known for known in names}
-    near = get_close_matches(name[:80].lower(), spellings, n=1)
+    near = get_close_matches(name[:80].lower(), spellings, n=1, cutoff=least)
     return f": did you mean {spellings[near[0]]}?" if near else ""
 
 
 def fields_at(whole: type[BaseModel], path: Sequence[str]) -> list[str]:
     """The names of the fields that an object at this path within a model can have."""
+    return sorted({name for model in _models_at(whole, path) for name in model.model_fields})
+
+
+def _entries(whole: type[BaseModel], path: Sequence[str]) -> str:
+    """What the list at this path must hold, as the end of a message: so many entries, or objects; if that is known."""
+    *above, name = path
+    kinds = [kind for model in _models_at(whole, above) if name in model.model_fields
+             for kind in _lists(model.model_fields[name].annotation)]  # fmt: skip
+    counts = sorted({len(kind) for kind in kinds if ... not in kind})
+    if counts:
+        return f" of {' or '.join(map(str, counts))} entries"
+    return " of objects: [{...}]" if any(_models(kind[0]) for kind in kinds) else ""
+
+
+def _lists(annotation: Any) -> list[tuple[Any, ...]]:
+    """What the lists hold that a field may be: `...` after what may stand in them any number of times."""
+    parts = get_args(annotation)
+    return [parts] if get_origin(annotation) is tuple else [kind for part in parts for kind in _lists(part)]
+
+
+def _models_at(whole: type[BaseModel], path: Sequence[str]) -> list[type[BaseModel]]:
+    """The models that may stand at this path within a model."""
     models = [whole]
     for part in path:
         if not part.isdigit():
             models = [inner for model in models if part in model.model_fields
                       for inner in _models(model.model_fields[part].annotation)]
-    return sorted({name for model in models for name in model.model_fields})
+    return models
+
+
+def _elsewhere(name: str, whole: type[BaseModel]) -> str:
+    """Where a field of this name belongs, as the end of a message; if there are few such places."""
+    places = _places(whole).get(name, ())
+    return f" here: its place is {' or '.join(places)}" if 0 < len(places) <= MOST_PLACES else ""
+
+
+@cache
+def _places(whole: type[BaseModel]) -> dict[str, tuple[str, ...]]:
+    """The dotted keys at which a field of each name may stand; of lists, those of the first entry."""
+    found: dict[str, tuple[str, ...]] = {}
+    left: list[tuple[str, type[BaseModel]]] = [("", whole)]
+    while left:
+        above, model = left.pop(0)
+        for name, field in model.model_fields.items():
+            key = above + name
+            found[name] = tuple(dict.fromkeys((*found.get(name, ()), key)))
+            listed = ".0" if _lists(field.annotation) else ""
+            left += [(f"{key}{listed}.", inner) for inner in _models(field.annotation)]
+    return found
 
 
 def _models(annotation: Any) -> list[type[BaseModel]]:

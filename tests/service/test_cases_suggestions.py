@@ -6,7 +6,9 @@ from typing import Any
 
 import pytest
 
-from service.cases import CaseError, apply_settings, load_case, parse_case
+from service.cases import CaseError, CaseSpec, apply_settings, load_case, parse_case
+from service.cases.other_names import OTHER_NAMES, named_otherwise
+from service.cases.suggestions import fields_at
 
 
 def refusal(setting: str, value: Any) -> CaseError:
@@ -24,6 +26,68 @@ def refusal(setting: str, value: Any) -> CaseError:
 def test_an_unknown_field_is_told_with_the_one_that_was_meant(setting: str, meant: str):
     value: Any = {"preset": "clamp", "omga3": 0.0} if setting == "ends.start" else 1.0
     assert f"is not a known field: did you mean {meant}?" in str(refusal(setting, value))
+
+
+@pytest.mark.parametrize(("setting", "hint"), [
+    ("rod.fluid", " here: its place is fluid"), ("gravity", " here: its place is loads.gravity"),
+    ("interval", " here: its place is output.interval"), ("output.t_end", " here: its place is t_end"),
+    ("loads.force", " here: its place is loads.distributed.0.force or loads.point.0.force"),
+    ("rod.E", ": did you mean youngs_modulus?"), ("rod.G", ": did you mean shear_modulus?"),
+    ("rod.radius", ": did you mean diameter, which is twice the radius?"),
+    ("rod.nu", ": did you mean shear_modulus, which is E / (2 (1 + nu))?"),
+    ("ends.left", ": did you mean start?"), ("numerics.dt", ": did you mean dt_max?"),
+    ("duration", ": did you mean t_end?"),
+    ("rod.f3", ""), ("rod.interpolation", ""), ("stiffnesses", ""),
+])  # fmt: skip
+def test_a_field_by_another_name_or_in_another_place_is_told_as_that(setting: str, hint: str):
+    [fault] = [fault for fault in refusal(setting, 1.0).errors if fault.pointer == "/" + setting.replace(".", "/")]
+    assert fault.rule == "is not a known field" + hint
+
+
+def test_a_force_at_an_end_is_one_of_its_components():
+    fault = refusal("ends.end", {"preset": "free", "force": [1, 0, 0]}).errors[0]
+    assert fault.rule == "is not a known field: did you mean f3, f1 or f2?"
+
+
+PLACES = [fields_at(CaseSpec, path.split(".") if path else []) for path in
+          ("", "rod", "rod.diameter", "initial", "ends", "ends.end", "ends.end.f3", "fluid", "loads", "loads.point",
+           "loads.floor", "loads.obstacles", "numerics", "output")]  # fmt: skip
+
+
+def test_every_other_name_is_of_a_field_that_there_is():
+    told = {named_otherwise(name, fields).split(",")[0] for fields in PLACES for _, others, _ in OTHER_NAMES
+            for name in others.split() if name not in fields}  # fmt: skip
+    assert told - {""} == {field for field, *_ in OTHER_NAMES}
+
+
+@pytest.mark.parametrize(("setting", "value", "told"), [
+    ("rod.length", "1.5e-3", "/rod/length must be a number without quotation marks, got '1.5e-3'"),
+    ("rod.length", "1,5", "/rod/length must be a number with a point, not a comma, got '1,5'"),
+    ("rod.length", "1.5 mm", "/rod/length must be a number alone, in SI units, got '1.5 mm'"),
+    ("rod.length", "long", "/rod/length must be a number, got 'long'"),
+    ("rod.length", None, "/rod/length must be a number, not null"),
+    ("rod.length", True, "/rod/length must be a number, got true"),
+    ("rod.length", {"value": [1.0, None]}, '/rod/length must be a number, got {"value": [1.0, null]}'),
+    ("rod.diameter", [0.01, 0.02], "/rod/diameter must be a number or a table, which is an object, got [0.01, 0.02]"),
+    ("numerics.intervals", "100", "/numerics/intervals must be an integer without quotation marks, got '100'"),
+    ("output.topology", "yes", "/output/topology must be true or false, got 'yes'"),
+    ("name", 3, "/name must be a text, got 3"),
+    ("loads.gravity", [0.0, -9.81], "/loads/gravity/2 is required: the list ends after 2 entries"),
+    ("loads.gravity", -9.81, "/loads/gravity must be a list of 3 entries, got -9.81"),
+    ("loads.gravity", None, "/loads/gravity must be a list of 3 entries, not null"),
+    ("loads.point", {"s": 0.5}, '/loads/point must be a list of objects: [{...}], got {"s": 0.5}'),
+    ("output.fields", "r", "/output/fields must be a list, got 'r'"),
+    ("initial", "straight", "/initial must be an object, whose shape must be straight or centreline, got 'straight'"),
+    ("initial.direction", [0, 0, 0], "/initial/direction must not be zero, got [0.0, 0.0, 0.0]"),
+])  # fmt: skip
+def test_a_value_of_another_kind_is_told_with_what_was_likely_meant(setting: str, value: Any, told: str):
+    assert str(refusal(setting, value)) == told
+
+
+def test_a_list_with_a_fault_in_it_is_not_told_to_be_too_short():
+    [fault] = refusal("output.fields", ["position"]).errors
+    assert fault.pointer == "/output/fields/0"
+    assert refusal("output.fields", []).errors[0].rule == "must have at least 1 entries"
 
 
 def test_a_field_of_another_kind_is_told_as_that():

@@ -60,13 +60,20 @@ def fields_at(whole: type[BaseModel], path: Sequence[str]) -> list[str]:
 
 def _entries(whole: type[BaseModel], path: Sequence[str]) -> str:
     """What the list at this path must hold, as the end of a message: so many entries, or objects; if that is known."""
-    *above, name = path
-    kinds = [kind for model in _models_at(whole, above) if name in model.model_fields
-             for kind in _lists(model.model_fields[name].annotation)]  # fmt: skip
+    kinds = _lists_at(whole, path)
     counts = sorted({len(kind) for kind in kinds if ... not in kind})
     if counts:
         return f" of {' or '.join(map(str, counts))} entries"
     return " of objects: [{...}]" if any(_models(kind[0]) for kind in kinds) else ""
+
+
+def _lists_at(whole: type[BaseModel], path: Sequence[str]) -> list[tuple[Any, ...]]:
+    """What the lists hold that may stand at this path within a model."""
+    *above, name = path
+    if name.isdigit():
+        return [inner for kind in _lists_at(whole, above) for inner in _lists(kind[0])]
+    return [kind for model in _models_at(whole, above) if name in model.model_fields
+            for kind in _lists(model.model_fields[name].annotation)]  # fmt: skip
 
 
 def _lists(annotation: Any) -> list[tuple[Any, ...]]:

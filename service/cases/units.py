@@ -16,8 +16,11 @@ from solver.physics.axial import LARGEST_STRAIN
 
 MATERIALS = {"density": (10.0, 25e3), "youngs_modulus": (1e3, 2e12), "shear_modulus": (3e2, 1e12)}
 """kg/m³ and Pa: from foam and soft gels to osmium and diamond; DNA (1,700 kg/m³, 0.3 GPa) is well within."""
-OTHER_UNITS = {"density": (0.1, "g/cm³"), "youngs_modulus": (0.1, "MPa or GPa"), "shear_modulus": (0.03, "MPa or GPa")}
-"""From what value on, below those of all materials, it is likely to be given in which unit."""
+OTHER_UNITS = {
+    "density": ((5e-10, 5e-8, "t/mm³"), (5e-7, 5e-5, "kg/mm³"), (0.1, 10.0, "g/cm³")),
+    "youngs_modulus": ((0.1, 1e3, "MPa or GPa"),), "shear_modulus": ((0.03, 3e2, "MPa or GPa"),),
+}  # fmt: skip
+"""From what value on to which, below those of all materials, it is likely to be given in which unit."""
 METAL, SLOWEST = 2500.0, 6.0
 """kg/m³ of the lightest metals and glass; and m/s at which sound runs in them, if their modulus is in MPa."""
 FOAM, SOLID = 25.0, 1e8
@@ -50,9 +53,9 @@ def _range(spec: CaseSpec) -> Iterator[FieldError]:
         value = getattr(spec.rod, name)
         if value is not None and not least <= value <= most:
             unit = "kg/m³" if name == "density" else "Pa"
-            likely, other = OTHER_UNITS[name]
-            asked = f": is it in {other}?" if likely <= value < least else ""
-            yield FieldError(f"/rod/{name}", value, f"is that of no material ({least:g} to {most:g} {unit}){asked}")
+            asked = [f": is it in {other}?" for low, high, other in OTHER_UNITS[name] if low <= value < high]
+            rule = "".join([f"is that of no material ({least:g} to {most:g} {unit})", *asked])
+            yield FieldError(f"/rod/{name}", value, rule)
 
 
 def _moduli(spec: CaseSpec) -> Iterator[FieldError]:

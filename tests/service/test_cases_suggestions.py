@@ -76,6 +76,8 @@ def test_every_other_name_is_of_a_field_that_there_is():
     ("loads.gravity", -9.81, "/loads/gravity must be a list of 3 entries, got -9.81"),
     ("loads.gravity", None, "/loads/gravity must be a list of 3 entries, not null"),
     ("loads.point", {"s": 0.5}, '/loads/point must be a list of objects: [{...}], got {"s": 0.5}'),
+    ("initial", {"shape": "centreline", "points": [[0, 0, 0], [0, 0, 1], [0, 0, 2], 3]},
+     "/initial/points/3 must be a list of 3 entries, got 3"),
     ("output.fields", "r", "/output/fields must be a list, got 'r'"),
     ("initial", "straight", "/initial must be an object, whose shape must be straight or centreline, got 'straight'"),
     ("initial.direction", [0, 0, 0], "/initial/direction must not be zero, got [0.0, 0.0, 0.0]"),

@@ -28,6 +28,8 @@ SLIPS: list[tuple[dict[str, Any], str, str]] = [
     ({"rod.youngs_modulus": 2000.0, "rod.shear_modulus": 800.0, "rod.density": 1150.0}, "/rod/youngs_modulus",
      "stretch the rod by 11 of its length: is it in MPa?"),
     ({"rod.density": 7.85}, "/rod/density", "no material (10 to 25000 kg/m³): is it in g/cm³?"),
+    ({"rod.density": 7.85e-6}, "/rod/density", "is it in kg/mm³?"),
+    ({"rod.density": 7.85e-9}, "/rod/density", "is it in t/mm³?"),
     ({"rod.density": 19.3}, "/rod/density", "that of a solid: is it in g/cm³?"),
     ({"rod.density": 7850e6}, "/rod/density", "no material (10 to 25000 kg/m³)"),
     ({"rod.youngs_modulus": 8e10, "rod.shear_modulus": 2e11}, "/rod/shear_modulus", "are they swapped?"),

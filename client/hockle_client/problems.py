@@ -51,7 +51,11 @@ class Fault:
         return (self.pointer or "").removeprefix("/case") or self.parameter or "the case"
 
     def __str__(self) -> str:
-        return f"{self.place} {self.rule}" + ("" if self.value is None else f", got {self.value!r}")
+        fault = f"{self.place} {self.rule}"
+        if self.value is None:
+            return fault
+        told, colon, question = fault.rpartition(": ") if fault.endswith("?") else (fault, "", "")
+        return f"{told}, got {self.value!r}{colon}{question}"
 
 
 class Problem(HockleError):

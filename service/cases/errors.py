@@ -78,7 +78,10 @@ class FieldError:
 
     def __str__(self) -> str:
         fault = f"{self.pointer or 'the case'} {self.rule}"
-        return fault if self.value is None else f"{fault}, got {short(self.value)}"
+        if self.value is None:
+            return fault
+        told, colon, question = fault.rpartition(": ") if fault.endswith("?") else (fault, "", "")
+        return f"{told}, got {short(self.value)}{colon}{question}"
 
 
 class CaseError(ValueError):

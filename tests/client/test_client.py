@@ -78,6 +78,7 @@ def test_a_faulty_case_is_refused_with_what_is_wrong(client):
     assert (problem.status, problem.name, problem.type) == (422, "invalid_case", "urn:hockle:problem:invalid_case")
     assert {(fault.place, fault.value) for fault in problem.errors} == {("/t_end", -1), ("/numerics/intervalls", 3)}
     assert "/t_end must be > 0, got -1" in str(problem)
+    assert "/numerics/intervalls is not a known field, got 3: did you mean intervals?" in map(str, problem.errors)
     assert problem.document["detail"] == problem.detail and not problem.temporary
 
 

@@ -187,7 +187,7 @@ def test_a_faulty_list_query_is_refused_by_the_name_of_its_parameter(client, que
     ("variables=r&time_stride=0", "time_stride must be >= 1, got '0'"),
     ("variables=r&time_stride=2.5", "time_stride must be a whole number in digits, got '2.5'"),
     ("variables=r&format=xml", "format must be 'json', 'csv', 'netcdf' or 'arrow', got 'xml'"),
-    ("variables=r&t_mim=5", "t_mim is not a known field: did you mean t_min?, got '5'"),
+    ("variables=r&t_mim=5", "t_mim is not a known field, got '5': did you mean t_min?"),
 ])
 def test_a_refused_query_names_the_parameter_the_value_and_the_rule(client, query, told):
     problem = assert_problem(client.get(f"/v1/jobs/nobody/data?{query}"), 422)

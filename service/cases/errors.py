@@ -12,40 +12,9 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails, PydanticCustomError
 
+from service.cases.rules import RULES, rule_of
 from service.meaning import IN_WORDS
 
-_RULES = {
-    "missing": "is required",
-    "extra_forbidden": "is not a known field",
-    "finite_number": "must be a finite number",
-    "greater_than": "must be > {gt:g}",
-    "greater_than_equal": "must be >= {ge:g}",
-    "less_than": "must be < {lt:g}",
-    "less_than_equal": "must be <= {le:g}",
-    "float_type": "must be a number",
-    "float_parsing": "must be a number",
-    "int_from_float": "must be an integer",
-    "int_type": "must be an integer",
-    "int_parsing": "must be an integer",
-    "string_type": "must be a text",
-    "bool_type": "must be true or false",
-    "string_pattern_mismatch": "must match {pattern}",
-    "string_too_short": "must have at least {min_length} characters",
-    "string_too_long": "must have at most {max_length} characters",
-    "too_short": "must have at least {min_length} entries",
-    "too_long": "must have at most {max_length} entries",
-    "tuple_type": "must be a list",
-    "model_type": "must be an object",
-    "literal_error": "must be {expected}",
-    "enum": "must be {expected}",
-    "value_error": "{error}",
-}
-_NUMBERS = (
-    (r"[-+]?\d+\.?\d*([eE][-+]?\d+)?", " without quotation marks"),
-    (r"[-+]?\d+,\d+.*", " with a point, not a comma"),
-    (r"[-+]?\d+\.?\d*([eE][-+]?\d+)?\s*[^\W\d].*", " alone, in SI units"),
-)
-"""Texts that were meant as numbers, and what is said of them."""
 TAG = re.compile("<[a-z]+>")
 """What tells the kinds of a value apart; it is no field."""
 MOST_ERRORS = 100
@@ -69,12 +38,12 @@ class FieldError:
     @property
     def no_list(self) -> bool:
         """Whether there must be a list."""
-        return self.rule.startswith(_RULES["tuple_type"])
+        return self.rule.startswith(RULES["tuple_type"])
 
     @property
     def unknown(self) -> bool:
         """Whether there is no field of this name."""
-        return self.rule == _RULES["extra_forbidden"]
+        return self.rule == RULES["extra_forbidden"]
 
     def __str__(self) -> str:
         fault = f"{self.pointer or 'the case'} {self.rule}"
@@ -120,25 +89,9 @@ def field_error(detail: ErrorDetails) -> FieldError:
         return FieldError(pointer + (f"/{at}" if at else ""), plain(refused), context["rule"])
     if kind == "string_pattern_mismatch" and (words := IN_WORDS.get(context["pattern"])):
         return FieldError(pointer, value, words)
-    if kind in _RULES:
-        return FieldError(pointer, None if kind == "missing" else plain(value), _rule(detail))
+    if kind in RULES:
+        return FieldError(pointer, None if kind == "missing" else plain(value), rule_of(detail))
     return FieldError(pointer, plain(value), detail["msg"].replace("Input should", "must"))
-
-
-def _rule(detail: ErrorDetails) -> str:
-    """The rule that a fault of a known kind breaks, and what else the value tells."""
-    kind, value, place = detail["type"], detail["input"], detail["loc"]
-    rule = _RULES[kind].format(**detail.get("ctx", {}))
-    if kind == "missing":
-        short_list = isinstance(value, (list, tuple)) and isinstance(place[-1], int)
-        return rule + (f": the list ends after {len(value)} entries" if short_list else "")
-    if value is None:
-        return f"{rule}, not null"
-    if isinstance(value, str) and kind in ("float_type", "int_type"):
-        return rule + next((words for texts, words in _NUMBERS if re.fullmatch(texts, value.strip(), re.S)), "")
-    if isinstance(value, list) and kind == "float_type" and place[-1] == "<number>":
-        return f"{rule} or a table, which is an object"
-    return rule
 
 
 def _is_long_enough(detail: ErrorDetails) -> bool:

@@ -71,6 +71,11 @@ def test_every_other_name_is_of_a_field_that_there_is():
     ("rod.length", True, "/rod/length must be a number, got true"),
     ("rod.length", {"value": [1.0, None]}, '/rod/length must be a number, got {"value": [1.0, null]}'),
     ("rod.diameter", [0.01, 0.02], "/rod/diameter must be a number or a table, which is an object, got [0.01, 0.02]"),
+    ("rod.diameter", None, "/rod/diameter must be a number or a table, which is an object, not null"),
+    ("rod.diameter", "thin", "/rod/diameter must be a number or a table, which is an object, got 'thin'"),
+    ("ends.end", None, "/ends/end must be an object or the name of a preset, not null"),
+    ("rod.kappa0", 1.0, "/rod/kappa0 must be a list of 3 entries or 'initial', got 1.0"),
+    ("rod.kappa0", "straight", "/rod/kappa0 must be 'initial' or a list of 3 entries, got 'straight'"),
     ("numerics.intervals", "100", "/numerics/intervals must be an integer without quotation marks, got '100'"),
     ("output.topology", "yes", "/output/topology must be true or false, got 'yes'"),
     ("name", 3, "/name must be a text, got 3"),
@@ -86,6 +91,10 @@ def test_every_other_name_is_of_a_field_that_there_is():
 ])  # fmt: skip
 def test_a_value_of_another_kind_is_told_with_what_was_likely_meant(setting: str, value: Any, told: str):
     assert str(refusal(setting, value)) == told
+
+
+def test_a_text_of_a_megabyte_is_told_of_at_once():
+    assert refusal("rod.length", "1" * 1_000_000 + "°").errors[0].rule == "must be a number"
 
 
 def test_a_list_with_a_fault_in_it_is_not_told_to_be_too_short():

@@ -10,6 +10,10 @@ VALUE, NAME, COMMA, COLON = "Expecting value", "Expecting property name", "Expec
 NUMBER = "a number is written as 15, -0.5 or 1.5e9"
 OPEN = "the {open} of line {line} is not closed"
 SLIPS = (
+    ("Invalid control", "", r"[\r\n]", "the text that begins in this line has no closing double quote"),
+    ("Invalid control", "", "", r"a control character in a text must be written as \t or \u0009, say"),
+    ("Unterminated", "", "", "the text that begins here has no closing double quote"),
+    (r"Invalid \\", "", "", r"a backslash in a text is written twice: \\"),
     ("", "", r"//|/\*|#", "JSON has no comments: take it away, or put it into `description`"),
     ("", "", "[“”„‟«»″]", 'this is the quotation mark of a printed text: write "'),
     ("", "", "['‘’`]", 'names and texts stand in double quotes: write "'),
@@ -44,10 +48,6 @@ SLIPS = (
     (VALUE, "", r"\(", "a list stands in brackets: [0, 0, 1]"),
     (VALUE, "", r"[^\W\d]", 'a text stands in double quotes: write "{word}"'),
     (VALUE, "", "", "a number, a text in double quotes, a list or an object must stand here"),
-    ("Invalid control", "", r"[\r\n]", "the text that begins in this line has no closing double quote"),
-    ("Invalid control", "", "", r"a control character in a text must be written as \t or \u0009, say"),
-    ("Unterminated", "", "", "the text that begins here has no closing double quote"),
-    (r"Invalid \\", "", "", r"a backslash in a text is written twice: \\"),
 )  # fmt: skip
 """What Python says, what stands before the place, what stands there, and what that means: the first row that fits."""
 NEAR = 1000

@@ -26,7 +26,7 @@ def told(settings: dict[str, Any]) -> list[tuple[str, str]]:
 ])  # fmt: skip
 def test_a_natural_shape_that_no_rod_has_is_pointed_out_with_its_value(kappa0: Any, value: float, rule: str):
     [(pointer, text)] = told({"rod.kappa0": kappa0})
-    assert (pointer, rule in text, text.endswith(f", got {value}")) == ("/rod/kappa0", True, True)
+    assert (pointer, rule in text, f", got {value}" in text) == ("/rod/kappa0", True, True)
 
 
 @pytest.mark.parametrize("numerics", [{"tolerance": 1e-3}, {}])
@@ -55,4 +55,4 @@ def test_a_moment_that_would_fold_the_rod_is_pointed_out(settings: dict[str, Any
     """EJ = 0.00614 N m^2 = 0.614 N m times D."""
     found = told(settings)
     assert [at for at, _ in found] == ([pointer] if pointer else [])
-    assert all("163 rad/m" in text and text.endswith("got 1.0") for _, text in found)
+    assert all("163 rad/m" in text and ", got 1.0" in text for _, text in found)

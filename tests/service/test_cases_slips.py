@@ -52,6 +52,8 @@ SLIPS = [
     ('{"shape"', '["shape"', (6, 22), "this is a list"),
     ('"length":', '"length" =', (3, 14), "a colon is missing"),
     ('"length"', '"length', (3, 18), "no closing double quote"),
+    (GOOD, '{"rod', (1, 2), "the text that begins here has no closing double quote"),
+    (GOOD, '{"rod\n', (1, 6), "the text that begins in this line has no closing double quote"),
     ("straight", "C:\\data", (6, 27), "a backslash in a text is written twice"),
     ("  },", "  }},", (5, 5), "a } before it is one too many"),
     ("2.0\n}", "2.0\n}}", (8, 2), "this } closes nothing"),

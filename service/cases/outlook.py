@@ -37,6 +37,7 @@ SECONDS = {
     "on a floor": 4.2, "slides as a whole": 0.12, "overdamped": 0.12,
     "in space and moved or let go": 4.0, "flying freely": 0.12, "settling in space": 0.18, SLOWLY: 0.36,
     "long and heavy in water": 0.8, "shaken in water": 0.45, "towed through water": 0.18, "in water": 0.36,
+    "in space and in water": 0.6,
     "let go or loaded at once": 1.8, "let go and settling": 0.65, "let go gently": 0.5, "let go between pins": 0.9,
     "snapping through": 5.0, RINGING: 0.25, "followed by the frames": 0.18,
 }  # fmt: skip
@@ -64,7 +65,7 @@ SNAPS = 16.0
 TIED = 6.0
 """Rotation (rad) by which the shape of a rod that touches itself bends, in all, at the least."""
 BOWED = 1.0
-"""Likewise of one that nothing holds, whose parts may meet."""
+"""Likewise of one that nothing holds, or that its stress lets spring so far: parts of it may meet."""
 FARTHER = 1e-6
 """Part of their distance by which ends that come apart pull the rod taut."""
 MUCH = 100.0
@@ -73,6 +74,8 @@ STIFF = 1.0
 """Weight, in EJ/L^2, of a rod that hardly bends by it."""
 LIMP = 1e5
 """Weight, in EJ/L^2, of a rod that bends by its ends in so short a part that the meshes have to be fine."""
+DENSE = 0.05
+"""Density of a fluid that brakes a rod, by the rod's."""
 FIRST_FREQUENCY = 3.516
 """Of a cantilever, in sqrt(EJ / mu) / L^2."""
 
@@ -108,7 +111,7 @@ def kind_of(scene: Scene) -> str:
         return "wound up"
     if scene.contact is not None and urged.bent > TIED and not overdamped:
         return "lies on itself"
-    if scene.contact is not None and (urged.stress > SMALL or (urged.bent > BOWED and not held)):
+    if scene.contact is not None and (urged.stress > BOWED or (urged.bent > BOWED and not held)):
         return "may spring onto itself"
     if has_to_stretch(scene):
         if _come_apart(scene):
@@ -121,8 +124,11 @@ def kind_of(scene: Scene) -> str:
     if overdamped:
         return "overdamped"
     if axis_of(replace(scene, numerics=replace(scene.numerics, intervals=INTERVALS))) is None:
+        if _is_braked(scene):
+            return "long and heavy in water" if urged.weight > LIMP else "in space and in water"
         urging = max(urged.stress, urged.force, urged.held_weight) > SMALL
-        if urged.inertia > DRIVEN or (urging and scene.damping == 0.0):
+        springs_back = held and urged.stress_at_free_end > SMALL
+        if urged.inertia > DRIVEN or springs_back or (urging and scene.damping == 0.0):
             return "in space and moved or let go"
         if not (urging or held):
             return "flying freely"
@@ -146,14 +152,15 @@ def kind_of(scene: Scene) -> str:
 @dataclass(frozen=True)
 class Urged:
     """What moves a rod, as moments in EJ/L: of its weight, of the part of that across the rod, and across a rod that is
-    `held` somewhere; of its stress at t = 0, of forces that are there at once, of its inertia where its ends are
-    driven; as a force in EJ/L^2 how hard it is `pushed` in a point, at the most; by what rotation (rad) it is `bent` at
-    t = 0 in all; and whether it is `thrown`."""
+    `held` somewhere; of its stress at t = 0, all along and at ends that may turn, of forces that are there at once, of
+    its inertia where its ends are driven; as a force in EJ/L^2 how hard it is `pushed` in a point, at the most; by what
+    rotation (rad) it is `bent` at t = 0 in all; and whether it is `thrown`."""
 
     weight: float
     weight_across: float
     held_weight: float
     stress: float
+    stress_at_free_end: float
     force: float
     inertia: float
     pushed: float
@@ -167,7 +174,8 @@ class Urged:
         s = np.linspace(0.0, length, INTERVALS + 1)
         _, quaternion, kappa = nodes_at_rest(scene.initial, s)
         tangent = rotate(quaternion, np.tile([0.0, 0.0, 1.0], (len(quaternion), 1)))
-        unit = mass * length**3 / stiffness
+        unit, stress = mass * length**3 / stiffness, np.abs(moments(elasticity_of(scene.rod, s), kappa)).max(axis=1)
+        free = [0.0, *(float(stress[i]) for i, end in ((0, scene.start), (-1, scene.end)) if not _is_turned(end))]
         crossed = [np.cross(tangent[0], [c.value(0.0) for c in load.force]) for load in scene.points]
         across = [float(np.linalg.norm(force)) for force in crossed]
         across += [_across(scene.start, tangent[0]), _across(scene.end, tangent[-1])]
@@ -175,7 +183,7 @@ class Urged:
         return cls(
             weight=float(np.linalg.norm(scene.gravity)) * unit, weight_across=weight_across,
             held_weight=weight_across if _is_held(scene.start) or _is_held(scene.end) else 0.0,
-            stress=float(np.abs(moments(elasticity_of(scene.rod, s), kappa)).max()) * length / stiffness,
+            stress=float(stress.max()) * length / stiffness, stress_at_free_end=max(free) * length / stiffness,
             force=max(across) * length**2 / stiffness, inertia=driven.acceleration * unit,
             pushed=max([0.0, *(_largest(load.force, scene.t_end) for load in scene.points)]) * length**2 / stiffness,
             bent=float(np.linalg.norm(kappa[:, :2], axis=1).mean()) * length,
@@ -186,6 +194,12 @@ class Urged:
     def at_once(self) -> bool:
         """Whether the rod is not at rest where it begins."""
         return self.thrown or max(self.weight_across, self.stress, self.force) > SMALL
+
+
+def _is_braked(scene: Scene) -> bool:
+    """Whether the rod is in a fluid that is not much lighter than it is itself."""
+    section = sample(scene.rod, np.linspace(0.0, scene.rod.length, INTERVALS + 1))
+    return scene.fluid is not None and bool(scene.fluid.density * section.area.mean() > DENSE * section.mass.mean())
 
 
 def _lies(scene: Scene) -> bool:

@@ -119,6 +119,8 @@ def pushed(force):
 
 STIFFNESS = 1.25e7 * pi * 0.01**4 / 64
 RING = arc(6.1)
+TWISTED = {"shape": "straight", "direction": [0, 0, 1],
+           "twist": {"s": [0, 1], "value": [0, 6.0], "interpolation": "linear"}}  # fmt: skip
 PINNED = {"ends__start": "pin", "ends__end": "pin", "initial": arc(1.0), "rod__kappa0": "initial",
           "loads__damping": 1.0}  # fmt: skip
 LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
@@ -156,6 +158,9 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     (SEA | {"ends__start": moved(x1=True)}, "towed through water"),
     (SEA | {"ends__start": moved(x1=[0.0, 1.0, 0.0, 1.0])}, "shaken in water"),
     (SEA | {"loads__gravity": [0, 0, 1e7]}, "long and heavy in water"),
+    (SEA | {"loads__gravity": ASKEW, "ends__start": moved(x1=True)}, "in space and in water"),
+    ({"initial": TWISTED, "ends__end": "free", "loads__damping": 1.0}, "in space and moved or let go"),
+    ({"initial": TWISTED, "ends__end": "slider", "loads__damping": 1.0}, "settling in space"),
 ])  # fmt: skip
 def test_what_moves_the_rod_tells_what_a_tolerance_is_likely_to_cost(settings, kind):
     told = {"output.interval": 4.0} | {key.replace("__", "."): value for key, value in settings.items()}

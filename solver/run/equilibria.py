@@ -35,6 +35,8 @@ WAYS = ((True, True), (False, True), (False, False))
 with the rod, and whether the rod begins with a tension."""
 PATIENCE = 500
 """Steps after which another one is tried."""
+FAR_BACK = 1.0
+"""And by how much more than at first the shape may be held: a branch that leads farther hardly ever comes back."""
 
 
 class Equilibria(Run):
@@ -96,9 +98,10 @@ class Equilibria(Run):
     def _let_go(self) -> bool:
         """Take a step in the way at hand; whether it has led to an equilibrium: a stable one, or the best of all."""
         try:
-            if not self._advance(1.0):
+            reached = self._advance(1.0)
+            if not (reached or self._leads_away()):
                 return False
-            falling = float(self._path.modes)
+            falling = float(self._path.modes) if reached else inf
         except RunFailed:
             if self._way + 1 == len(WAYS) and min(self._falling) == inf:
                 raise
@@ -112,6 +115,10 @@ class Equilibria(Run):
             self._begin(following)
             return False
         return True
+
+    def _leads_away(self) -> bool:
+        """Whether there is another way, and the branch of this one goes far back instead of letting go."""
+        return self._way + 1 < len(WAYS) and self._path.point.q < -FAR_BACK
 
     def _next_frame(self, output: float) -> Frame | None:
         reached = self._advance(output / self._scene.t_end)

@@ -9,7 +9,7 @@ from math import pi
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import solve_ivp
+from scipy.integrate import solve_bvp, solve_ivp
 from scipy.optimize import brentq, fsolve
 
 from solver import (
@@ -171,6 +171,27 @@ def test_a_bent_start_is_let_go_all_the_way(diameter: float) -> None:
     weight = 9.81 * 1500.0 * pi * diameter**2 / 4.0 * LENGTH
     F = rotate(first.orientation, first.f)
     assert F[-1] - F[0] == pytest.approx([weight, 0.0, 0.0], abs=1e-8 * weight)
+
+
+def test_a_column_just_below_its_critical_weight_is_let_go_by_the_way_that_does_not_lead_away() -> None:
+    """Forces that turn with the rod would push it aside as they hold it up: that branch goes far back, on and on."""
+    mass = DENSITY * pi * DIAMETER**2 / 4.0
+    down, aside = (weight * EJ / (mass * LENGTH**3) for weight in (6.8, 0.035))
+    scene = static(gravity=(aside, 0.0, -down), numerics=Numerics("staggered", tolerance=1e-3))
+    run = simulate(scene)
+    tip = list(run)[-1].r[-1]
+
+    def slopes(s: Array, y: Array) -> Array:
+        load = mass * (LENGTH - s) / EJ
+        return np.stack([y[1], -load * (aside * np.cos(y[0]) + down * np.sin(y[0])), np.sin(y[0])])
+
+    s = np.linspace(0.0, LENGTH, 101)
+    def ends(start: Array, end: Array) -> Array:
+        return np.array([start[0], start[2], end[1]])
+
+    exact = solve_bvp(slopes, ends, s, np.zeros((3, 101)), tol=1e-8).y[2, -1]
+    assert tip[0] == pytest.approx(exact, rel=1e-3)
+    assert run.statistics.steps < 150
 
 
 def test_a_rod_between_pins_may_spin_and_still_has_its_sag() -> None:

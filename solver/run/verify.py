@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from math import pi
 from typing import Any
 
@@ -39,7 +39,8 @@ class Verified(Run):
     def __init__(self, scene: Scene, kind: Callable[[Scene, Statistics], Run]) -> None:
         """`kind`: what makes the run of a scene, given the account that its cost goes to."""
         super().__init__(scene)
-        self._runs = [kind(resolved, self.statistics) for resolved in (scene, refine(scene))]
+        single = replace(scene, numerics=replace(scene.numerics, verify=False))
+        self._runs = [kind(resolved, self.statistics) for resolved in (single, refine(single))]
         self.remarks = self._runs[0].remarks
         self._waiting: list[list[Any]] = []  # the values of frames, because a checkpoint holds no frames
         self._lost = 0.0

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver import Condition, Curve, End, Initial, Numerics, Scene, VerifiedFrame, simulate
+from solver import Condition, Contact, Curve, End, Initial, Numerics, Scene, VerifiedFrame, simulate
 from solver.run.resolution import refine
 from solver.run.verify import unseen
 from solver.scene.ends import FREE
+from solver.scene.scene import MOST_AT_REST
 from tests.solver.bent import bent_cantilever
 from tests.solver.scenes import GJ, LENGTH, MASS, ROD, SPIN_INERTIA, turned_clamp
 from validation.error_bars import elastica_rows, missed, misses, run, scene, true
@@ -37,6 +38,12 @@ def test_the_extrapolated_solution_is_better_than_the_finer_run(frames, truth):
     fine = list(simulate(refine(bent_cantilever(replace(VERIFIED, verify=False)))))
     true = truth[-1].r[:: (len(truth[-1].r) - 1) // 10]
     assert np.abs(frames[-1].r - true).max() < 0.1 * np.abs(fine[-1].r[::2] - true).max()
+
+
+def test_a_static_scene_with_contact_may_have_the_finest_mesh_but_one():
+    resting = replace(bent_cantilever(replace(VERIFIED, intervals=MOST_AT_REST // 2)), analysis="static",
+                      contact=Contact())  # fmt: skip
+    assert len(simulate(resting).s) == MOST_AT_REST // 2 + 1
 
 
 def test_rotations_stay_rotations(frames):

@@ -100,7 +100,7 @@ def wide_start(Y: Array, c0: float, h: float, nodes: Nodes, system: System, mean
 
 
 @variant(factor, Augmented)
-@inner
+@kernel
 def factor_wide(wide: Augmented, Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
                 system: System) -> int:  # fmt: skip
     """Write the residuals that the box scheme has not, and factor panel after panel."""
@@ -123,7 +123,7 @@ def factor_wide(wide: Augmented, Y: Array, past: Array, c0: float, h: float, nod
 
 
 @variant(solve, Augmented)
-@inner
+@kernel
 def solve_wide(wide: Augmented, system: System, scale: float, b: Array, x: Array) -> None:
     """Solve for Y's unknowns into `x`, and for all into `wide.x`."""
     end = scratch(6)
@@ -166,7 +166,7 @@ def _substitute(wide: Augmented, b_end: Array) -> None:
 
 
 @variant(take_own_unknowns, Augmented)
-@inner
+@kernel
 def take_auxiliary(wide: Augmented, fraction: float, h: float, system: System) -> None:
     """Subtract the increments of A in the wide solution."""
     for j in range(len(wide.A)):

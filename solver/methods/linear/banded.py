@@ -9,7 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import variant
-from solver.kernels.kernel import inner
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
 from solver.methods.linear.panels import Swaps
 from solver.methods.linear.system import System, factor, solve
@@ -47,7 +47,7 @@ def _enter(block: Array, row: int, column: int, band: Array) -> None:
 
 
 @variant(factor, Banded)
-@inner
+@kernel
 def factor_band(linear: Banded, Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
                 system: System) -> int:  # fmt: skip
     """Form the matrix and factor it."""
@@ -87,7 +87,7 @@ def _eliminate(band: Array, swaps: Swaps) -> bool:
 
 
 @variant(solve, Banded)
-@inner
+@kernel
 def solve_band(linear: Banded, system: System, scale: float, b: Array, x: Array) -> None:
     """Forward and backward through the rows."""
     band, y, size = linear.band, linear.y, len(linear.y)

@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import variant
-from solver.kernels.kernel import inner
+from solver.kernels.kernel import kernel
 from solver.kernels.scratch import scratch, scratch_like
 from solver.methods.linear.condensation import (
     LOCAL,
@@ -53,7 +53,7 @@ class Elimination(NamedTuple):
 
 
 @variant(factor, Elimination)
-@inner
+@kernel
 def factor_blocks(linear: Elimination, Y: Array, past: Array, c0: float, h: float, nodes: Nodes,
                   system: System) -> int:  # fmt: skip
     """Factor the system, making each panel when its turn comes."""
@@ -91,7 +91,7 @@ def factor_blocks(linear: Elimination, Y: Array, past: Array, c0: float, h: floa
 
 
 @variant(solve, Elimination)
-@inner
+@kernel
 def solve_blocks(linear: Elimination, system: System, scale: float, b: Array, x: Array) -> None:
     """Forward and backward through the intervals."""
     start, end = scratch(6), scratch(6)

@@ -171,7 +171,7 @@ def _reduce(lower: Array, inverse: Array, upper: Array) -> bool:
     return True
 
 
-@inner
+@kernel
 def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> bool:
     """Factor the system for one eigenvalue; False if it is singular."""
     _translate(tangents, eigenvalue, factors)
@@ -180,7 +180,7 @@ def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex
     return bool(_reduce(factors.lower, factors.inverse, factors.upper))
 
 
-@inner
+@kernel
 def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
     """Write the rows of F into x and condition the ends; rotation, with minus, is there."""
     N, X, b, load, ends = len(chain.mass), factors.X, factors.x, factors.load, factors.ends
@@ -208,7 +208,7 @@ def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: compl
                 b[node, 1 + k] = d.real * x + d.imag * y - sign * ends[side, k] / eigenvalue
 
 
-@inner
+@kernel
 def solve(factors: Factors) -> None:
     """Replace the right-hand side in x by the solution, and write the displacements of the centres."""
     x, X, Y, n = factors.x, factors.X, factors.Y, len(factors.x)
@@ -228,7 +228,7 @@ def solve(factors: Factors) -> None:
             factors.moved[j, k] = X[j, k, 0] * p + X[j, k, 1] * q + Y[j, k] * x[j + 1, 0]
 
 
-@inner
+@kernel
 def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transform: Array, back: Array, inverse: Array,
                        gamma: float, lam: complex, dt: float, residuals: Residuals, real: Factors, pair: Factors,
                        touch: None, coupling: None, first: bool, fresh: bool) -> float:  # fmt: skip

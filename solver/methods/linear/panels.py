@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.kernels.kernel import inner, kernel
+from solver.kernels.kernel import kernel
 
 Swaps = NDArray[np.int64]
 """Where each pivot came from."""
@@ -42,7 +42,7 @@ def eliminate(W: Array, swaps: Swaps) -> bool:
     return True
 
 
-@inner
+@kernel
 def forward_panel(W: Array, swaps: Swaps, y: Array) -> None:
     """Do to the right-hand sides `y` what was done to the rows of W."""
     for k in range(len(swaps)):

@@ -118,7 +118,7 @@ def _respond(chain: Chain, tangents: Tangents, transform: Array, real: Factors, 
                 response[at] = transform[i, 0] * a + transform[i, 1] * z.real + transform[i, 2] * z.imag
 
 
-@inner
+@kernel
 def _move(response: Array, inverse: Array, dt: float, touch: Touch, members: Members, coupling: Coupling) -> None:
     """Write the changes of place and velocity of the nodes of `members` at all stages."""
     slot, size = touch.pairs.members.slot, 3 * touch.pairs.members.counts[1]
@@ -143,7 +143,7 @@ def _change(response: Array, inverse: Array, dt: float, touch: Touch, coupling: 
         change_forces(touch, touch.tangents, i, y[i * size : (i + 1) * size])
 
 
-@inner
+@kernel
 def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transform: Array, back: Array, inverse: Array,
                        gamma: float, lam: complex, dt: float, residuals: Residuals, real: Factors, pair: Factors,
                        touch: Touch, coupling: Coupling, first: bool, fresh: bool) -> float:  # fmt: skip

@@ -52,7 +52,7 @@ def shoot(linear: Shooting, Y: Array, past: Array, c0: float, h: float, nodes: N
 
 
 @variant(solve, Shooting)
-@inner
+@kernel
 def combine_marched(linear: Shooting, system: System, scale: float, b: Array, x: Array) -> None:
     """Write the solution for the system's own residuals into `x`, whatever `b` and `scale`."""
     marched, c = linear.marched, linear.coefficients

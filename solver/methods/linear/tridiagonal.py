@@ -320,7 +320,7 @@ def _invert6(D: Array, room: Array, inverse: Array) -> bool:
     return True
 
 
-@inner
+@kernel
 def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> bool:
     """Factor the system for one eigenvalue; False if it is singular."""
     blocks = scratch_like((3, 6, 6), factors.lower)
@@ -355,7 +355,7 @@ def factor(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex
     return True
 
 
-@inner
+@kernel
 def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
     """Write the rows of F into x and condition the ends; rotation, with minus, is there."""
     N = len(chain.mass)
@@ -397,7 +397,7 @@ def _row(A: Array, k: int, x: tuple) -> complex:  # type: ignore[type-arg]
     return total
 
 
-@inner
+@kernel
 def solve(factors: Factors) -> None:
     """Replace the right-hand side in x by the solution, and write the displacements of the centres.
 

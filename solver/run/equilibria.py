@@ -25,9 +25,10 @@ from solver.scene.initial import Initial
 from solver.scene.numerics import Numerics
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
-from solver.statics.equations import Equations, Point
+from solver.statics.equations import Equations
 from solver.statics.first_forces import first_forces
 from solver.statics.path import MOST_STEPS, Path
+from solver.statics.point import Point
 from solver.statics.stability import coupled, negative_modes, neutral_modes
 
 WAYS = ((True, True), (False, True), (False, False))

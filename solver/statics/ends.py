@@ -1,4 +1,4 @@
-"""An end in statics: where it is held and what loads it, as functions of the schedule's time.
+"""An end in statics: where it is held and what loads it, as functions of the schedule's time, and its equations.
 
 Equilibrium has no rates, so a condition must say where the end *is*. A rate holds it where its exact travel leads, the
 integral of the rate. Axes of a material frame that swings would make that depend on the path: such ends are refused.
@@ -6,11 +6,24 @@ integral of the rate. Axes of a material frame that swings would make that depen
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.rotation import relative_rotation, rotation_of, turn
 from solver.physics.ends import travel
 from solver.scene.ends import Condition, End
+from solver.statics.point import FORCE, PSI, X
+from solver.statics.tangent import crossing
+
+
+class Units(NamedTuple):
+    """By which all is made dimensionless: EJ/L (N m), EJ/L^2 (N), L (m)."""
+
+    moment: float
+    force: float
+    length: float
 
 
 def check_end(end: End) -> None:
@@ -41,19 +54,24 @@ def _is_still(condition: Condition) -> bool:
 
 
 class StaticEnd:
-    """The six conditions of one end.
+    """The six conditions of one end, and their rows of the equations.
 
     `axes` (3, 3): columns along which the translation is held, lab; `held` (6,): which components are; the others are
-    loaded, along the axes of the end's own frame if `follows`.
+    loaded, along the axes of the end's own frame if `follows`. Of what was asked for last: `follower` (N), the force,
+    and `moment` (N m), all (3,), that turn with the end's frame.
     """
 
-    def __init__(self, end: End, R: Array) -> None:
-        """`R` (3, 3): rotation of the end before anything is applied."""
+    def __init__(self, end: End, side: int, quaternion: Array, place: Array, units: Units, compliance: float) -> None:
+        """`quaternion` (4,), `place` (3,): of the end before anything is applied. `compliance` (m/N): of what holds it,
+        see `physics.axial`."""
         check_end(end)
         self._conditions = [component[0] for component in (*end.translation, *end.rotation)]
+        self._sign = 2.0 * side - 1.0
+        self._home, self._units, self._give = (quaternion, place), units, self._sign * compliance
         self.follows = end.frame == "material"
-        self.axes = R.copy() if self.follows else np.eye(3)
+        self.axes = rotation_of(quaternion) if self.follows else np.eye(3)
         self.held = np.array([c.kind != "load" for c in self._conditions])
+        self.follower, self.moment = np.zeros(3), np.zeros(3)
 
     def corners(self) -> list[float]:
         """Times at which a schedule bends."""
@@ -66,3 +84,56 @@ class StaticEnd:
     def spin(self, t: float) -> float | None:
         """The rotation (rad) about a3, if it is prescribed."""
         return float(self.values(t)[5]) if self.held[3:].all() else None
+
+    def left(self, t: float, quaternion: Array, R: Array, place: Array, F: Array, moment: Array, dead: Array,
+             follower: Array) -> tuple[Array, Array]:  # fmt: skip
+        """Its rows at time t, N m and N (3,): what is not balanced, or by how much it is away from where it is held.
+
+        The end lies at `place` with the rotation R, and in it are the force `F`, lab, and the `moment`, material;
+        `dead` and `follower` (6,): the point loads on it along lab and material axes.
+        """
+        values, units = self.values(t), self._units
+        loaded = np.where(self.held, 0.0, values)
+        self.moment = loaded[3:] + follower[3:]
+        self.follower = follower[:3] + (loaded[:3] if self.follows else 0.0)
+        force = dead[:3] + R @ self.follower + (0.0 if self.follows else loaded[:3])
+        across = self.axes.T @ (self._sign * (F - force)) / units.force
+        if self._give:
+            place = place + self._give * np.outer(R[:, 2], R[:, 2]) @ F
+        away = (self.axes.T @ (place - self._home[1]) - values[:3]) / units.length
+        unbalanced = self._sign * (moment - R.T @ dead[3:] - follower[3:] - loaded[3:]) / units.moment
+        turned = self._turned(values[3:], quaternion)
+        return (np.where(self.held[3:], turned, unbalanced) * units.moment,
+                np.where(self.held[:3], away, across) * units.force)  # fmt: skip
+
+    def _turned(self, values: Array, quaternion: Array) -> Array:
+        """By how much its frame is turned away from where it is held (3,), by the rotations in `values` (3,)."""
+        there, away = np.empty(4), np.empty(3)
+        if not self.held[3:].any():
+            return np.zeros(3)
+        turn(self._home[0], np.where(self.held[3:], values, 0.0), there)
+        if self.held[3:].all():
+            relative_rotation(there, quaternion, away)
+            return away
+        free = np.eye(3)[int(np.argmin(self.held[3:]))]
+        return np.cross(rotation_of(quaternion).T @ rotation_of(there) @ free, free)
+
+    def bind(self, D: Array, lower: Array, upper: Array, R: Array, F: Array) -> None:
+        """Make its rows of the tangent those of `left`, in the blocks (9, 9) of its frame in a chain that nothing
+        holds. `R`, `F`: as there."""
+        turns, place = self.held[3:], self.held[:3]
+        if self.follower.any():
+            D[X, PSI] = self._sign * R @ crossing(self.follower)
+        for block in (D, lower, upper):
+            block[X] = self.axes.T @ block[X]
+            block[PSI][turns] = 0.0
+            block[X][place] = 0.0
+        rows = self.axes.T[place] * self._units.force / self._units.length
+        D[PSI, PSI][turns] = np.eye(3)[turns] * self._units.moment
+        D[X, X][place] = rows
+        if self._give:
+            tangent, by_force = R[:, 2], upper if self._sign < 0.0 else D
+            by_force[X, FORCE][place] = rows @ (self._give * np.outer(tangent, tangent))
+            turned = np.column_stack([-R[:, 1], R[:, 0], np.zeros(3)])  # the tangent, by a rotation of the frame
+            changed = turned * (tangent @ F) + np.outer(tangent, F @ turned)
+            D[X, PSI][place] = rows @ (self._give * changed)

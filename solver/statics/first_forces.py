@@ -12,7 +12,8 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from solver.arrays import Array
-from solver.statics.equations import FORCE, Equations, X
+from solver.statics.equations import Equations
+from solver.statics.point import FORCE, X
 
 AT_FREE_ENDS = 100.0
 """How much more it counts that a free end is balanced than a segment."""

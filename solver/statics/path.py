@@ -16,7 +16,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.outcome import Outcome, RunFailed
-from solver.statics.equations import FORCE, PSI, Equations, Point, X
+from solver.statics.equations import Equations
+from solver.statics.point import FORCE, PSI, Point, X
 from solver.statics.stability import negative_modes
 
 LONGEST, FIRST, SHORTEST = 0.5, 0.05, 1e-8

@@ -16,7 +16,8 @@ from scipy.linalg.lapack import dgbsv, dsytrf
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
-from solver.statics.equations import SOFTEST_PLACE, Equations, levers
+from solver.statics.equations import Equations
+from solver.statics.tangent import SOFTEST_PLACE, levers
 
 BAND = 5
 NEUTRAL = 1e-7

@@ -16,7 +16,7 @@ from solver.methods.space.segments.opening import add_levers, measure_openings, 
 from solver.methods.staggered import StaggeredMethod
 from solver.physics.elasticity import Stretch
 from solver.physics.loads.registry import Loads
-from solver.statics.equations import levers
+from solver.statics.tangent import levers
 from tests.solver.methods.as_in_runs import call
 from tests.solver.scenes import ROD
 

@@ -29,7 +29,8 @@ from solver.physics.loads.solids import Floor
 from solver.scene.ends import FIXED
 from solver.scene.layout import nodes_at_rest
 from solver.statics.contact import StaticContact
-from solver.statics.equations import BLOCK, FORCE, PSI, Equations, Point, X
+from solver.statics.equations import Equations
+from solver.statics.point import BLOCK, FORCE, PSI, Point, X
 from solver.statics.stability import negative_modes
 from tests.solver.scenes import EJ, LENGTH, ROD, last
 

@@ -35,7 +35,9 @@ from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.physics.elasticity import Stretch
 from solver.physics.loads.solids import Floor, Obstacle
-from solver.statics.equations import FORCE, PSI, Equations, X, levers
+from solver.statics.equations import Equations
+from solver.statics.point import FORCE, PSI, X
+from solver.statics.tangent import levers
 from tests.solver.scenes import (
     ARC,
     ARC_ROD,

@@ -13,10 +13,10 @@ from solver.arrays import Array
 from solver.kernels.handed import Handed, Reference
 from solver.kernels.kernel import kernel
 from solver.methods.box import BoxMethod
+from solver.methods.linear.segments_increments import update
 from solver.methods.linear.shooting import Shooting
 from solver.methods.linear.stages import solve_stages
 from solver.methods.linear.system import LinearSolver, factor, solve
-from solver.methods.linear.tridiagonal import update
 from solver.methods.schemes import Scheme, c0_of
 from solver.methods.space.box.fields import State
 from solver.methods.space.box.intervals import MEANS, interval_panel

@@ -13,10 +13,10 @@ from solver.kernels.rotation import matrices_of, rotate_back
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape
-from solver.methods.linear import segments_contact, tridiagonal
+from solver.methods.linear import segments_contact, segments_increments, tridiagonal
 from solver.methods.linear import stages as linear
+from solver.methods.linear.segments import Factors
 from solver.methods.linear.segments_contact import Coupling, place_nodes
-from solver.methods.linear.tridiagonal import Factors
 from solver.methods.space import stages as space
 from solver.methods.space.segments import motion, stages
 from solver.methods.space.segments.balances import Driven, Motion, Tangents
@@ -46,7 +46,8 @@ NONE = 1e-9
 """Part of the rod's length by which nothing is moved that is held."""
 
 for asked in (space, linear):
-    enter(asked, (Chain, State, Driven, Factors, Touch), motion, stages, tridiagonal, segments_contact)
+    enter(asked, (Chain, State, Driven, Factors, Touch), motion, stages, tridiagonal, segments_increments,
+          segments_contact)  # fmt: skip
 
 
 def _held_axes(end: End, R: Array) -> Array:

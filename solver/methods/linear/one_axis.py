@@ -1,4 +1,4 @@
-"""Newton's linear system about one axis: that of `tridiagonal` with 3 x 3 blocks.
+"""Newton's linear system about one axis: that of `segments` with 3 x 3 blocks.
 
 Unknown at block a = 0 ... N + 1: the rotation psi of orientation a and the force F at node a, as a pair (none in the
 last block). With P = M lambda^2 + C lambda + K and X = P^-1, a segment moves by
@@ -16,7 +16,7 @@ from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.kernel import inlined_late, inner, kernel
 from solver.kernels.scratch import scratch_like
-from solver.methods.linear.tridiagonal import invert3
+from solver.methods.linear.segments import invert3
 from solver.methods.space.one_axis.balances import Driven, Tangents
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages
 from solver.methods.space.segments.chain import STAGES

@@ -16,8 +16,9 @@ from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.kernel import inner, kernel
 from solver.methods.linear.krylov import KEPT, Krylov, begin, combine, follow, project, set_out, unsolved
+from solver.methods.linear.segments import Factors
+from solver.methods.linear.segments_increments import node_moves
 from solver.methods.linear.stages import solve_stages
-from solver.methods.linear.tridiagonal import Factors, node_moves
 from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.methods.space.segments.joints import share

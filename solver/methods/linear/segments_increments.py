@@ -1,0 +1,134 @@
+"""Residuals of segments in space as the right-hand side of Newton's system, and motion from its solution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.arrays import Array
+from solver.kernels.kernel import inner, kernel
+from solver.methods.linear.segments import Factors
+from solver.methods.space.segments.balances import Driven, Tangents
+from solver.methods.space.segments.chain import STAGES, Chain, Stages
+from solver.methods.space.segments.joints import share
+from solver.physics.elasticity import stretches
+from solver.physics.ends import RATE, RATE_LAB
+
+
+@inner
+def widths(factors: Factors) -> tuple[int, int]:
+    """In space."""
+    return 3, 3
+
+
+@kernel
+def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: complex, factors: Factors) -> None:
+    """Write the rows of F into x and condition the ends; rotation, with minus, is there."""
+    N = len(chain.mass)
+    X, b, load, ends = factors.X, factors.x, factors.load, factors.ends
+    for side in range(2):
+        frame = 0 if side == 0 else N + 1
+        for k in range(3):
+            if driven.kinds[side, 3 + k] == RATE:
+                b[frame, k] /= eigenvalue
+            elif side == 0:
+                b[frame, k] = -b[frame, k]
+    for k in range(3):
+        b[0, 3 + k] = 0.0
+        b[N + 1, 3 + k] = 0.0
+    for j in range(N):
+        for k in range(3):
+            moved = X[j, k, 0] * load[j, 0] + X[j, k, 1] * load[j, 1] + X[j, k, 2] * load[j, 2]
+            b[j, 3 + k] += moved
+            b[j + 1, 3 + k] = -moved
+    for side in range(2):
+        node, R = (0, tangents.R[0]) if side == 0 else (N, tangents.R[N + 1])
+        x, y, z = b[node, 3], b[node, 4], b[node, 5]
+        sign = 1.0 if side == 0 else -1.0
+        for k in range(3):
+            kind = driven.kinds[side, k]
+            if kind == RATE:
+                b[node, 3 + k] = R[0, k] * x + R[1, k] * y + R[2, k] * z - sign * ends[side, k] / eigenvalue
+            elif kind == RATE_LAB:
+                b[node, 3 + k] -= sign * ends[side, k] / eigenvalue
+            else:
+                b[node, 3 + k] = -ends[side, k]
+
+
+@inner
+def displace(factors: Factors) -> None:
+    """Write the displacements of the centres that belong to the solution."""
+    x, X, Y = factors.x, factors.X, factors.Y
+    for j in range(len(factors.moved)):
+        psi, near, far, load = x[j + 1], x[j], x[j + 1], factors.load[j]
+        u, v, w = far[3] - near[3] - load[0], far[4] - near[4] - load[1], far[5] - near[5] - load[2]
+        for k in range(3):
+            factors.moved[j, k] = (X[j, k, 0] * u + X[j, k, 1] * v + X[j, k, 2] * w
+                                   + (Y[j, k, 0] * psi[0] + Y[j, k, 1] * psi[1] + Y[j, k, 2] * psi[2]))  # fmt: skip
+
+
+@inner
+def _opened(tangents: Tangents, factors: Factors, a: int, k: int) -> complex:
+    """Component k of delta (e t) of joint a in the solution."""
+    opens, x, y = tangents.opens[a], factors.x[a], factors.x[a + 1]
+    moved: complex = 0.0 * x[0]
+    for m in range(3):
+        moved += opens[0, k, m] * x[m] + opens[1, k, m] * y[m] + opens[2, k, m] * x[3 + m]
+    return moved
+
+
+@inner
+def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k: int) -> complex:
+    """Component k of a node's displacement in the solution."""
+    j, side = (node - 1, 1.0) if node > 0 else (0, -1.0)
+    R, x = tangents.R[j + 1], factors.x[j + 1]
+    moved: complex = factors.moved[j, k] + side * 0.5 * chain.h * (R[k, 0] * x[1] - R[k, 1] * x[0])
+    if stretches(chain.elastic):
+        moved += side * share(node, len(chain.mass)) * _opened(tangents, factors, node, k)
+    return moved
+
+
+@kernel
+def update(chain: Chain, transform: Array, unit: float, fraction: float, stages: Stages, tangents: Tangents,
+           real: Factors, pair: Factors) -> tuple[float, float, float]:  # fmt: skip
+    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one, and
+    displacement of the start (m)."""
+    T = transform
+    turned, forced, shifted, largest = 0.0, 0.0, 0.0, unit
+    for i in range(STAGES):
+        t0, t1, t2 = fraction * T[i, 0], fraction * T[i, 1], fraction * T[i, 2]
+        for a in range(stages.theta.shape[1]):
+            x, z = real.x[a], pair.x[a]
+            c0 = t0 * x[0] + t1 * z[0].real + t2 * z[0].imag
+            c1 = t0 * x[1] + t1 * z[1].real + t2 * z[1].imag
+            c2 = t0 * x[2] + t1 * z[2].real + t2 * z[2].imag
+            Q, R = stages.R[i, a], stages.start[a]
+            cosine, sine = tangents.spun[i, a, 0], tangents.spun[i, a, 1]
+            c0, c1 = cosine * c0 + sine * c1, cosine * c1 - sine * c0
+            u = Q[0, 0] * c0 + Q[0, 1] * c1 + Q[0, 2] * c2
+            v = Q[1, 0] * c0 + Q[1, 1] * c1 + Q[1, 2] * c2
+            w = Q[2, 0] * c0 + Q[2, 1] * c1 + Q[2, 2] * c2
+            p0 = R[0, 0] * u + R[1, 0] * v + R[2, 0] * w
+            p1 = R[0, 1] * u + R[1, 1] * v + R[2, 1] * w
+            p2 = R[0, 2] * u + R[1, 2] * v + R[2, 2] * w
+            theta = stages.theta[i, a]
+            u, v, w = theta[0], theta[1], theta[2]
+            # a rotation by p in the frame of R_n changes theta by p - theta x p / 2 + ...
+            c0, c1, c2 = v * p2 - w * p1, w * p0 - u * p2, u * p1 - v * p0
+            theta[0] += p0 - 0.5 * c0 + (1 / 12) * (v * c2 - w * c1)
+            theta[1] += p1 - 0.5 * c1 + (1 / 12) * (w * c0 - u * c2)
+            theta[2] += p2 - 0.5 * c2 + (1 / 12) * (u * c1 - v * c0)
+            turned = max(turned, abs(p0), abs(p1), abs(p2))
+            if not np.isfinite(p0):
+                return np.inf, np.inf, np.inf
+        for a in range(stages.F.shape[1]):
+            for k in range(3):
+                change = t0 * real.x[a, 3 + k] + t1 * pair.x[a, 3 + k].real + t2 * pair.x[a, 3 + k].imag
+                stages.F[i, a, k] += change
+                forced = max(forced, abs(change))
+                largest = max(largest, abs(stages.F[i, a, k]))
+        for k in range(3):
+            z0 = node_moves(chain, tangents, pair, 0, k)
+            moved = t0 * node_moves(chain, tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
+            stages.shift[i, k] += moved
+            shifted = max(shifted, abs(moved))
+    return turned / fraction, forced / (fraction * largest), shifted / fraction

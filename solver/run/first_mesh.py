@@ -40,13 +40,12 @@ TIMES = 101
 
 def first_mesh(scene: Scene, pressed: bool) -> int:
     """How many times to double `first_intervals`, see `plan`. `pressed`: whether strands press on each other."""
-    at_rest = scene.analysis == "static"
-    largest = LARGEST_TURN_PRESSED if pressed and not at_rest else LARGEST_TURN
+    largest = LARGEST_TURN_PRESSED if pressed and not scene.at_rest else LARGEST_TURN
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
     places, _, kappa = nodes_at_rest(scene.initial, s)
     turned = _turned(s, kappa), _turned(s, np.stack([profile(s) for profile in scene.rod.kappa0], axis=1))
     bent = float(turned[0][-1])
-    twist = twisted(scene) / (LARGEST_TWIST_AT_REST if at_rest else largest)
+    twist = twisted(scene) / (LARGEST_TWIST_AT_REST if scene.at_rest else largest)
     scales = [load.scale for load in scene.loads if hasattr(load, "scale")]  # longer intervals may not feel the load
     intervals = bent / largest, twist, *(float(scene.rod.length) / scale for scale in scales)
     mesh = max(ceil(log2(max(intervals) / first_intervals(scene) + 1e-9)), 0)
@@ -80,7 +79,7 @@ def _misses(scene: Scene, places: Array, turned: Sequence[Array], hidden: Sequen
         return False
     if any(part.moves(0.5 * length / intervals, length) > LARGEST_HIDDEN for part in hidden):
         return True
-    return scene.analysis == "static" and _cornered(turned[0], intervals)
+    return scene.at_rest and _cornered(turned[0], intervals)
 
 
 def _cornered(turned: Array, intervals: int) -> bool:

@@ -65,7 +65,7 @@ class Refined(Run):
         self._piece = Piece()
         self._before = replace(self.statistics)
         """What the attempts before that under way have cost."""
-        steps = AT_REST if scene.analysis == "static" else 0
+        steps = AT_REST if scene.at_rest else 0
         self._under_way = UnderWay(scene, Trial(first_mesh(scene, pressed=False), steps))
 
     @property
@@ -159,7 +159,7 @@ class Refined(Run):
     @property
     def _most(self) -> int:
         most = min(self._scene.numerics.most_intervals, MOST_ROWS // (len(self._outputs) + 1))
-        if self._scene.analysis == "static" and self._scene.contact is not None:
+        if self._scene.at_rest and self._scene.contact is not None:
             most = min(most, MOST_AT_REST)
         return most * FIRST_INTERVALS // first_intervals(self._scene)
 

@@ -14,5 +14,5 @@ def simulate(scene: Scene) -> Run:
     """The run of a scene: iterate over it for its frames, from t = 0 to t_end."""
     if scene.numerics.tolerance is not None:
         return Refined(scene)
-    kind = Equilibria if scene.analysis == "static" else Simulation
+    kind = Equilibria if scene.at_rest else Simulation
     return Verified(scene, kind) if scene.numerics.verify else kind(scene)

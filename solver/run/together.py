@@ -67,7 +67,7 @@ class Together:
     def __init__(self, scene: Scene, attempts: Sequence[Attempt], recorded: Sequence[Array]) -> None:
         self._scene, self._attempts, self._recorded = scene, attempts, recorded
         self._chosen, self._diagonal = chosen(attempts), is_diagonal(attempts)
-        self._at_rest = scene.analysis == "static"
+        self._at_rest = scene.at_rest
         self._in_waves = [number(name) for name in of_waves(scene.rod)]
         self.finest = attempts[self._chosen.finest]
         self._intervals = intervals_of(self.finest.mesh, first_intervals(scene))

@@ -46,7 +46,7 @@ class UnderWay:
         )  # fmt: skip
         resolved = replace(scene, numerics=numerics)
         self.run: Simulation | Equilibria = (
-            Equilibria(resolved, self.statistics) if scene.analysis == "static"
+            Equilibria(resolved, self.statistics) if scene.at_rest
             else Simulation(resolved, self.statistics, goes_on=True)
         )  # fmt: skip
 

@@ -59,14 +59,14 @@ class Scene:
         if not (np.isfinite(self.damping) and self.damping >= 0):
             raise ValueError(f"damping must be >= 0 1/s, got {self.damping}")
         require_finite("gravity", self.gravity)
-        if self.analysis == "static":
+        if self.at_rest:
             self._check_statics()
         if self.contact is not None and self.numerics.intervals < 3:
             raise ValueError(f"intervals must be >= 3 with contact, got {self.numerics.intervals}")
         for load in self.points:
             if not 0 <= load.s <= self.rod.length:
                 raise ValueError(f"s of a point load must be in [0, {self.rod.length}] m, got {load.s}")
-            if self.analysis == "dynamic":
+            if not self.at_rest:
                 check_frame(load, {0.0: self.start, self.rod.length: self.end}.get(load.s))
 
     def keeps(self, view: View) -> bool:
@@ -81,6 +81,11 @@ class Scene:
             raise ValueError(f"{rule}, got {self.numerics.intervals}")
         if any((*self.initial.velocity, *self.initial.angular_velocity)):
             raise ValueError("velocity and angular_velocity must be 0 in a static analysis")
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether it asks for equilibria, not for motion."""
+        return self.analysis == "static"
 
     @property
     def outputs(self) -> list[float]:

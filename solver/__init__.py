@@ -1,7 +1,7 @@
 """The rod solver: numbers only. `for frame in simulate(scene): ...`."""
 
 from solver.measures.frame import Frame, Statistics
-from solver.outcome import REMEDY, Outcome, RunFailed
+from solver.outcome import Outcome, RunFailed
 from solver.run.checkpoint import code_digest
 from solver.run.plan import Trial, strides_of
 from solver.run.refined import Refined
@@ -24,8 +24,8 @@ from solver.scene.user import UserLoad
 from solver.statics.ends import check_end
 
 __all__ = [
-    "FIXED", "FREE", "REMEDY", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame",
-    "Initial", "Numerics", "Outcome", "PointLoad", "Refined", "Rod", "Run", "RunFailed", "Scene", "Shear", "Simulation",
+    "FIXED", "FREE", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame", "Initial", "Numerics",
+    "Outcome", "PointLoad", "Refined", "Rod", "Run", "RunFailed", "Scene", "Shear", "Simulation",
     "Statistics", "Trial", "UnderWay", "UserLoad", "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest",
     "constant_vector", "simulate", "strides_of", "warm",
 ]

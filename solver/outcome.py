@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from outcomes import Outcome
 
-__all__ = ["REMEDY", "Outcome", "RunFailed"]
-
-REMEDY: dict[Outcome, str] = {outcome: outcome.remedy for outcome in Outcome}
+__all__ = ["Outcome", "RunFailed"]
 
 
 class RunFailed(Exception):

@@ -269,15 +269,15 @@ def add_matrix(factor: float, A: Any, out: Array) -> None:
 
 
 @inner
-def add_product(factor: float, A: Any, B: Array, out: Array) -> None:
-    """Add factor A B to `out` (3, 3), but nothing of None."""
+def subtract_product(A: Any, B: Array, out: Array) -> None:
+    """Subtract A B from `out` (3, 3), but nothing of None."""
     if A is not None:
-        _add_row(factor, A[0], B, out[0])
-        _add_row(factor, A[1], B, out[1])
-        _add_row(factor, A[2], B, out[2])
+        _subtract_row(A[0], B, out[0])
+        _subtract_row(A[1], B, out[1])
+        _subtract_row(A[2], B, out[2])
 
 
 @inner
-def _add_row(factor: float, a: Any, B: Array, out: Array) -> None:
+def _subtract_row(a: Any, B: Array, out: Array) -> None:
     for k in range(3):
-        out[k] += factor * (a[0] * B[0, k] + a[1] * B[1, k] + a[2] * B[2, k])
+        out[k] -= a[0] * B[0, k] + a[1] * B[1, k] + a[2] * B[2, k]

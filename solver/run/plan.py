@@ -174,13 +174,11 @@ def _growth(complete: Sequence[Attempt], by: Trial) -> float | None:
     return None
 
 
-def next_trial(history: Sequence[Attempt], errors: Sequence[Excess], first_mesh: int,
-              most_intervals: int) -> Trial | None:  # fmt: skip
-    """What to try next; None if what there is must be, or is, enough. Nothing is tried twice.
+def next_trial(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals: int) -> Trial | None:
+    """What to try after some attempts; None if what there is must be, or is, enough. Nothing is tried twice.
 
-    `errors`: of each quantity."""
-    if not history:
-        return Trial(first_mesh, 0)
+    `errors`: of each quantity.
+    """
     tried = {(attempt.mesh, attempt.steps) for attempt in history}
     for trial in _candidates(history, errors, most_intervals):
         if trial is None or trial not in tried:

@@ -63,7 +63,7 @@ def number_of(row: Array, index: int) -> float:
     return float(row[1 + index])
 
 
-def columns_of(rows: Sequence[Array] | Array, judged: bool = False) -> Columns:
+def columns_of(rows: Sequence[Array] | Array, judged: bool) -> Columns:
     """The outputs of many frames (frames, ...), copied: all, or of those along the rod the `JUDGED` components."""
     table, end = np.asarray(rows), 1 + len(NUMBERS)
     along = table[:, end:].reshape(len(table), -1, WIDTH)

@@ -69,7 +69,7 @@ def set_out(krylov: Krylov, m: int, size: int) -> None:
 @kernel
 def follow(krylov: Krylov, m: int, size: int) -> None:
     """Go along direction m, z being S K^-1 E times it, as far as the residual falls."""
-    V, R, y, z = krylov.images, krylov.R, krylov.y, krylov.z
+    V, R, z = krylov.images, krylov.R, krylov.z
     for c in range(size):
         z[c] += krylov.directions[m, c]
     whole = _norm(z, size)
@@ -84,21 +84,25 @@ def follow(krylov: Krylov, m: int, size: int) -> None:
         return
     for c in range(size):
         V[m, c] = z[c] / R[m, m]
+    _go_along(krylov, m, size)
+    krylov.left[1] = _norm(krylov.y, size)
+
+
+@inner
+def _go_along(krylov: Krylov, m: int, size: int) -> None:
+    """Take out of the residual its part along the image of direction m."""
+    V, y = krylov.images, krylov.y
     krylov.parts[m] = np.dot(V[m, :size], y[:size])
     for c in range(size):
         y[c] -= krylov.parts[m] * V[m, c]
-    krylov.left[1] = _norm(y, size)
 
 
 @kernel
 def project(krylov: Krylov, known: int, size: int) -> None:
     """Go along the first `known` directions, whose images are known, as far as the residual falls."""
-    V, y = krylov.images, krylov.y
     for m in range(known):
-        krylov.parts[m] = np.dot(V[m, :size], y[:size])
-        for c in range(size):
-            y[c] -= krylov.parts[m] * V[m, c]
-    krylov.left[1] = _norm(y, size)
+        _go_along(krylov, m, size)
+    krylov.left[1] = _norm(krylov.y, size)
 
 
 @kernel

@@ -10,15 +10,13 @@ from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
 from solver.physics.contact.law import Law, pair_force, sees
 from solver.physics.contact.members import Members, dismiss, take_in
-from solver.physics.contact.points import REACH, Points, place_point
+from solver.physics.contact.points import REACH, Points, between_nodes, place_point
 from solver.physics.contact.search import Pairs
 
 LARGEST_APPROACH = 0.6
 """Part of a pair's distance that one Newton update may use."""
 LARGEST_CLOSING = 0.8
 """Part of the gap of a pressing pair that one Newton update may close: the force has a pole where it ends."""
-
-
 LARGEST_FORESEEN = 0.5
 """Part of the gap of a pair that the first guess of a step may close."""
 
@@ -150,17 +148,11 @@ def keeps_apart(touch: Touch, r: Array) -> bool:
 @kernel
 def move_points(touch: Touch, members: Members, moved: Array, accelerated: Array) -> None:
     """Write the changes of p, t, w of the points of `members`, for changes of the nodes' own (n, 3)."""
-    points = touch.points
+    change = touch.moved
     for m in range(members.counts[0]):
         i = members.points[m]
         for k in range(3):
-            place, along, speed = 0.0, 0.0, 0.0
-            for e in range(REACH):
-                node = points.first[i] + e
-                place += points.weights[i, e] * moved[node, k]
-                along += points.slopes[i, e] * moved[node, k]
-                speed += points.weights[i, e] * accelerated[node, k]
-            touch.moved[i, k], touch.moved[i, 3 + k], touch.moved[i, 6 + k] = place, along, speed
+            change[i, k], change[i, 3 + k], change[i, 6 + k] = between_nodes(touch.points, i, k, moved, accelerated)
 
 
 @kernel

@@ -98,16 +98,22 @@ def _shares(interval: Array, first: Array, last: int, start: Array, leave: Array
 
 
 @inlined
+def between_nodes(points: Points, i: int, k: int, r: Array, velocity: Array) -> tuple[float, float, float]:
+    """Component k of p, t and w of point i, of places (n, 3) and velocities (n, >= 3) of the nodes."""
+    place, along, speed = 0.0, 0.0, 0.0
+    for m in range(REACH):
+        node = points.first[i] + m
+        place += points.weights[i, m] * r[node, k]
+        along += points.slopes[i, m] * r[node, k]
+        speed += points.weights[i, m] * velocity[node, k]
+    return place, along, speed
+
+
+@inlined
 def place_point(points: Points, i: int, r: Array, velocity: Array) -> None:
     """Write p, t and w of point i from the nodes' positions (n, 3) and lab velocities (n, >= 3)."""
     for k in range(3):
-        place, along, speed = 0.0, 0.0, 0.0
-        for m in range(REACH):
-            node = points.first[i] + m
-            place += points.weights[i, m] * r[node, k]
-            along += points.slopes[i, m] * r[node, k]
-            speed += points.weights[i, m] * velocity[node, k]
-        points.p[i, k], points.t[i, k], points.w[i, k] = place, along, speed
+        points.p[i, k], points.t[i, k], points.w[i, k] = between_nodes(points, i, k, r, velocity)
 
 
 @kernel

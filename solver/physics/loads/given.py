@@ -114,9 +114,7 @@ def levers_of(load: DistributedLoad | PointLoad, samples: Samples) -> list[tuple
 
 def is_steady(load: DistributedLoad | PointLoad) -> bool:
     """Whether a load is the same at all times."""
-    if isinstance(load, DistributedLoad):
-        return load.schedule.is_constant
-    return all(c.is_constant for c in (*load.force, *load.moment))
+    return all(curve.is_constant for curve in _schedules(load))
 
 
 def _schedules(load: DistributedLoad | PointLoad) -> Sequence[Curve]:

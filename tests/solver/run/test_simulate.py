@@ -30,7 +30,6 @@ from solver import (
     simulate,
 )
 from solver.arrays import Array
-from solver.outcome import REMEDY
 from tests.solver.scenes import ARC, ARC_ROD, EJ, LENGTH, ROD, fixed_steps, last, turned_clamp
 
 ZERO = Curve.constant(0.0)
@@ -180,7 +179,7 @@ def test_a_run_that_fails_tells_when_where_and_what_to_do() -> None:
     assert failure.step > 3
     told = str(failure)
     assert told.startswith(f"step_too_small at t = {failure.t:.6g} s, step {failure.step}")
-    assert told.endswith(REMEDY[Outcome.STEP_TOO_SMALL])
+    assert told.endswith(Outcome.STEP_TOO_SMALL.remedy)
 
 
 def test_shooting_that_loses_its_digits_says_so() -> None:
@@ -233,9 +232,9 @@ def test_a_rod_that_curls_up_between_two_frames_is_refused_when_it_does(method: 
 
 @pytest.mark.parametrize("outcome", [o for o in Outcome if o is not Outcome.COMPLETED])
 def test_every_outcome_that_is_no_success_has_a_remedy(outcome: Outcome) -> None:
-    assert REMEDY[outcome] in str(RunFailed(outcome, 1.25, 7, "why"))
+    assert outcome.remedy in str(RunFailed(outcome, 1.25, 7, "why"))
     assert "t = 1.25 s, step 7 (why)" in str(RunFailed(outcome, 1.25, 7, "why"))
-    assert len(REMEDY[outcome]) > 10
+    assert len(outcome.remedy) > 10
 
 
 def test_a_clamped_rod_at_rest_stays_at_rest_exactly() -> None:

@@ -14,7 +14,7 @@ from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import cosine_and_sinc, dot, entries, jacobian_series, product, right_jacobian, unit
-from solver.kernels.vectors import add_matrix, add_product, add_vector, matrix, tangent_by_rotation, vector
+from solver.kernels.vectors import add_matrix, add_vector, matrix, subtract_product, tangent_by_rotation, vector
 from solver.methods.space.box.fields import KAPPA, OMEGA, Nodes, State, V
 from solver.physics.elasticity import moment, tangent
 from solver.physics.loads.load import Point, Tangents, add_forces, add_tangents, point, take_force, take_tangents
@@ -140,7 +140,7 @@ def _take_tangents(unknowns: Unknowns, j: int, at: Point, tangents: Tangents) ->
     add_matrix(-unknowns.c0, tangents.M, unknowns.P_V[j])
     add_matrix(-1.0, tangents.C, unknowns.P_V[j])
     add_matrix(-1.0 / unknowns.c0, tangents.K, unknowns.P_V[j])
-    add_product(-1.0, tangents.E, unknowns.J[j], unknowns.P_w[j])
-    add_product(-1.0, tangent_by_rotation(tangents.by_T, at.R), unknowns.J[j], unknowns.P_w[j])
-    add_product(-1.0, tangents.moment_E, unknowns.J[j], unknowns.W_w[j])
+    subtract_product(tangents.E, unknowns.J[j], unknowns.P_w[j])
+    subtract_product(tangent_by_rotation(tangents.by_T, at.R), unknowns.J[j], unknowns.P_w[j])
+    subtract_product(tangents.moment_E, unknowns.J[j], unknowns.W_w[j])
     add_matrix(-1.0, tangents.moment_omega, unknowns.W_w[j])

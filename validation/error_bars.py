@@ -20,8 +20,7 @@ from solver import Frame, Scene, simulate
 from solver.arrays import Array
 from solver.measures.frame import OUTPUTS
 from solver.run.refined import Refined
-from solver.run.resolution import refine
-from solver.run.verify import VerifiedFrame
+from solver.run.verify import VerifiedFrame, refine
 from validation.elastica import TABLE
 from validation.row import Row, at_most, relative
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.measures.frame import OUTPUTS, Frame, Statistics
+from solver.methods.registry import METHODS, tolerated_increment
 from solver.physics.elasticity import can_stretch, principal
 from solver.physics.section import sample
-from solver.run.resolution import refine
 from solver.run.run import Run
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
@@ -70,6 +70,15 @@ class Verified(Run):
         self._lost = float(np.fmax(self._lost, abs(fine.energy_balance)))
         least = unseen(self._scene.rod, self.s, self._lost, fine.dt)
         return extrapolate(coarse, fine, {**least, **dict.fromkeys(of_waves(self._scene.rod), self._lost)})
+
+
+def refine(scene: Scene) -> Scene:
+    """The scene with intervals and steps half as long: dt_max, and by what their error makes of them."""
+    numerics = scene.numerics
+    tolerated = tolerated_increment(numerics) * 0.5 ** METHODS[numerics.method][-1].increment_order
+    finer = replace(numerics, intervals=2 * numerics.intervals, dt_max=0.5 * numerics.dt_max,
+                    increment_tolerance=tolerated)  # fmt: skip
+    return replace(scene, numerics=finer)
 
 
 def of_waves(rod: Rod) -> tuple[str, ...]:

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from solver import Condition, Contact, Curve, End, Initial, Numerics, Scene, VerifiedFrame, simulate
-from solver.run.resolution import refine
-from solver.run.verify import unseen
+from solver.run.verify import refine, unseen
 from solver.scene.ends import FREE
 from solver.scene.scene import MOST_AT_REST
 from tests.solver.bent import bent_cantilever

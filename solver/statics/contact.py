@@ -49,12 +49,11 @@ class StaticContact:
 
     def prepare(self, bending: float, r: Array, moved: Array) -> None:
         """Before a step from nodes r, which may move by about `moved` (N + 1, 3): list who may touch."""
-        if self.present:
-            self._contact.prepare(bending, r, moved, 1.0, anew=True)
+        self._contact.prepare(bending, r, moved, 1.0, anew=True)
 
     def refusal(self, bending: float, r: Array) -> str:
         """After a step to nodes r: why it cannot be trusted, or nothing."""
-        return self._contact.refusal(bending, lambda: (r, self._still[0])) if self.present else ""
+        return self._contact.refusal(bending, lambda: (r, self._still[0]))
 
     def smallest_gap(self, bending: float, r: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""

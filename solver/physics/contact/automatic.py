@@ -10,8 +10,6 @@ thousand, wherever the points of the one lie beside those of the other. Damping 
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.physics.contact.points import Points
@@ -37,21 +35,15 @@ def repulsion(d: float, D: float, pole: float) -> tuple[float, float, float]:
 
 
 @inner
-def automatic_force(weight: float, relaxation: float, pole: float, points: Points, a: int, b: int, n: Array, g: Array,
-                    k: Array) -> tuple[float, float, float]:  # fmt: skip
-    """What `pair_force` says, by this law: `weight` is h^2 (m^2), `relaxation` tau (s), `pole` p, `points.mass` P
-    (N/m^2)."""
-    x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
-    d = np.sqrt(x * x + y * y + z * z)
-    D = 0.5 * (points.diameter[a] + points.diameter[b])
+def automatic_force(relaxation: float, pole: float, scale: float, d: float, D: float, closing: float, points: Points,
+                    a: int, b: int, n: Array, g: Array, k: Array) -> tuple[float, float, float]:  # fmt: skip
+    """What `pair_force` says, by this law, of points a distance d apart that approach at `closing` (m/s), along n.
+
+    `relaxation` tau (s), `pole` p, `scale` h^2 P (N).
+    """
     f, slope, bend = repulsion(d, D, pole)
     if f == 0.0:
         return 0.0, 0.0, 0.0
-    n[0], n[1], n[2] = x / d, y / d, z / d
-    closing = 0.0
-    for i in range(3):
-        closing += n[i] * (points.w[a, i] - points.w[b, i])
-    scale = 0.5 * (points.mass[a] + points.mass[b]) * weight
     elastic, damping = scale * f, scale * relaxation * slope * closing
     by_d = scale * (slope + relaxation * bend * closing)
     k[0], k[1], k[2] = 0.0, 0.0, scale * relaxation * slope

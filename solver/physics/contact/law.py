@@ -104,11 +104,16 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, g: Array, k: 
     """
     if not sees(law, points, a, b):
         return 0.0, 0.0, 0.0
-    if law.automatic:
-        return automatic_force(law.weight, law.relaxation, law.pole, points, a, b, n, g, k)
     x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
     d = np.sqrt(x * x + y * y + z * z)
     n[0], n[1], n[2] = x / d, y / d, z / d
+    D = 0.5 * (points.diameter[a] + points.diameter[b])
+    scale = 0.5 * (points.mass[a] + points.mass[b]) * law.weight
+    closing = 0.0
+    for i in range(3):
+        closing += n[i] * (points.w[a, i] - points.w[b, i])
+    if law.automatic:
+        return automatic_force(law.relaxation, law.pole, scale, d, D, closing, points, a, b, n, g, k)
     c_a = n[0] * points.t[a, 0] + n[1] * points.t[a, 1] + n[2] * points.t[a, 2]
     c_b = n[0] * points.t[b, 0] + n[1] * points.t[b, 1] + n[2] * points.t[b, 2]
     inverse = 1.0 / (law.sine * law.sine)
@@ -118,11 +123,6 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, g: Array, k: 
     dS_a *= -2.0 * c_a * inverse
     dS_b *= -2.0 * c_b * inverse
     dS_d *= -1.0 / (TAPER * law.cutoff)
-    D = 0.5 * (points.diameter[a] + points.diameter[b])
-    scale = 0.5 * (points.mass[a] + points.mass[b]) * law.weight
-    closing = 0.0
-    for i in range(3):
-        closing += n[i] * (points.w[a, i] - points.w[b, i])
     gap = d - 0.5 * D
     push, slope = _repulsion(law, gap, LINEAR_BELOW * D)
     speed = abs(closing) ** law.k4

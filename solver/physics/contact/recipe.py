@@ -15,7 +15,6 @@ cent of D from touching, as the pressure is taken with a margin. As d goes with 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import inf, pi
 from typing import NamedTuple
 
@@ -25,6 +24,7 @@ from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.physics.contact.automatic import POWER
 from solver.physics.elasticity import elasticity_of, principal
+from solver.physics.ends import travel
 from solver.scene.contact import Contact
 from solver.scene.ends import Component, Condition
 from solver.scene.layout import nodes_at_rest
@@ -170,9 +170,7 @@ def _travel(component: Component, t: Array) -> Array:
     travelled = np.zeros_like(t)
     for condition, until in _in_turn(component, t[-1]):
         if condition.kind in ("rate", "position"):
-            curve = condition.curve
-            of: Callable[[float], float] = curve.integral if condition.kind == "rate" else curve.value
-            travelled += [of(min(max(x, condition.since), until)) - of(condition.since) for x in t]
+            travelled += [travel(condition, min(max(x, condition.since), until)) for x in t]
     return travelled
 
 

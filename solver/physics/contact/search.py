@@ -49,11 +49,8 @@ def longest_spacing(points: Points) -> float:
     """The largest distance (m) of two neighbours: how far apart one point farther along may be, at the most."""
     longest = 0.0
     for i in range(len(points.p) - 1):
-        square = 0.0
-        for k in range(3):
-            square += (points.p[i + 1, k] - points.p[i, k]) ** 2
-        longest = max(longest, square)
-    return float(np.sqrt(longest))
+        longest = max(longest, _distance(points, i + 1, i))
+    return longest
 
 
 @inlined

@@ -28,7 +28,7 @@ from numba import types
 from solver.arrays import Array
 from solver.kernels.dispatch import dispatched, for_each, has_variant
 from solver.kernels.kernel import by_type, inner
-from solver.kernels.vectors import dot
+from solver.kernels.vectors import dot, middle
 from solver.physics.cells import Cells
 from solver.physics.section import Section
 from solver.scene.curve import corners_of
@@ -345,6 +345,14 @@ def entrained_energy(taken: Any) -> float:
     if taken is None:
         return 0.0
     return float(0.5 * taken[0] * dot(taken[1], taken[1]))
+
+
+@by_type
+def mean_entrained(one: Any, other: Any) -> Any:
+    """The mean of what is entrained at two points; None of None."""
+    if isinstance(one, types.NoneType):
+        return lambda one, other: None
+    return lambda one, other: (0.5 * (one[0] + other[0]), middle(one[1], other[1]), middle(one[2], other[2]))
 
 
 def has_tangents(record: type) -> bool:

@@ -15,12 +15,12 @@ from solver.kernels.dispatch import for_each
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import matrices_of
-from solver.kernels.vectors import dot, middle, plus
+from solver.kernels.vectors import middle
 from solver.measures.energies import Energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, State, V
 from solver.methods.space.box.nodes import Motion
 from solver.physics.elasticity import strain_energy
-from solver.physics.loads.load import energy, entrained, has_energy, point, prepare
+from solver.physics.loads.load import energy, entrained, entrained_energy, has_energy, mean_entrained, point, prepare
 from solver.physics.loads.registry import Loads
 
 
@@ -68,17 +68,8 @@ def _add_energies(load: Any, motion: Motion, h: float, out: Array) -> None:
         at = point(motion, j)
         behind, following = energy(load, 0, j, at), entrained(load, j, at)
         out[0] += 0.5 * h * (stored + behind)
-        out[1] += h * mean_motion(moving, following)
+        out[1] += h * entrained_energy(mean_entrained(moving, following))
         stored, moving = behind, following
-
-
-@inner
-def mean_motion(left: Any, right: Any) -> float:
-    """The kinetic energy per length of mass entrained between two nodes, of `load.entrained`."""
-    if left is None:
-        return 0.0
-    velocity = plus(left[1], right[1])
-    return float(0.0625 * (left[0] + right[0]) * dot(velocity, velocity))
 
 
 def add_energies(loads: Loads, motion: Motion, h: float, out: Array) -> None:

@@ -18,7 +18,7 @@ from solver.kernels.copying import copy
 from solver.kernels.dispatch import for_each
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
-from solver.kernels.vectors import add_vector, dot, middle, plus, times, without
+from solver.kernels.vectors import add_vector, middle, plus, times, without
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, State
 from solver.methods.space.box.nodes import Motion
 from solver.physics.elasticity import moment
@@ -33,8 +33,10 @@ from solver.physics.loads.load import (
     carrier,
     conservative,
     entrained,
+    entrained_power,
     force,
     has_power,
+    mean_entrained,
     point,
     prepare,
     total_power,
@@ -144,7 +146,7 @@ def _add_power(load: Any, motion: Motion, h: float, power: Array) -> None:
         through = carried_power(mean, middle(carried, carried_next))
         done = total_power(mean, middle(m, m_next), middle(V, V_next), middle(omega, omega_next))
         power[0] += h * through
-        power[1] += h * (through - done - _mean_power(taken, taken_next))
+        power[1] += h * (through - done - entrained_power(mean_entrained(taken, taken_next)))
         f, m, V, omega, carried, taken = f_next, m_next, V_next, omega_next, carried_next, taken_next
 
 
@@ -156,14 +158,6 @@ def _at_node(load: Any, motion: Motion, j: int) -> Any:
     lab, material = force(load, 0, j, at)
     across, carried = without(lab, conservative(load, 0, j, at)), carrier(load, 0, j, at)
     return across, material, at.V, at.omega, carried, entrained(load, j, at)
-
-
-@inner
-def _mean_power(left: Any, right: Any) -> float:
-    """The rate of the kinetic energy per length of mass entrained between two nodes, of `load.entrained`."""
-    if left is None:
-        return 0.0
-    return float(0.5 * (left[0] + right[0]) * dot(middle(left[1], right[1]), middle(left[2], right[2])))
 
 
 @inner

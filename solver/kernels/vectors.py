@@ -184,6 +184,13 @@ def tangent_rate(R: Any, omega: Any) -> Any:
                              R[2][0] * omega[1] - R[2][1] * omega[0])  # fmt: skip
 
 
+@inner
+def tangent_acceleration(R: Any, omega: Any, alpha: Any) -> Any:
+    """T_tt = R (alpha x a3 + omega x (omega x a3)), in space."""
+    return in_lab(R, (alpha[1] + omega[0] * omega[2], omega[1] * omega[2] - alpha[0],
+                      -omega[0] * omega[0] - omega[1] * omega[1]))  # fmt: skip
+
+
 @by_type
 def in_lab_by_rotation(R: Any, x: Any) -> Any:
     """d(R x) / d psi for dR = R [d psi]: the matrix -R [x] in space, the vector of an angle in a plane."""
@@ -230,11 +237,12 @@ def lever_by_rotation(a: Any, R: Any) -> Any:
     """d(a3 x R^t a) / d psi: a matrix in space, a number in a plane."""
     if len(a) == 2:
         return lambda a, R: -(a[0] * R[0] + a[1] * R[1])
-    return lambda a, R: _lever_turned(in_material(R, a))
+    return lambda a, R: lever_turned(in_material(R, a))
 
 
 @inner
-def _lever_turned(g: Any) -> Any:
+def lever_turned(g: Any) -> Any:
+    """The matrix that takes psi to a3 x (g x psi) = g psi_3 - g_3 psi, in space."""
     return (-g[2], 0.0, g[0]), (0.0, -g[2], g[1]), (0.0, 0.0, 0.0)
 
 

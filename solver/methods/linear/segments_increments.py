@@ -6,6 +6,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
+from solver.kernels.vectors import in_lab, in_material, matrix, vector, vector_product
 from solver.methods.linear.segments import Factors
 from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
@@ -101,24 +102,17 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
             c0 = t0 * x[0] + t1 * z[0].real + t2 * z[0].imag
             c1 = t0 * x[1] + t1 * z[1].real + t2 * z[1].imag
             c2 = t0 * x[2] + t1 * z[2].real + t2 * z[2].imag
-            Q, R = stages.R[i, a], stages.start[a]
             cosine, sine = tangents.spun[i, a, 0], tangents.spun[i, a, 1]
             c0, c1 = cosine * c0 + sine * c1, cosine * c1 - sine * c0
-            u = Q[0, 0] * c0 + Q[0, 1] * c1 + Q[0, 2] * c2
-            v = Q[1, 0] * c0 + Q[1, 1] * c1 + Q[1, 2] * c2
-            w = Q[2, 0] * c0 + Q[2, 1] * c1 + Q[2, 2] * c2
-            p0 = R[0, 0] * u + R[1, 0] * v + R[2, 0] * w
-            p1 = R[0, 1] * u + R[1, 1] * v + R[2, 1] * w
-            p2 = R[0, 2] * u + R[1, 2] * v + R[2, 2] * w
-            theta = stages.theta[i, a]
-            u, v, w = theta[0], theta[1], theta[2]
+            p = in_material(matrix(stages.start, a), in_lab(matrix(stages.R[i], a), (c0, c1, c2)))
             # a rotation by p in the frame of R_n changes theta by p - theta x p / 2 + ...
-            c0, c1, c2 = v * p2 - w * p1, w * p0 - u * p2, u * p1 - v * p0
-            theta[0] += p0 - 0.5 * c0 + (1 / 12) * (v * c2 - w * c1)
-            theta[1] += p1 - 0.5 * c1 + (1 / 12) * (w * c0 - u * c2)
-            theta[2] += p2 - 0.5 * c2 + (1 / 12) * (u * c1 - v * c0)
-            turned = max(turned, abs(p0), abs(p1), abs(p2))
-            if not np.isfinite(p0):
+            theta = vector(stages.theta[i], a)
+            once = vector_product(theta, p)
+            twice = vector_product(theta, once)
+            for k in range(3):
+                stages.theta[i, a, k] += p[k] - 0.5 * once[k] + (1 / 12) * twice[k]
+            turned = max(turned, abs(p[0]), abs(p[1]), abs(p[2]))
+            if not np.isfinite(p[0]):
                 return np.inf, np.inf, np.inf
         for a in range(stages.F.shape[1]):
             for k in range(3):

@@ -20,8 +20,21 @@ from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inlined, inner, kernel
-from solver.kernels.scratch import scratch
-from solver.kernels.vectors import add_matrix, add_vector, matrix, tangent_by_rotation, vector
+from solver.kernels.vectors import (
+    add_matrix,
+    add_vector,
+    dot,
+    in_material,
+    in_material_by_rotation,
+    lever_turned,
+    matrix,
+    minus,
+    plus,
+    tangent_by_rotation,
+    tangent_rate,
+    times,
+    vector,
+)
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.methods.space.segments.joints import joint_tangents, share
 from solver.methods.space.segments.opening import opening_tangents
@@ -188,79 +201,56 @@ def balance_segments(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
 def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Residuals, i: int) -> None:
     """Write what the conditions at the ends miss at stage i."""
     N = len(chain.mass)
-    V = scratch(3)
     for side in range(2):
         frame, node = (0, 0) if side == 0 else (N + 1, N)
-        R = stages.R[i, frame]
-        _end_velocity(chain, stages, i, side, V)
+        R, V = matrix(stages.R[i], frame), _end_velocity(chain, stages, i, side)
         kinds, values, dead = driven.kinds[side], driven.values[i, side], driven.dead[i, side]
         if driven.compliance[side] > 0.0:  # the rod's end and what holds it move apart along the tangent
-            stretch = 0.0
-            for k in range(3):
-                stretch += R[k, 2] * stages.F_t[i, side, k]
-            stretch *= driven.compliance[side] * (1.0 if side == 1 else -1.0)
-            for k in range(3):
-                V[k] += stretch * R[k, 2]
+            T, give = (R[0][2], R[1][2], R[2][2]), driven.compliance[side] * (1.0 if side == 1 else -1.0)
+            V = plus(V, times(dot(T, vector(stages.F_t[i], side)) * give, T))
+        pull = minus(vector(stages.F[i], node), vector(driven.dead[i], side))
+        speed_within, pull_within = in_material(R, V), in_material(R, pull)
+        couple = in_material(R, (dead[3], dead[4], dead[5]))
         inner = stages.left[i, 0] if side == 0 else stages.right[i, N]
         for k in range(3):
             if kinds[k] == RATE_LAB:
                 missed = V[k]
             elif kinds[k] == LOAD_LAB:
-                missed = stages.F[i, node, k] - dead[k]
+                missed = pull[k]
             else:
-                missed = 0.0
-                for m in range(3):
-                    missed += R[m, k] * (V[m] if kinds[k] == RATE else stages.F[i, node, m] - dead[m])
+                missed = speed_within[k] if kinds[k] == RATE else pull_within[k]
             residuals.ends[i, side, k] = missed - values[k]
-            if kinds[3 + k] == RATE:
-                missed = stages.omega[i, frame, k]
-            else:
-                missed = inner[k] - (R[0, k] * dead[3] + R[1, k] * dead[4] + R[2, k] * dead[5])
+            missed = stages.omega[i, frame, k] if kinds[3 + k] == RATE else inner[k] - couple[k]
             residuals.rotation[i, frame, k] = missed - values[3 + k]
 
 
 @inner
-def _end_velocity(chain: Chain, stages: Stages, i: int, side: int, V: Array) -> None:
-    """Write the velocity (3,) of the rod's start or end."""
+def _end_velocity(chain: Chain, stages: Stages, i: int, side: int) -> Any:
+    """The velocity, lab, of the rod's start or end."""
     if side == 0:
-        copy(stages.base[i, 1], V)
-        return
-    N = len(chain.mass)
-    w, Q, lever = stages.omega[i, N], stages.R[i, N], 0.5 * chain.h + stages.opening[i, 0, N]
-    for k in range(3):
-        swing = Q[k, 0] * w[1] - Q[k, 1] * w[0]
-        V[k] = stages.V[i, N - 1, k] + lever * swing + stages.opening[i, 1, N] * Q[k, 2]
-
-
-@inner
-def _cross_matrix(x: Array, factor: float, out: Array) -> None:
-    """Add factor [x] to `out` (3, 3)."""
-    out[0, 1] -= factor * x[2]
-    out[0, 2] += factor * x[1]
-    out[1, 0] += factor * x[2]
-    out[1, 2] -= factor * x[0]
-    out[2, 0] -= factor * x[1]
-    out[2, 1] += factor * x[0]
+        return vector(stages.base[i], 1)
+    N, R = len(chain.mass), matrix(stages.R[i], len(chain.mass))
+    lever, along = 0.5 * chain.h + stages.opening[i, 0, N], (R[0][2], R[1][2], R[2][2])
+    swing = times(lever, tangent_rate(R, vector(stages.omega[i], N)))
+    return plus(plus(vector(stages.V[i], N - 1), swing), times(stages.opening[i, 1, N], along))
 
 
 @kernel
 def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
     """Write the tangents at stage i of the balances and of the ends' conditions."""
-    h, N = chain.h, len(chain.mass)
+    h, N, F, push = chain.h, len(chain.mass), stages.F[i], driven.push[i]
     joint_tangents(chain, stages.bend[i], stages.moment[i], tangents.ahead, tangents.back)
     copy(stages.R[i], tangents.R)
     tangents.M[:], tangents.C[:], tangents.K[:], tangents.E[:], tangents.spin[:] = 0.0, 0.0, 0.0, 0.0, 0.0
     tangents.stiff[:], tangents.before[:], tangents.behind[:] = 0.0, 0.0, 0.0
-    g = scratch(3)
     for j in range(N):
-        R, w = stages.R[i, j + 1], stages.omega[i, j + 1]
+        R, w = matrix(stages.R[i], j + 1), stages.omega[i, j + 1]
         M, spin, stiff = tangents.M[j], tangents.spin[j], tangents.stiff[j + 1]
         # with psi in a frame that does not turn, omega changes by psi_t and omega_t by psi_tt - omega x psi_t
         I0, I1, I2 = chain.inertia[j, 0], chain.inertia[j, 1], chain.inertia[j, 2]
         for k in range(3):
             M[k, k] = h * chain.mass[j]
-            g[k] = chain.inertia[j, k] * w[k]
-        _cross_matrix(g, -h, spin)
+        add_matrix(-h, in_material_by_rotation((I0 * w[0], I1 * w[1], I2 * w[2])), spin)
         spin[0, 1] += h * w[2] * (I0 - I1)
         spin[0, 2] -= h * w[1] * (I0 - I2)
         spin[1, 0] -= h * w[2] * (I1 - I0)
@@ -268,17 +258,9 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
         spin[2, 0] += h * w[1] * (I2 - I0)
         spin[2, 1] -= h * w[0] * (I2 - I1)
         near, far = share(j, N), share(j + 1, N)
-        for k in range(3):
-            g[k] = 0.0
-            for m in range(3):
-                pull = stages.F[i, j + 1, m] + stages.F[i, j, m]
-                pull += far * driven.push[i, j + 1, m] - near * driven.push[i, j, m]
-                g[k] += R[m, k] * pull
-        # -(h/2) a3 x (g x psi) = (h/2) (g_3 psi - ...), its third row is 0
-        stiff[0, 0] += 0.5 * h * g[2]
-        stiff[0, 2] -= 0.5 * h * g[0]
-        stiff[1, 1] += 0.5 * h * g[2]
-        stiff[1, 2] -= 0.5 * h * g[1]
+        pull = plus(vector(F, j + 1), vector(F, j))
+        pull = plus(pull, minus(times(far, vector(push, j + 1)), times(near, vector(push, j))))
+        add_matrix(-0.5 * h, lever_turned(in_material(R, pull)), stiff)
         for k in range(3):
             for m in range(3):
                 stiff[k, m] += tangents.back[j, 1, k, m] - tangents.ahead[j + 1, 0, k, m]
@@ -296,31 +278,24 @@ def segment_tangents(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
 def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents: Tangents) -> None:
     """Tangents of the conditions on a loaded end's rotation (the start's with the opposite sign), and `turn`."""
     N = len(chain.mass)
-    g, V, swing = scratch(3), scratch(3), scratch((3, 3))
     for side in range(2):
         frame, node = (0, 0) if side == 0 else (N + 1, N)
-        R, dead = stages.R[i, frame], driven.dead[i, side]
-        for k in range(3):
-            g[k] = R[0, k] * dead[3] + R[1, k] * dead[4] + R[2, k] * dead[5]
-        swing[:, :] = 0.0
-        _cross_matrix(g, -1.0, swing)
-        _end_velocity(chain, stages, i, side, V)
+        R, dead = matrix(stages.R[i], frame), driven.dead[i, side]
+        swing = in_material_by_rotation(times(-1.0, in_material(R, (dead[3], dead[4], dead[5]))))
+        speed = in_material(R, _end_velocity(chain, stages, i, side))
+        pull = in_material(R, minus(vector(stages.F[i], node), vector(driven.dead[i], side)))
         tangents.turn[side] = 0.0
         for k in range(3):
             for m in range(3):
                 if side == 0:
-                    tangents.stiff[0, k, m] = -tangents.ahead[0, 0, k, m] - swing[k, m]
+                    tangents.stiff[0, k, m] = -tangents.ahead[0, 0, k, m] - swing[k][m]
                     tangents.behind[0, k, m] = -tangents.ahead[0, 1, k, m]
                 else:
-                    tangents.stiff[N + 1, k, m] = tangents.back[N, 1, k, m] + swing[k, m]
+                    tangents.stiff[N + 1, k, m] = tangents.back[N, 1, k, m] + swing[k][m]
                     tangents.before[N + 1, k, m] = tangents.back[N, 0, k, m]
             # R[:, k] turns by R (psi x e_k): the condition on component k changes by (g x psi)_k, g = R^t vector
             kind = driven.kinds[side, k]
             if kind in (RATE, LOAD):
-                for m in range(3):
-                    g[m] = 0.0
-                    for n in range(3):
-                        g[m] += R[n, m] * (V[n] if kind == RATE else stages.F[i, node, n] - dead[n])
-                one, two = (k + 1) % 3, (k + 2) % 3
+                g, one, two = speed if kind == RATE else pull, (k + 1) % 3, (k + 2) % 3
                 tangents.turn[side, k, two] += g[one]
                 tangents.turn[side, k, one] -= g[two]

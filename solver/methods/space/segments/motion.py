@@ -23,6 +23,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import angle_by_sine, cosine_and_sinc, cross, dot, entries, product, turned_back, unit
+from solver.kernels.vectors import matrix, plus, tangent_acceleration, tangent_rate, times, vector
 from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
 from solver.methods.space.segments.opening import open_joints
 from solver.physics.elasticity import stretches
@@ -107,26 +108,15 @@ def turn_segments(state: State, stages: Stages, i: int) -> float:
 def follow_segments(R: Array, omega: Array, alpha: Array, base: Array, h: float, r: Array, V: Array, A: Array) -> None:
     """Write position, velocity and acceleration (N, 3) of the segments' centres, from those of the start, `base`."""
     half = 0.5 * h
-    r0, r1, r2 = base[0, 0], base[0, 1], base[0, 2]
-    v0, v1, v2 = base[1, 0], base[1, 1], base[1, 2]
-    a0, a1, a2 = base[2, 0], base[2, 1], base[2, 2]
+    start, speed, growth = vector(base, 0), vector(base, 1), vector(base, 2)
     for j in range(len(r)):
-        Q, w, g = R[j + 1], omega[j + 1], alpha[j + 1]
-        # the rates of the tangent: R (omega x a3), R (alpha x a3 + omega x (omega x a3))
-        c0, c1 = w[1], -w[0]
-        d0, d1, d2 = g[1] + w[0] * w[2], -g[0] + w[1] * w[2], -(w[0] * w[0] + w[1] * w[1])
-        x, y, z = half * Q[0, 2], half * Q[1, 2], half * Q[2, 2]
-        x_t, y_t, z_t = (half * (Q[0, 0] * c0 + Q[0, 1] * c1), half * (Q[1, 0] * c0 + Q[1, 1] * c1),
-                         half * (Q[2, 0] * c0 + Q[2, 1] * c1))  # fmt: skip
-        x_tt, y_tt, z_tt = (half * (Q[0, 0] * d0 + Q[0, 1] * d1 + Q[0, 2] * d2),
-                            half * (Q[1, 0] * d0 + Q[1, 1] * d1 + Q[1, 2] * d2),
-                            half * (Q[2, 0] * d0 + Q[2, 1] * d1 + Q[2, 2] * d2))  # fmt: skip
-        r[j, 0], r[j, 1], r[j, 2] = r0 + x, r1 + y, r2 + z
-        V[j, 0], V[j, 1], V[j, 2] = v0 + x_t, v1 + y_t, v2 + z_t
-        A[j, 0], A[j, 1], A[j, 2] = a0 + x_tt, a1 + y_tt, a2 + z_tt
-        r0, r1, r2 = r0 + 2.0 * x, r1 + 2.0 * y, r2 + 2.0 * z
-        v0, v1, v2 = v0 + 2.0 * x_t, v1 + 2.0 * y_t, v2 + 2.0 * z_t
-        a0, a1, a2 = a0 + 2.0 * x_tt, a1 + 2.0 * y_tt, a2 + 2.0 * z_tt
+        Q, w = matrix(R, j + 1), vector(omega, j + 1)
+        x, x_t = times(half, (Q[0][2], Q[1][2], Q[2][2])), times(half, tangent_rate(Q, w))
+        x_tt = times(half, tangent_acceleration(Q, w, vector(alpha, j + 1)))
+        r[j, 0], r[j, 1], r[j, 2] = plus(start, x)
+        V[j, 0], V[j, 1], V[j, 2] = plus(speed, x_t)
+        A[j, 0], A[j, 1], A[j, 2] = plus(growth, x_tt)
+        start, speed, growth = plus(start, times(2.0, x)), plus(speed, times(2.0, x_t)), plus(growth, times(2.0, x_tt))
 
 
 @kernel

@@ -20,12 +20,13 @@ from solver.kernels.vectors import (
     add_matrix,
     add_vector,
     dot,
-    in_lab,
     in_material,
+    lever_turned,
     matrix,
     middle,
     outer,
     plus,
+    tangent_acceleration,
     tangent_rate,
     times,
     vector,
@@ -46,13 +47,6 @@ def _tangent(R: Array, a: int) -> Any:
     """t of joint a, of the rotations R (N + 2, 3, 3)."""
     one, other = beside(a, len(R) - 2)
     return middle((R[one, 0, 2], R[one, 1, 2], R[one, 2, 2]), (R[other, 0, 2], R[other, 1, 2], R[other, 2, 2]))
-
-
-@inner
-def _acceleration(R: Any, omega: Any, alpha: Any) -> Any:
-    """T_tt = R (alpha x a3 + omega x (omega x a3))."""
-    return in_lab(R, (alpha[1] + omega[0] * omega[2], omega[1] * omega[2] - alpha[0],
-                      -omega[0] * omega[0] - omega[1] * omega[1]))  # fmt: skip
 
 
 @inner
@@ -107,7 +101,7 @@ def shift_segments(R: Array, omega: Array, alpha: Array, opening: Array, r: Arra
         Q, P = matrix(R, one), matrix(R, other)
         w, u = vector(omega, one), vector(omega, other)
         t, t_t = _tangent(R, j), middle(tangent_rate(Q, w), tangent_rate(P, u))
-        t_tt = middle(_acceleration(Q, w, vector(alpha, one)), _acceleration(P, u, vector(alpha, other)))
+        t_tt = middle(tangent_acceleration(Q, w, vector(alpha, one)), tangent_acceleration(P, u, vector(alpha, other)))
         shift = plus(shift, times(e, t))
         speed = plus(speed, plus(times(e_t, t), times(e, t_t)))
         growth = plus(growth, plus(times(e_tt, t), plus(times(2.0 * e_t, t_t), times(e, t_tt))))
@@ -165,8 +159,8 @@ def opening_tangents(chain: Chain, stages: Stages, i: int, stiff: Array, before:
         f, g = in_material(matrix(R, a), vector(F, a)), in_material(matrix(R, a + 1), vector(F, a))
         n, m = (-left * f[1], left * f[0], 0.0), (-right * g[1], right * g[0], 0.0)
         u, v = on_left, times(-1.0, on_right)
-        _swing(e * left, f, stiff[a])
-        _swing(e * right, g, stiff[a + 1])
+        add_matrix(-e * left, lever_turned(f), stiff[a])
+        add_matrix(-e * right, lever_turned(g), stiff[a + 1])
         _add_pair(c, n, u, n, u, stiff[a])
         _add_pair(c, n, u, m, v, behind[a])
         _add_pair(c, m, v, n, u, before[a + 1])
@@ -187,12 +181,3 @@ def _add_pair(c: float, n: Any, u: Any, m: Any, v: Any, out: Array) -> None:
     """Subtract c n m^t + n v^t + u m^t from `out` (3, 3)."""
     add_matrix(-1.0, outer(n, plus(times(c, m), v)), out)
     add_matrix(-1.0, outer(u, m), out)
-
-
-@inner
-def _swing(lever: float, g: Any, stiff: Array) -> None:
-    """Add -lever a3 x (g x psi) = lever (g_3 psi - ...), whose third row is 0, to `stiff` (3, 3)."""
-    stiff[0, 0] += lever * g[2]
-    stiff[0, 2] -= lever * g[0]
-    stiff[1, 1] += lever * g[2]
-    stiff[1, 2] -= lever * g[1]

@@ -1,9 +1,10 @@
 """What spares numba work when it compiles kernels: by its internals, and none of it changes what a kernel computes.
 
 Half of the time is numba's own Python, which types every call of every kernel. Of `a + b` it asks all that may ever be
-meant by +, each time; here it asks once for each kind of a and b. And it makes machine code of each kernel by itself,
-also of those that only kernels call, which are part of their callers' code; here only of what somebody asks the address
-of (docs/decisions/0005).
+meant by +, each time; here it asks once for each kind of a and b. After each of its passes it looks which variables
+live where, which only the last pass and generators need. And it makes machine code of each kernel by itself, also of
+those that only kernels call, which are part of their callers' code; here only of what somebody asks the address of
+(docs/decisions/0005).
 """
 
 from __future__ import annotations
@@ -11,8 +12,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from numba.core.codegen import JITCodeLibrary
+from numba.core.postproc import PostProcessor, VariableLifetime
 from numba.core.registry import cpu_target
 from numba.core.targetconfig import ConfigStack
+from numba.core.transforms import canonicalize_cfg
 from numba.core.types.functions import BaseFunction
 
 
@@ -85,6 +88,17 @@ class _Library(JITCodeLibrary):
                 _SET_AT_ONCE(variable.name, _WAITING.pop(variable.name))
 
 
+def _after_pass(processor: Any, emit_dels: bool = False, extend_lifetimes: bool = False) -> None:
+    """What numba does after a pass; without `emit_dels` there is another one to come."""
+    function = processor.func_ir
+    if emit_dels or function.is_generator:
+        _AFTER_PASS(processor, emit_dels, extend_lifetimes)
+        return
+    function.blocks = canonicalize_cfg(function.blocks)
+    function.variable_lifetime = VariableLifetime(function.blocks)
+    function.generator_info = None
+
+
 def _set_environment(name: str, environment: Any) -> None:
     """Tell a function what it raises its exceptions with: at once, or when there is machine code of it."""
     if CODE._engine.get_global_value_address(name):
@@ -95,9 +109,11 @@ def _set_environment(name: str, environment: Any) -> None:
 
 CALLS, CODE = Calls(), cpu_target.target_context.codegen()
 _SET_AT_ONCE, _WAITING = CODE.set_env, dict[str, Any]()
+_AFTER_PASS = PostProcessor.run
 
 
 def spare() -> None:
     """Have numba work like this from now on."""
     BaseFunction.get_call_type = lambda *call: CALLS.resolve(*call)  # type: ignore[method-assign]
+    PostProcessor.run = _after_pass  # type: ignore[method-assign]
     CODE._library_class, CODE.set_env = _Library, _set_environment

@@ -32,6 +32,7 @@ class Curve:
         self._pieces: list[tuple[float, float, float, float]] = [
             (float(a), float(b), float(c), float(d)) for a, b, c, d in coefficients.T
         ]
+        self._table: tuple[Array, Array] = np.array(self._knots), np.array(self._pieces).reshape(-1, 4)
         self._integral_at_knots: list[float] = [0.0]
         for i, piece in enumerate(self._pieces):
             width = self._knots[i + 1] - self._knots[i]
@@ -79,7 +80,7 @@ class Curve:
     def polynomials(self) -> tuple[Array, Array]:
         """The points (m,) of its table, and the coefficients (m - 1, 4) of the cubics between them, of x less the point
         before, highest power first; of a constant one point and no cubic."""
-        return np.array(self._knots), np.array(self._pieces).reshape(-1, 4)
+        return self._table
 
     @property
     def is_zero(self) -> bool:
@@ -120,7 +121,7 @@ class Curve:
         xs = np.asarray(x, dtype=float)
         if not self._pieces:
             return np.full(xs.shape, self._first)
-        knots, pieces = np.array(self._knots), np.array(self._pieces)
+        knots, pieces = self._table
         inside = np.clip(xs, knots[0], knots[-1])
         i = np.minimum(np.searchsorted(knots, inside, side="right"), len(pieces)) - 1
         a, b, c, d = np.moveaxis(pieces[i], -1, 0)

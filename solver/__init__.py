@@ -21,11 +21,11 @@ from solver.scene.numerics import Numerics
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 from solver.scene.user import UserLoad
-from solver.statics.ends import check_end
+from solver.statics.ends import check_end, check_place
 
 __all__ = [
     "FIXED", "FREE", "Condition", "Contact", "Curve", "DistributedLoad", "End", "Fluid", "Frame", "Initial", "Numerics",
-    "Outcome", "PointLoad", "Refined", "Rod", "Run", "RunFailed", "Scene", "Shear", "Simulation",
-    "Statistics", "Trial", "UnderWay", "UserLoad", "Vector", "Verified", "VerifiedFrame", "check_end", "code_digest",
+    "Outcome", "PointLoad", "Refined", "Rod", "Run", "RunFailed", "Scene", "Shear", "Simulation", "Statistics", "Trial",
+    "UnderWay", "UserLoad", "Vector", "Verified", "VerifiedFrame", "check_end", "check_place", "code_digest",
     "constant_vector", "simulate", "strides_of", "warm",
 ]

@@ -14,7 +14,7 @@ from service.cases.ends import build_end
 from service.cases.errors import CaseError, FieldError
 from service.cases.initial import InitialSpec
 from service.cases.rod import RodSpec
-from solver import Initial, Rod, Scene, check_end
+from solver import Initial, Rod, Scene, check_end, check_place
 from solver.run.plan import FIRST_INTERVALS
 from solver.scene.layout import curvature_of, nodes_at_rest
 from solver.scene.rod import Profiles
@@ -41,7 +41,10 @@ def build_scene(spec: CaseSpec) -> Scene:
         rod = replace(rod, kappa0=kappa0)
     if spec.analysis == "dynamic":
         _check_frames(spec)
-    return _part("", lambda: _scene(spec, rod, initial))
+    scene = _part("", lambda: _scene(spec, rod, initial))
+    if spec.analysis == "static":
+        _part("/ends", lambda: check_place(scene))
+    return scene
 
 
 def _check_frames(spec: CaseSpec) -> None:

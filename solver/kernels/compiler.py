@@ -115,5 +115,5 @@ _AFTER_PASS = PostProcessor.run
 def spare() -> None:
     """Have numba work like this from now on."""
     BaseFunction.get_call_type = lambda *call: CALLS.resolve(*call)  # type: ignore[method-assign]
-    PostProcessor.run = _after_pass  # type: ignore[method-assign]
+    PostProcessor.run = _after_pass  # type: ignore[method-assign, assignment]
     CODE._library_class, CODE.set_env = _Library, _set_environment

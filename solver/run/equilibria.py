@@ -25,6 +25,7 @@ from solver.scene.initial import Initial
 from solver.scene.numerics import Numerics
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
+from solver.statics.ends import check_place
 from solver.statics.equations import Equations
 from solver.statics.first_forces import first_forces
 from solver.statics.path import MOST_STEPS, Path
@@ -50,6 +51,7 @@ class Equilibria(Run):
 
     def __init__(self, scene: Scene, statistics: Statistics | None = None) -> None:
         super().__init__(scene, statistics)
+        check_place(scene)
         compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
         self.remarks.axial_stiffness = axial_stiffness(scene)
         self._watch = Watch(self.remarks, scene.contact is not None)

@@ -11,11 +11,16 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.rotation import relative_rotation, rotation_of, turn
+from solver.kernels.rotation import relative_rotation, rotate, rotation_of, turn
 from solver.physics.ends import travel
 from solver.scene.ends import Condition, End
+from solver.scene.layout import nodes_at_rest
+from solver.scene.scene import Scene
 from solver.statics.point import FORCE, PSI, X
 from solver.statics.tangent import crossing
+
+ALONG = 1e-6
+"""Cosine below which a direction that is held counts as across another one."""
 
 
 class Units(NamedTuple):
@@ -45,6 +50,28 @@ def check_end(end: End) -> None:
     if not (_is_still(turn[0]) and _is_still(turn[1]) and (_is_still(turn[2]) or alike)):
         raise ValueError("translation that is held or moved must be along lab axes where the end turns, in a "
                          'static analysis: use frame "lab"')  # fmt: skip
+
+
+def check_place(scene: Scene) -> None:
+    """Raise ValueError if the rod may go as a whole where it likes: no end holds it along some direction.
+
+    What else there is, solids or a user's load, may hold it instead.
+    """
+    if scene.loads:
+        return
+    _, orientation, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, 2))
+    held = np.zeros((6, 3))
+    for i, end in enumerate((scene.start, scene.end)):
+        axes = np.eye(3) if end.frame == "lab" else rotate(np.tile(orientation[-i], (3, 1)), np.eye(3))
+        held[3 * i : 3 * i + 3] = [
+            axis if component[0].kind != "load" else 0.0 * axis
+            for axis, component in zip(axes, end.translation, strict=True)
+        ]
+    _, sizes, directions = np.linalg.svd(held)
+    if sizes[-1] < ALONG:
+        loose = ", ".join(f"{x:.3g}" for x in directions[-1] + 0.0)
+        raise ValueError(f"ends must hold the rod's place in a static analysis, and neither holds it along ({loose}): "
+                         "clamp or pin one of them")  # fmt: skip
 
 
 def _is_still(condition: Condition) -> bool:

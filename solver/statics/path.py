@@ -51,6 +51,8 @@ leads to the stable branch; and where strands press: what is wound may slide alo
 rises and falls with every node that it passes."""
 WITHOUT_END = 1e3
 """In rod lengths a unit of the branch: beside such a displacement only `SOFTEST_PLACE` stands against the loads."""
+LEAST = 1e-7
+"""By how much q changes at the least where the schedules begin, a unit of the branch."""
 REACHED = 1e-10
 STEEP = 0.02
 """Least dq at which a step may end at a given q."""
@@ -103,6 +105,8 @@ class Path:
             self.direction = self._direction(self.point, 1.0)
             self.modes = negative_modes(self._equations)
             self._begun = True
+            if self.direction.dq < LEAST and not self._equations.letting_go:
+                raise self._failure(Outcome.SINGULAR_SYSTEM, "nothing holds the rod against its first loads")
         if self._left(stop) > REACHED:
             if self._idle == (self._patience if self._equations.letting_go else MOST_STEPS):
                 raise self._failure(Outcome.EQUILIBRIUM_LOST, f"{MOST_STEPS} steps did not reach the next frame")

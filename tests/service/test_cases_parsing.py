@@ -264,6 +264,7 @@ def test_the_schema_tells_every_field_of_a_case():
         ({"ends.end": {"preset": "clamp", "switches": [{"at": 1.0, "f3": 0.0}]}}, "/ends/end", "switches"),
         ({"initial.velocity": [1.0, 0.0, 0.0]}, "/initial/velocity", "in which nothing moves"),
         ({"numerics.intervals": 1001, "contact": {}}, "", "intervals must be <= 1000 in a static analysis"),
+        ({"ends.start": "slider"}, "/ends", "neither holds it along .0, 0, 1."),
     ],
 )
 def test_what_a_static_analysis_cannot_do_is_refused(settings: dict[str, Any], pointer: str, rule: str):

@@ -249,9 +249,28 @@ def test_motion_at_the_start_is_refused() -> None:
         static(initial=Initial.straight(velocity=(1.0, 0.0, 0.0)))
 
 
-def test_a_rod_without_a_single_equilibrium_ends_by_name() -> None:
+ALONG_LAB = End((FIXED, FIXED, FREE), (FIXED,) * 3, "lab")
+LOOSE = {"free": (End.free(), End.free()), "along itself": (End.slider(), End.slider()),
+         "a slider": (End.slider(), End.free()),
+         "along e3": (ALONG_LAB, End((FREE, FREE, FREE), (FIXED,) * 3))}  # fmt: skip
+
+
+@pytest.mark.parametrize("ends", LOOSE.values(), ids=LOOSE)
+def test_a_rod_that_no_end_holds_in_place_is_refused(ends: tuple[End, End]) -> None:
+    start, end = ends
+    with pytest.raises(ValueError, match=r"neither holds it along \(-?[\d., -]+\)"):
+        simulate(static(start=start, end=end))
+
+
+def test_two_sliders_across_each_other_hold_a_rod_in_place() -> None:
+    across = End((FREE, FIXED, FIXED), (FIXED,) * 3, "lab")
+    assert last(static(start=ALONG_LAB, end=across)).r[-1] == pytest.approx([0.0, 0.0, LENGTH])
+
+
+def test_a_rod_on_a_pin_before_there_is_a_load_ends_by_name() -> None:
+    pull = PointLoad(LENGTH, (ramp(EJ), ZERO, ZERO))
     with pytest.raises(RunFailed) as failure:
-        list(simulate(static(start=End.free(), end=End.free())))
+        list(simulate(static(start=End.pin(), points=(pull,))))
     assert failure.value.outcome == Outcome.SINGULAR_SYSTEM
 
 

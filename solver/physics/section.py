@@ -6,10 +6,11 @@ from math import pi
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.physics.cells import Cells
-from solver.physics.elasticity import Elasticity, elasticity_of, elasticity_over
+from solver.physics.cells import Cells, around_nodes
+from solver.physics.elasticity import Coupling, Elasticity, Stretch, elasticity_of, elasticity_over
 from solver.scene.rod import Rod
 
 
@@ -22,6 +23,32 @@ class Section(NamedTuple):
     inertia: Array
     diameter: Array
     area: Array
+
+
+class Beside(NamedTuple):
+    """The `nodes` (k,) that lie beside a step of the section, and how much more the rod bends there under a moment than
+    on the mean around the node, for which its joint stands: `flexibility` (k, 3, 3) in 1/(N m^2)."""
+
+    nodes: NDArray[np.int64]
+    flexibility: Array
+
+    @classmethod
+    def steps(cls, rod: Rod, s: Array) -> Beside:
+        """Those of nodes `s` (n,); none of a rod whose moment does not follow from K alone."""
+        joints = around_nodes(s, rod.corners)
+        if len(joints.crossed) == 0 or not all(isinstance(law, (Coupling, Stretch)) for law in rod.laws):
+            return cls(np.zeros(0, np.int64), np.zeros((0, 3, 3)))
+        elastic, nodes = elasticity_of(rod, joints.points), joints.crossed
+        mean = elasticity_over(elastic, joints)
+        return cls(nodes, np.asarray(np.linalg.inv(elastic.K[nodes]) - np.linalg.inv(mean.K[nodes])))
+
+    def at_nodes(self, kappa: Array, q: Array) -> Array:
+        """The curvature (n, 3) of the nodes themselves under moments q (n, 3), from that of their joints."""
+        if len(self.nodes) == 0:
+            return kappa
+        kappa = kappa.copy()
+        kappa[self.nodes] += np.einsum("kij,kj->ki", self.flexibility, q[self.nodes])
+        return kappa
 
 
 def sample(rod: Rod, s: Array) -> Section:

@@ -16,6 +16,7 @@ from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import LARGEST_STRAIN, axial_stiffness
+from solver.physics.section import Beside
 from solver.run.linking import LinkingNumber
 from solver.run.run import Run
 from solver.run.watch import Watch
@@ -54,6 +55,7 @@ class Equilibria(Run):
         check_place(scene)
         compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
         self.remarks.axial_stiffness = axial_stiffness(scene)
+        self._beside = Beside.steps(scene.rod, np.linspace(0.0, scene.rod.length, scene.numerics.intervals + 1))
         self._watch = Watch(self.remarks, scene.contact is not None)
         self._falling: list[float] = []
         """Directions of falling energy where each of the WAYS led; inf where it led nowhere."""
@@ -205,7 +207,8 @@ class Equilibria(Run):
         kappa, q = stages.bend[0].copy(), stages.moment[0].copy()
         bending_at_nodes(equations.chain, kappa, q, stages.left[0], stages.right[0])
         return Fields(
-            v=rest, omega=rest, f=rotate_back(orientation, point.F), kappa=kappa - equations.offset, q=q,
+            v=rest, omega=rest, f=rotate_back(orientation, point.F),
+            kappa=self._beside.at_nodes(kappa - equations.offset, q), q=q,
             strain=stages.opening[0, 0] / equations.chain.span, r=equations.nodes(), orientation=orientation,
         )  # fmt: skip
 

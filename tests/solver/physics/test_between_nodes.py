@@ -79,6 +79,17 @@ def test_a_narrow_neck_gives_way(method: str, middle: float) -> None:
     assert neck - stiff == pytest.approx(expected, rel=0.12)
 
 
+@pytest.mark.parametrize("method", ["static", "staggered", "box"])
+@pytest.mark.parametrize("middle", PLACES[:-1])
+def test_beside_a_step_the_curvature_is_that_of_the_section_there(method: str, middle: float) -> None:
+    stepped = patch(middle, 0.1 * EJ, EJ, 0.2)
+    loads = (DistributedLoad((NONE, NONE, Curve.constant(FORCE)), frame="lab"),)
+    rest = last(cantilever(method, stiffness=stepped, distributed=loads))
+    s = np.linspace(0.0, LENGTH, len(rest.r))
+    assert np.abs(rest.kappa[:, 0]).max() > 0.01
+    assert rest.kappa[:, 0] == pytest.approx(rest.q[:, 0] / stepped(s), rel=1e-9, abs=1e-12)
+
+
 @pytest.mark.parametrize("middle", PLACES[:-1])
 def test_a_natural_kink_turns_by_its_angle(middle: float) -> None:
     scene = cantilever()

@@ -34,7 +34,7 @@ from solver.physics.elasticity import mean_bending, needs_segments, principal
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.loads.registry import Loads
-from solver.physics.section import Section, sample_over
+from solver.physics.section import Beside, Section, sample_over
 from solver.scene.initial import Initial
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
@@ -63,6 +63,7 @@ class BoxMethod:
         self.s = np.linspace(0.0, scene.rod.length, numerics.intervals + 1)
         self.h = float(scene.rod.length) / numerics.intervals
         self.section: Section = sample_over(scene.rod, around_nodes(self.s, scene.rod.corners))
+        self.beside = Beside.steps(scene.rod, self.s)
         self.applied = AppliedLoads(scene, self.section, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self.state, correction = _initial_state(scene.initial, self.s, self.section)

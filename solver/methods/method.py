@@ -12,6 +12,7 @@ from solver.measures.frame import Fields
 from solver.measures.passages import Shape
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
+from solver.physics.section import Beside
 from solver.scene.scene import Scene
 
 
@@ -29,13 +30,15 @@ NOTHING_AHEAD = Ahead(np.zeros(4), (0.0, 0.0))
 class Method(Protocol):
     """A discretization in space and time of one scene.
 
-    `s` (n,): arclengths of the nodes (m); `start`, `end`: the driven ends; `applied`: the given loads; `shortest_step`
-    (s): no shorter step is possible; `increment_order`: power of dt with which `relative_increment` falls, and
-    `increment_tolerance` how large it may be unless told; `easy_iterations`: Newton iterations up to which a step may
-    be followed by a longer one; `touches`: whether it takes scenes that can touch themselves.
+    `s` (n,): arclengths of the nodes (m); `beside`: the nodes whose curvature is not that of `fields`; `start`, `end`:
+    the driven ends; `applied`: the given loads; `shortest_step` (s): no shorter step is possible; `increment_order`:
+    power of dt with which `relative_increment` falls, and `increment_tolerance` how large it may be unless told;
+    `easy_iterations`: Newton iterations up to which a step may be followed by a longer one; `touches`: whether it takes
+    scenes that can touch themselves.
     """
 
     s: Array
+    beside: Beside
     start: DrivenEnd
     end: DrivenEnd
     applied: AppliedLoads

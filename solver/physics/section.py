@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.physics.cells import Cells, around_nodes
 from solver.physics.elasticity import Coupling, Elasticity, Stretch, elasticity_of, elasticity_over
+from solver.scene.curve import corners_of
 from solver.scene.rod import Rod
 
 
@@ -26,28 +27,37 @@ class Section(NamedTuple):
 
 
 class Beside(NamedTuple):
-    """The `nodes` (k,) that lie beside a step of the section, and how much more the rod bends there under a moment than
-    on the mean around the node, for which its joint stands: `flexibility` (k, 3, 3) in 1/(N m^2)."""
+    """The `nodes` (k,) that lie beside a step of the section or of kappa0, where the joint stands for a mean of both
+    sides: by how much the node's own kappa0 is larger, `natural` (k, 3) in rad/m, and how much more it bends under a
+    moment, `flexibility` (k, 3, 3) in 1/(N m^2)."""
 
     nodes: NDArray[np.int64]
+    natural: Array
     flexibility: Array
 
     @classmethod
-    def steps(cls, rod: Rod, s: Array) -> Beside:
-        """Those of nodes `s` (n,); none of a rod whose moment does not follow from K alone."""
+    def steps(cls, rod: Rod, s: Array, kappa0: Array | None = None) -> Beside:
+        """Those of nodes `s` (n,), whose joints have a `kappa0` (n, 3), by default the nodes' own.
+
+        The section's are none of a rod whose moment does not follow from K alone.
+        """
+        natural, flexibility = np.zeros((len(s), 3)), np.zeros((len(s), 3, 3))
+        if kappa0 is not None and corners_of(*rod.kappa0):
+            natural = np.stack([profile(s) for profile in rod.kappa0], axis=1) - kappa0
         joints = around_nodes(s, rod.corners)
-        if len(joints.crossed) == 0 or not all(isinstance(law, (Coupling, Stretch)) for law in rod.laws):
-            return cls(np.zeros(0, np.int64), np.zeros((0, 3, 3)))
-        elastic, nodes = elasticity_of(rod, joints.points), joints.crossed
-        mean = elasticity_over(elastic, joints)
-        return cls(nodes, np.asarray(np.linalg.inv(elastic.K[nodes]) - np.linalg.inv(mean.K[nodes])))
+        if len(joints.crossed) and all(isinstance(law, (Coupling, Stretch)) for law in rod.laws):
+            elastic, crossed = elasticity_of(rod, joints.points), joints.crossed
+            mean = elasticity_over(elastic, joints)
+            flexibility[crossed] = np.linalg.inv(elastic.K[crossed]) - np.linalg.inv(mean.K[crossed])
+        nodes = np.flatnonzero(natural.any(axis=1) | flexibility.any(axis=(1, 2)))
+        return cls(nodes, natural[nodes], flexibility[nodes])
 
     def at_nodes(self, kappa: Array, q: Array) -> Array:
         """The curvature (n, 3) of the nodes themselves under moments q (n, 3), from that of their joints."""
         if len(self.nodes) == 0:
             return kappa
         kappa = kappa.copy()
-        kappa[self.nodes] += np.einsum("kij,kj->ki", self.flexibility, q[self.nodes])
+        kappa[self.nodes] += self.natural + np.einsum("kij,kj->ki", self.flexibility, q[self.nodes])
         return kappa
 
 

@@ -13,7 +13,6 @@ from solver.measures.topology import writhe_of_rod
 from solver.methods.method import Ahead, Method
 from solver.physics.elasticity import elasticity_of, principal
 from solver.physics.ends import ABOUT_A3
-from solver.physics.section import Beside
 from solver.run.linking import LinkingNumber
 from solver.scene.scene import Scene
 
@@ -42,7 +41,7 @@ class Accounts:
         bent = float(scene.rod.length * np.linalg.norm(method.fields().kappa[:, :2], axis=1).max())
         self._lost_at_rest = max(MADE_OF_NOTHING, LOST_AT_REST * (1.0 if pulled else min(bent, 1.0)) ** 2) * self._unit
         self._turnover, self._there = 0.0, 0.0
-        self._linking, self._beside = LinkingNumber(), Beside.steps(scene.rod, method.s)
+        self._linking = LinkingNumber()
         self._swings = scene.topology and not (scene.start.holds_tangent() and scene.end.holds_tangent())
         """Whether the linking number changes by how the ends' tangents move."""
         self._follow_ends()
@@ -85,8 +84,10 @@ class Accounts:
         if not self._settled:
             self._settle(t, energy)
         Wr = writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
+        # the moment is the same on both sides of a step, but at the start, where the curvature is given
+        kappa = method.beside.at_nodes(fields.kappa, fields.q) if t > 0.0 else fields.kappa
         return Frame(
-            t=t, **vars(fields) | {"kappa": self._beside.at_nodes(fields.kappa, fields.q)},
+            t=t, **vars(fields) | {"kappa": kappa},
             **{f"energy_{name}": value for name, value in energy._asdict().items()}, energy_contact=contact,
             work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
             energy_balance=self._balance,

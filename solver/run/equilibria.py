@@ -55,7 +55,6 @@ class Equilibria(Run):
         check_place(scene)
         compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
         self.remarks.axial_stiffness = axial_stiffness(scene)
-        self._beside = Beside.steps(scene.rod, np.linspace(0.0, scene.rod.length, scene.numerics.intervals + 1))
         self._watch = Watch(self.remarks, scene.contact is not None)
         self._falling: list[float] = []
         """Directions of falling energy where each of the WAYS led; inf where it led nowhere."""
@@ -65,6 +64,8 @@ class Equilibria(Run):
         """Lay the rod down, held in one of the WAYS, by its index."""
         self._way, self._equations, self._linking = way, Equations(self._scene), LinkingNumber()
         turning, tense = WAYS[way]
+        kappa0 = self._equations.chain.elastic.kappa0 - self._equations.offset
+        self._beside = Beside.steps(self._scene.rod, self.s, kappa0)
         self._equations.hold(first_forces(self._equations) if tense else None, turning)
         self._path = Path(self._equations, MOST_STEPS if WAYS[way] is WAYS[-1] else PATIENCE)
         start = self._equations.start  # from whose shape the turns are counted

@@ -90,6 +90,22 @@ def test_beside_a_step_the_curvature_is_that_of_the_section_there(method: str, m
     assert rest.kappa[:, 0] == pytest.approx(rest.q[:, 0] / stepped(s), rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.parametrize("method", ["static", "staggered", "box"])
+@pytest.mark.parametrize("middle", PLACES[:-1])
+def test_beside_a_step_of_kappa0_the_curvature_is_that_of_its_place(method: str, middle: float) -> None:
+    scene, bent = cantilever(method), patch(middle, 0.3, 0.0, 0.2)
+    rest = last(replace(scene, rod=replace(scene.rod, kappa0=(NONE, bent, NONE))))
+    s = np.linspace(0.0, LENGTH, len(rest.r))
+    assert rest.kappa[:, 1] == pytest.approx(rest.q[:, 1] / EJ + bent(s), rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", ["staggered", "box"])
+def test_at_the_start_the_curvature_is_that_of_the_shape_as_given(method: str) -> None:
+    scene = cantilever(method, stiffness=patch(0.5937, 0.1 * EJ, EJ, 0.2))
+    bent = replace(scene.rod, kappa0=(NONE, patch(0.5937, 0.3, 0.0, 0.2), NONE))
+    assert np.abs(next(iter(simulate(replace(scene, rod=bent)))).kappa).max() == 0.0
+
+
 @pytest.mark.parametrize("middle", PLACES[:-1])
 def test_a_natural_kink_turns_by_its_angle(middle: float) -> None:
     scene = cantilever()

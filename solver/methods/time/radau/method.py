@@ -21,6 +21,7 @@ from solver.methods.time.radau import tableau
 from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Work, estimate_error, step
 from solver.physics.elasticity import mean_bending
 from solver.physics.ends import DrivenEnd
+from solver.physics.section import Beside
 from solver.scene.scene import Scene
 
 SCHEME = Scheme(
@@ -198,6 +199,7 @@ class RadauMethod(ABC):
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
         chain = chain_of(scene.rod, self.applied.entrained, self.s)
         self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
+        self.beside = Beside.steps(scene.rod, self.s, chain.elastic.kappa0)
         return chain, *lay_out(scene, chain, self.s)
 
     def _make_records(self, chain: Record, state: Record, kinds: tuple[Any, ...], coupling: Record = None) -> None:

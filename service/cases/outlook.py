@@ -46,7 +46,7 @@ finer one costs the more; and undamped of FRAMES: what rings lasts through all o
 STATIC, STATIC_START, STATIC_DOUBLED = 0.012, 15, 1.5
 """CPU seconds of a frame of a static analysis, how many frames the start counts for, and how many times more for every
 doubling of the first mesh."""
-DEARER = {"wound up": 4.0, "on solids": 4.0, "limp": 3.0, "touching": 3.0}
+DEARER = {"wound up": 4.0, "on solids": 4.0, "limp": 3.0, "stressed at the start": 2.5, "touching": 3.0}
 """How many times more a static analysis takes."""
 FRAMES = 60
 TURN = 15.0
@@ -74,6 +74,8 @@ STIFF = 1.0
 """Weight, in EJ/L^2, of a rod that hardly bends by it."""
 LIMP = 1e5
 """Weight, in EJ/L^2, of a rod that bends by its ends in so short a part that the meshes have to be fine."""
+STRESSED = 3.0
+"""Moment, in EJ/L, of a rod that a static analysis lets go far from its natural shape."""
 DENSE = 0.05
 """Density of a fluid that brakes a rod, by the rod's."""
 FIRST_FREQUENCY = 3.516
@@ -94,9 +96,11 @@ def likely_seconds(scene: Scene) -> float:
 
 def _at_rest(scene: Scene) -> float:
     driven = Driven.of(scene)
+    urged = Urged.of(scene, driven)
     dear = {
         "wound up": driven.turned > TURN, "on solids": any(isinstance(load, solids.Given) for load in scene.loads),
-        "limp": Urged.of(scene, driven).weight > LIMP, "touching": scene.contact is not None,
+        "limp": urged.weight_across > LIMP, "stressed at the start": urged.stress > STRESSED,
+        "touching": scene.contact is not None,
     }  # fmt: skip
     seconds = STATIC * (len(scene.outputs) + STATIC_START) * STATIC_DOUBLED ** first_mesh(scene, pressed=False)
     return float(np.prod([seconds, *(DEARER[what] for what, is_so in dear.items() if is_so)]))
@@ -137,6 +141,8 @@ def kind_of(scene: Scene) -> str:
         if urged.weight > LIMP:
             return "long and heavy in water"
         return "shaken in water" if driven.to_and_fro else "towed through water" if driven.moved else "in water"
+    if urged.thrown and not held and max(urged.stress, urged.force) < SMALL:
+        return "flying freely"
     if urged.at_once:
         gentle = max(urged.stress, urged.force) < SMALL and urged.weight < GENTLE and scene.damping > DAMPED * frequency
         if gentle:

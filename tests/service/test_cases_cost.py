@@ -73,6 +73,7 @@ def test_a_static_analysis_to_a_tolerance_costs_by_its_frames_and_by_what_makes_
     assert seconds(output__interval=0.1) == pytest.approx(alone * (100 + 15) / (10 + 15))
     assert seconds(loads__floor={"stiffness": 1.0}) == pytest.approx(alone * outlook.DEARER["on solids"])
     assert seconds(contact={}) == pytest.approx(alone * outlook.DEARER["touching"])
+    assert seconds(rod__kappa0=[0, 5.0, 0]) == pytest.approx(alone * outlook.DEARER["stressed at the start"])
     assert seconds(numerics__tolerance=1e-5) == pytest.approx(alone * 100.0**0.25)
 
 
@@ -140,6 +141,7 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"ends__end": moved(x3=True, to=-0.1)}, "held straight and moved"),
     ({"ends__end": moved(x3=True, to=-0.1) | moved(theta3=True, to=5.0)}, "held straight and twisted"),
     ({"ends__start": "free", "loads__point": [], "loads__gravity": ASKEW}, "flying freely"),
+    ({"ends__start": "free", "loads__point": [], "initial__angular_velocity": [0, 5, 0]}, "flying freely"),
     ({"ends__end": moved(x3=True, to=0.01)}, "pulled taut"),
     ({"loads__floor": {"stiffness": 1.0}}, "on a floor"),
     ({"loads__floor": {"stiffness": 1.0, "normal": [1, 0, 0]}, "ends__start": "free", "loads__point": []},

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import math
+import re
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -43,14 +44,14 @@ async def at_leisure(size: int, work: Callable[..., Result], *parameters: Any) -
 def parse(body: bytes) -> Any:
     """The value of strict JSON text. Raises Problem 400."""
     try:
-        value = json.loads(body.decode(), parse_constant=_refuse, parse_float=_finite,
-                           object_pairs_hook=_without_doubles)
+        text = body.decode()
+        value = json.loads(text, parse_constant=_refuse, parse_float=_finite, object_pairs_hook=_without_doubles)
         if b"\\u" in body:
             json.dumps(value, ensure_ascii=False).encode()  # half a surrogate pair is not text
     except RecursionError:
         raise Problem(400, "malformed_json", "the body is nested too deeply") from None
-    except json.JSONDecodeError as error:
-        slip = Slip.of(error)
+    except (json.JSONDecodeError, _NotFinite) as error:
+        slip = Slip.of(error.in_text(text) if isinstance(error, _NotFinite) else error)
         raise Problem(400, "malformed_json", f"the body is not strict JSON: {slip}: {slip.text.strip()!r}") from None
     except ValueError as error:  # of the text, of a number with too many digits
         raise Problem(400, "malformed_json", f"the body is not strict JSON: {error}"[:300]) from None
@@ -67,8 +68,19 @@ async def _read(request: Request) -> bytes:
     return bytes(body)
 
 
+class _NotFinite(ValueError):
+    """A number that is not finite, as it is written."""
+
+    def in_text(self, text: str) -> json.JSONDecodeError:
+        """The same with the place where it stands first, outside of texts."""
+        number = re.escape(str(self))
+        words = re.finditer(rf'"(?:\\.|[^"\\])*"|(?<![\w.+-]){number}(?![\w.])', text)
+        at = next((word.start() for word in words if word[0][0] != '"'), 0)
+        return json.JSONDecodeError(f"numbers must be finite, got {self}"[:100], text, at)
+
+
 def _refuse(constant: str) -> float:
-    raise ValueError(f"numbers must be finite, got {constant}")
+    raise _NotFinite(constant)
 
 
 def _finite(text: str) -> float:

@@ -45,6 +45,11 @@ class FieldError:
         """Whether there is no field of this name."""
         return self.rule == RULES["extra_forbidden"]
 
+    @property
+    def missing(self) -> bool:
+        """Whether a field that must be there is not."""
+        return self.rule == RULES["missing"]
+
     def __str__(self) -> str:
         fault = f"{self.pointer or 'the case'} {self.rule}"
         if self.value is None:

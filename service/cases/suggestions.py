@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from functools import cache
 from typing import Any, get_args, get_origin
@@ -20,8 +21,31 @@ MOST_PLACES = 3
 
 def suggested(error: CaseError, whole: type[BaseModel]) -> CaseError:
     """The same faults; where a field of `whole` is unknown, with the name or the place that was likely meant; and where
-    there is no list, with what it must be of."""
-    return CaseError([_suggested(fault, whole) for fault in error.errors], error.more)
+    there is no list, with what it must be of. What is missing is not told where all that must be there is missing, and
+    what stands there instead is told."""
+    wrapped = [fault for fault in error.errors if fault.unknown and _wraps(fault, whole)]
+    if wrapped:
+        return CaseError([replace(fault, rule=f"{fault.rule}: send what it holds by itself") for fault in wrapped])
+    faults = [fault for fault in error.errors if not (fault.missing and _is_another(fault, error.errors, whole))]
+    return CaseError([_suggested(fault, whole) for fault in faults], error.more)
+
+
+def _is_another(fault: FieldError, faults: Sequence[FieldError], whole: type[BaseModel]) -> bool:
+    """Whether the object in which a field is missing has none of those that it must have, but others."""
+    place = fault.pointer.rpartition("/")[0]
+    beside = [other for other in faults if other.pointer.rpartition("/")[0] == place]
+    missing = {other.pointer.rpartition("/")[2] for other in beside if other.missing}
+    models = _models_at(whole, place.split("/")[1:])
+    return any(other.unknown for other in beside) and any(_required(model) == missing for model in models)
+
+
+def _required(model: type[BaseModel]) -> set[str]:
+    return {name for name, field in model.model_fields.items() if field.is_required()}
+
+
+def _wraps(fault: FieldError, whole: type[BaseModel]) -> bool:
+    """Whether an unknown field of the whole holds what the whole must be."""
+    return fault.pointer.count("/") == 1 and isinstance(fault.value, dict) and _required(whole) <= set(fault.value)
 
 
 def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
@@ -93,9 +117,13 @@ def _models_at(whole: type[BaseModel], path: Sequence[str]) -> list[type[BaseMod
 
 
 def _elsewhere(name: str, whole: type[BaseModel]) -> str:
-    """Where a field of this name belongs, as the end of a message; if there are few such places."""
+    """Where a field of this name belongs, as the end of a message; if there are few such places, or all of them are in
+    lists of one name."""
     places = _places(whole).get(name, ())
-    return f" here: its place is {' or '.join(places)}" if 0 < len(places) <= MOST_PLACES else ""
+    if 0 < len(places) <= MOST_PLACES:
+        return f" here: its place is {' or '.join(places)}"
+    lists = {place.rpartition(".0.")[0].rpartition(".")[2] for place in places}
+    return f" here: its place is in {lists.pop()}" if len(lists) == 1 and "" not in lists else ""
 
 
 @cache

@@ -46,6 +46,21 @@ def test_a_field_by_another_name_or_in_another_place_is_told_as_that(setting: st
     assert fault.rule == "is not a known field" + hint
 
 
+def test_a_case_within_another_object_is_told_as_that():
+    with pytest.raises(CaseError) as refused:
+        parse_case({"case": load_case("elastica")})
+    assert [(fault.pointer, fault.rule) for fault in refused.value.errors] == [
+        ("/case", "is not a known field: send what it holds by itself")
+    ]
+
+
+def test_what_a_wrong_object_lacks_is_not_told():
+    [fault] = refusal("ends.start", {"preset": "clamp", "v3": {"stop_within": 0.1}}).errors
+    assert fault.rule == "is not a known field here: its place is in switches"
+    faults = refusal("rod", {"length": 1.0, "diametre": 0.01, "density": 1.0}).errors
+    assert {fault.rule for fault in faults} >= {"is required", "is not a known field: did you mean diameter?"}
+
+
 def test_a_force_at_an_end_is_one_of_its_components():
     fault = refusal("ends.end", {"preset": "free", "force": [1, 0, 0]}).errors[0]
     assert fault.rule == "is not a known field: did you mean f3, f1 or f2?"

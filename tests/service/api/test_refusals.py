@@ -91,6 +91,13 @@ def test_a_slip_in_a_body_is_told_with_its_place_and_what_was_meant(client):
                                  """comma: write 1.5, not 1,5: '"set": {"rod.length": 1,5}}'""")
 
 
+@pytest.mark.parametrize(("number", "column"), [("NaN", 19), ("-Infinity", 19), ("1e999", 19)])
+def test_a_number_that_is_not_finite_is_told_with_its_place(client, number, column):
+    body = f'{{"name": "{number}",\n "set": {{"t_end": {number}}}}}'.encode()
+    problem = assert_problem(client.post("/v1/validate", content=body, headers=JSON), 400)
+    assert f"line 2, column {column}: numbers must be finite, got {number}: " in problem["detail"]
+
+
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_faulty_case_is_refused_with_a_pointer_to_each_fault(client, case, name):
     key, value = CHANGES[name]

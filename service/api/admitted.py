@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import suppress
@@ -13,6 +14,7 @@ from service.access import Caller, KeyStore
 
 LOOK = 1.0
 """Seconds between two looks at a key, however many streams it has opened."""
+log = logging.getLogger(__name__)
 
 
 class Admitted:
@@ -24,7 +26,11 @@ class Admitted:
         """When each key was looked at (time.monotonic), and whether it was good."""
 
     async def while_good(self, caller: Caller, stream: AsyncGenerator[str, None]) -> AsyncIterator[str]:
-        """The stream, until it ends or the caller's key is revoked or expires; without a key, all of it."""
+        """The stream, until it ends or the caller's key is revoked or expires; without a key, all of it.
+
+        It ends, too, where the database cannot be read: whoever follows comes back with the last event's id, and is
+        told 503 until it can.
+        """
         step: asyncio.Future[str | None] | None = None
         try:
             while await self._good(caller.key):
@@ -36,10 +42,12 @@ class Admitted:
                         return
                     step = None
                     yield event
+        except SQLAlchemyError as error:
+            log.warning("a stream of events ends, as the database cannot be read: %s", error)
         finally:
             if step is not None:
                 step.cancel()
-                with suppress(asyncio.CancelledError):
+                with suppress(asyncio.CancelledError, SQLAlchemyError):
                     await step
             await stream.aclose()
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import threading
 
 import pytest
+from sqlalchemy.exc import OperationalError
 
+from service.access import Caller
 from service.jobs import Reached, Status
 from service.jobs.held import claim
 
@@ -84,3 +87,15 @@ def test_who_leaves_is_not_waited_for(client, job_id, until):
     client.delete(f"/v1/jobs/{job_id}")
     listening.join()
     until(lambda: not feed._waiters, "nobody is waited for")
+
+
+def test_a_stream_ends_after_whole_events_where_the_database_cannot_be_read(client):
+    async def breaks_off():
+        yield "an event"
+        raise OperationalError("SELECT", None, ConnectionError("the server has closed the connection"))
+
+    async def seen():
+        stream = client.app.state.parts.admitted.while_good(Caller("alice", frozenset()), breaks_off())
+        return [event async for event in stream]
+
+    assert asyncio.run(seen()) == ["an event"]

@@ -131,7 +131,7 @@ def kind_of(scene: Scene) -> str:
         if _is_braked(scene):
             return "long and heavy in water" if urged.weight > LIMP else "in space and in water"
         urging = max(urged.stress, urged.force, urged.held_weight) > SMALL
-        springs_back = held and urged.stress_at_free_end > SMALL
+        springs_back = held and max(urged.stress_at_free_end, urged.force) > SMALL
         if urged.inertia > DRIVEN or springs_back or (urging and scene.damping == 0.0):
             return "in space and moved or let go"
         if not (urging or held):

@@ -137,6 +137,8 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"loads__gravity": ASKEW, "loads__damping": 0.1}, "slow in space"),
     ({"loads__gravity": ASKEW, "loads__damping": 0.1, "ends__start": moved(x1=True, to=1.0)},
      "in space and moved or let go"),
+    ({"loads__gravity": ASKEW, "loads__damping": 0.1, "loads__point": [{"s": 1.0, "force": [0.1 * STIFFNESS, 0, 0]}]},
+     "in space and moved or let go"),
     ({"ends__end": "clamp"}, "held straight"),
     ({"ends__end": moved(x3=True, to=-0.1)}, "held straight and moved"),
     ({"ends__end": moved(x3=True, to=-0.1) | moved(theta3=True, to=5.0)}, "held straight and twisted"),

@@ -141,4 +141,35 @@ def knot(rng: Generator) -> Part:
                 contact={}, loads={"damping": log(rng, 5.0, 50.0) / d.period})  # fmt: skip
 
 
-KINDS = (riser, cantilever, column, sagging, coil, tape, slack_twist, plectoneme, knot, dna, bent_and_pushed, loop)
+def stepped(rng: Generator) -> Part:
+    """A turned shaft or a fishing rod's blank, thinner from step to step, with a load at its tip: at rest or damped."""
+    d = Drawn(rng, ("steel", "aluminium", "carbon", "nylon"), (0.1, 3.0), (4e-3, 2e-2))
+    thick = [d.D]
+    for _ in range(int(rng.integers(1, 4))):
+        thick.append(thick[-1] * log(rng, 0.5, 0.9))
+    steps = np.sort(rng.uniform(0.15, 0.85, len(thick) - 1)) * d.L
+    s = [0.0, *np.ravel(np.column_stack([steps, steps + 1e-3 * d.L])).tolist(), d.L]
+    rod = d.rod | {"diameter": {"s": s, "value": np.repeat(thick, 2).tolist(), "interpolation": "linear"}}
+    unit = d.E * pi * thick[-1] ** 4 / 64.0 / d.L**2
+    force = [ramp(0.0, 6.0 * d.period, log(rng, 0.3, 3.0) * unit), log(rng, 0.01, 0.3) * unit, 0.0]
+    pull = {"s": d.L, "force": force}
+    more: Part = {"analysis": "static"} if rng.random() < 0.4 else {}
+    return case("stepped", rod, straight(0, 0, 1), ("clamp", "free"), 10.0 * d.period, 20,
+                loads={"damping": 2.0 / d.period, "point": [pull]}, **more)  # fmt: skip
+
+
+def hooked(rng: Generator) -> Part:
+    """A wire that is bent by nature in one part, as a catheter's tip, drawn straight and let go, or pulled: at rest."""
+    d = Drawn(rng, ("steel", "nylon", "polypropylene", "silicone"), (0.05, 1.0), (2e-3, 1e-2))
+    start, length = rng.uniform(0.1, 0.6) * d.L, rng.uniform(0.15, 0.35) * d.L
+    s = [0.0, start, start + 2e-3 * d.L, start + length, start + length + 2e-3 * d.L, d.L]
+    bent = log(rng, 0.5, 3.0) / length
+    natural = {"s": s, "value": [0.0, 0.0, bent, bent, 0.0, 0.0], "interpolation": "linear"}
+    point = {"s": d.L, "force": [0.0, 0.0, ramp(0.0, 1.0, log(rng, 0.5, 10.0) * d.EJ / d.L**2)]}
+    loads: Part = {"point": [point]} if rng.random() < 0.5 else {}
+    return case("hooked", d.rod | {"kappa0": [0.0, natural, 0.0]}, straight(0, 0, 1), ("clamp", "free"), 1.0, 10,
+                analysis="static", loads=loads)  # fmt: skip
+
+
+KINDS = (riser, cantilever, column, sagging, coil, tape, slack_twist, plectoneme, knot, dna, bent_and_pushed, loop,
+         stepped, hooked)

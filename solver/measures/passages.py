@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.rotation import rotate
 from solver.measures.frame import Fields
-from solver.measures.topology import writhe_shares
+from solver.measures.topology import tangents_of_ends, writhe_shares
 
 DIVISIONS = 8
 """How often the way is divided where a sum changes: what is smooth is by then far below a jump of 2."""
@@ -34,7 +33,7 @@ class Shape(NamedTuple):
 
 def shape_of(fields: Fields) -> Shape:
     """The centreline of a state."""
-    return Shape(fields.r, rotate(fields.orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2)))
+    return Shape(fields.r, tangents_of_ends(fields.orientation))
 
 
 class Passages(NamedTuple):

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from solver.arrays import Array
 from solver.kernels.kernel import allocating, inlined, inner, kernel
-from solver.kernels.rotation import rotate
+from solver.kernels.rotation import entries
 from solver.kernels.vectors import Vector, dot, minus, norm, times, vector, vector_product
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
@@ -49,16 +49,31 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
 
     Raises ValueError for another shape or a zero tangent; NaN in gives NaN out.
     """
-    first, last = _unit(start_tangent), _unit(end_tangent)
-    vertices = _columns(r, 2)
-    r, tangents = np.ascontiguousarray(vertices.T), np.array([first, last])
+    tangents = np.array([_unit(start_tangent), _unit(end_tangent)])
+    return float(_writhe(np.ascontiguousarray(_columns(r, 2).T), tangents))
+
+
+@allocating
+def _writhe(r: Array, tangents: Array) -> float:
+    """Writhe (turns) of a polygon `r` (n, 3) with unit `tangents` (2, 3) at its ends."""
     if is_plane(r, tangents):
         return 0.0
+    columns = _transposed(r)
     if kind_of(r, tangents) != OPEN:
-        return -(_segment_pairs(vertices, True) + _rays(r, tangents)) / pi
-    columns, quarter = shorten(vertices, first, last)
-    quarter += _segment_pairs(columns, False) + _rays(np.ascontiguousarray(columns.T), tangents)
-    return -quarter / pi
+        return -(_segment_pairs(columns, True) + _rays(r, tangents)) / pi
+    shorter, quarter = shorten(columns, vector(tangents, 0), vector(tangents, 1))
+    return -(quarter + (_segment_pairs(shorter, False) + _rays(_transposed(shorter), tangents))) / pi
+
+
+@allocating
+def _transposed(a: Array) -> Array:
+    """The rows of `a` (n, m) as columns, in memory too."""
+    n, m = a.shape
+    turned = np.empty((m, n))
+    for i in range(n):
+        for k in range(m):
+            turned[k, i] = a[i, k]
+    return turned
 
 
 def writhe_shares(r: Array, start_tangent: Array, end_tangent: Array) -> tuple[float, float]:
@@ -122,8 +137,21 @@ def _beside(r: Array, tangents: Array, size: float, i: int) -> Any:
 
 def writhe_of_rod(r: Array, orientation: Array) -> float:
     """Writhe (turns) of a rod's centreline `r` (n, 3), continued along a3 of the `orientation` (n, 4) of its ends."""
-    tangent = rotate(orientation[[0, -1]], np.array([[0.0, 0.0, 1.0]] * 2))
-    return writhe(r, tangent[0], tangent[1])
+    return float(_writhe(r, tangents_of_ends(orientation)))
+
+
+@allocating
+def tangents_of_ends(orientation: Array) -> Array:
+    """Unit tangents a3 (2, 3), lab, of the first and the last of unit quaternions (n, 4)."""
+    tangents = np.empty((2, 3))
+    for side in range(2):
+        i = side * (len(orientation) - 1)
+        R = entries(orientation[i, 0], orientation[i, 1], orientation[i, 2], orientation[i, 3])
+        tangent = R[2], R[5], R[8]
+        length = norm(tangent)
+        for k in range(3):
+            tangents[side, k] = tangent[k] / length
+    return tangents
 
 
 def writhe_closed(r: ArrayLike) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import enter
+from solver.kernels.handed import Handed
 from solver.kernels.rotation import matrices_of, rotate_back
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
@@ -22,7 +23,7 @@ from solver.methods.space.segments import motion, stages
 from solver.methods.space.segments.balances import Driven, Motion, Tangents
 from solver.methods.space.segments.chain import Chain, Residuals, Stages, State
 from solver.methods.space.segments.energies import energies, stage_powers, twist
-from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
+from solver.methods.space.segments.fields import bending_at_nodes, motion_at_nodes
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
 from solver.methods.space.segments.motion import Interpolation, extrapolate, follow_segments, look_back
 from solver.methods.space.segments.opening import measure_openings, pull_joints, shift_segments
@@ -83,7 +84,10 @@ class StaggeredMethod(RadauMethod):
         shift_segments(R, self.state.omega, self.state.alpha, self.state.opening, *self._centres)
         self._nodes, self._strain = np.zeros((2, N + 1, 3)), np.zeros(len(chain.elastic.compliance))
         self._place_nodes()
-        self._interpolation, self._R_within = Interpolation.empty(N), np.zeros_like(R)
+        self._looking = Handed.over(self.chain, self.stages, Interpolation.empty(N), self._within)
+        self._R_within = np.zeros_like(R)
+        self._end_velocities = np.zeros((3, 2, 3))
+        """Of the first and the last node at the stages, lab."""
         self._joints_within, self._nodes_within = np.zeros((N + 1, 3)), np.zeros((2, N + 1, 3))
 
     @classmethod
@@ -164,11 +168,8 @@ class StaggeredMethod(RadauMethod):
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
         (state, _), (R, _, nodes) = self._shown, self._shape
-        orientation = np.empty((len(self.s), 4))
-        orientations_at_nodes(state.quaternion, orientation)
-        omega = R @ state.omega[:, :, None]
-        between = 0.5 * (omega[1:-2] + omega[2:-1])
-        omega_lab = np.concatenate([omega[:1], between, omega[-1:]])[:, :, 0]
+        orientation, shown = np.empty((len(self.s), 4)), np.empty((3, len(self.s), 3))
+        motion_at_nodes(state.quaternion, R, state.omega, nodes[1], state.F, orientation, shown)
         joints = self._bend(state.quaternion)
         pull_joints(self.chain, R, state.F, *joints)
         viscous = len(self.chain.elastic.viscosity) > 0
@@ -178,8 +179,7 @@ class StaggeredMethod(RadauMethod):
         if viscous:
             resist_at_nodes(self.chain, state.omega, bend, q)
         return Fields(
-            v=rotate_back(orientation, nodes[1]), omega=rotate_back(orientation, omega_lab),
-            f=rotate_back(orientation, state.F), kappa=kappa - self._offset, q=q,
+            v=shown[0], omega=shown[1], f=shown[2], kappa=kappa - self._offset, q=q,
             strain=state.opening[0] / self.chain.span,
             r=nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
@@ -237,8 +237,7 @@ class StaggeredMethod(RadauMethod):
 
     def _interpolate(self, part: float, cubic: Array, parabola: Array) -> None:
         before, R, then, centres = self.trial, self._R_within, self._within, self._centres_within
-        look_back(self.chain, before, self.stages, part, self._step, cubic, parabola, self._interpolation, then, R,
-                  centres)  # fmt: skip
+        look_back(self._looking.reference, before, part, self._step, cubic, parabola, R, centres)
         if len(self._strain):
             then.opening[:] = before.opening + np.tensordot(cubic, self.stages.opening - before.opening, 1)
             shift_segments(R, then.omega, then.alpha, then.opening, *centres)
@@ -260,18 +259,8 @@ class StaggeredMethod(RadauMethod):
         bend_joints(self.chain, quaternion, *written)
         return written
 
-    def _end_velocities(self) -> Array:
-        """V (3, 2, 3) of the first and the last node at the stages, lab."""
-        stages = self.stages
-        omega, R = stages.omega[:, -2], stages.R[:, -2]
-        swing = R[:, :, 0] * omega[:, 1:2] - R[:, :, 1] * omega[:, 0:1]
-        ends = np.stack([stages.base[:, 1], stages.V[:, -1] + 0.5 * self.chain.h * swing], axis=1)
-        if len(self._strain):
-            ends[:, 1] += stages.opening[:, 0, -1:] * swing + stages.opening[:, 1, -1:] * R[:, :, 2]
-        return ends
-
     def _follow_ends(self, weights: Array) -> None:
-        stages, ends = self.stages, self._end_velocities()
+        stages, ends = self.stages, self._end_velocities
         stage_powers(self._handed.reference, ends, self._powers)
         for side, (end, frame) in enumerate(((self.start, 0), (self.end, -1))):
             velocity = ends[:, side]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import nan
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +22,9 @@ MADE_OF_NOTHING, LOST_AT_REST = 1e-8, 0.5e-6
 may be worth a bend by 1e-3 of what a rod is bent by at first, of 1 rad at the most or if something pulls at it: it may
 lose that at rest, but must not make as much."""
 
+OF_ENERGIES = tuple(f"energy_{name}" for name in Energies._fields)
+"""Outputs that are the rod's energies."""
+
 
 class Accounts:
     """Work, dissipation and their balance, linking number, and the numbers of the last step."""
@@ -30,7 +34,9 @@ class Accounts:
         self._totals = np.zeros(4)
         self._dt, self._iterations = 0.0, 0
         self._energy_at_start: float | None = None
-        self._t, self._balance, self._missing, self._entries = 0.0, 0.0, 0.0, np.zeros(9)
+        self._t, self._balance, self._missing = 0.0, 0.0, 0.0
+        self._entries: tuple[float, ...] = ()
+        """Of the last frame: the energies, and what has flowed."""
         self._settled = False
         """Whether the balance is that of the last step's end."""
         thrown = any((*scene.initial.velocity, *scene.initial.angular_velocity))
@@ -73,12 +79,12 @@ class Accounts:
         fields, energy, Tw = method.fields(), method.energies(), method.twist()
         work_ends, work_loads, dissipation, contact = (self._totals - ahead.energy).tolist()
         total = sum(energy) + contact
-        entries = np.array([*energy, contact, work_ends, work_loads, dissipation])
+        entries = (*energy, contact, work_ends, work_loads, dissipation)
         if self._energy_at_start is None:
             self._energy_at_start = total
             self._turnover += total - energy.potential
         else:
-            self._turnover += float(np.abs(entries - self._entries).sum())
+            self._turnover += sum(abs(now - before) for now, before in zip(entries, self._entries, strict=True))
         self._entries = entries
         self._there = max(self._there, total - energy.potential)
         if not self._settled:
@@ -86,9 +92,9 @@ class Accounts:
         Wr = writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
         # the moment is the same on both sides of a step, but at the start, where the curvature is given
         kappa = method.beside.at_nodes(fields.kappa, fields.q) if t > 0.0 else fields.kappa
+        named: dict[str, Any] = vars(fields) | {"kappa": kappa} | dict(zip(OF_ENERGIES, energy, strict=True))
         return Frame(
-            t=t, **vars(fields) | {"kappa": kappa},
-            **{f"energy_{name}": value for name, value in energy._asdict().items()}, energy_contact=contact,
+            t=t, **named, energy_contact=contact,
             work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
             energy_balance=self._balance,
             Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr, ahead, fields.orientation), min_gap=method.smallest_gap(),

@@ -68,7 +68,7 @@ class Together:
         self._scene, self._attempts, self._recorded = scene, attempts, recorded
         self._chosen, self._diagonal = chosen(attempts), is_diagonal(attempts)
         self._at_rest = scene.at_rest
-        self._in_waves = [number(name) for name in of_waves(scene.rod)]
+        self._in_waves = np.array([float(output.name in of_waves(scene.rod)) for output in NUMBERS])
         self.finest = attempts[self._chosen.finest]
         self._intervals = intervals_of(self.finest.mesh, first_intervals(scene))
         self.frames = min(len(recorded[i]) for i in self._chosen.meshes)
@@ -89,30 +89,26 @@ class Together:
         first, last = max(i - BESIDE, 0), min(here.stop + BESIDE, self.frames)
         value, error = self._of_frames(slice(first, last))
         magnitudes = [np.linalg.norm(value.along[..., rows], axis=-1).max(axis=-1) for rows in (OMEGA, FORCE)]
+        tolerated = 0.0 if self._at_rest else step_tolerance(self.finest.steps, self._scene.numerics.tolerance or 1.0)
         rows = self._recorded[self._chosen.finest]
         frames, exact = [], 0 if self._at_rest else 1  # how many frames at the start are given
+        unfollowed = np.zeros(WIDTH)
         for k in here:
             after = min(k + BESIDE + 1, last) if k >= exact else 1
             beside = slice(max(k - BESIDE, min(k, exact)) - first, after - first)
-            largest = [float(magnitude[beside].max()) for magnitude in magnitudes]
+            for columns_of_waves, magnitude in zip((OMEGA, FORCE), magnitudes, strict=True):
+                unfollowed[columns_of_waves] = UNFOLLOWED * min(tolerated, 1.0) * magnitude[beside].max()
             columns = Columns(value.along[k - first], value.numbers[k - first])
-            along, numbers = error.along[beside].max(axis=0), error.numbers[beside].max(axis=0)
-            errors, lost = Columns(along, numbers), float(self._lost[k])
-            frames.append(self._frame(float(rows[k][0]), columns, errors, largest, lost))
+            errors = Columns(error.along[beside].max(axis=0), error.numbers[beside].max(axis=0))
+            frames.append(self._frame(float(rows[k][0]), columns, errors, unfollowed, float(self._lost[k])))
         return Piece(i, tuple(frames))
 
-    def _frame(self, t: float, value: Columns, error: Columns, largest: Sequence[float],
-               lost: float) -> VerifiedFrame:  # fmt: skip
-        """A frame, whose errors are those of the attempts or what none of these shows: `largest` omega (rad/s) and f
-        (N) nearby, and the energy `lost` (J)."""
-        along, numbers = error
-        tolerated = 0.0 if self._at_rest else step_tolerance(self.finest.steps, self._scene.numerics.tolerance or 1.0)
-        for rows, most in zip((OMEGA, FORCE), largest, strict=True):
-            along[:, rows] = np.maximum(along[:, rows], UNFOLLOWED * min(tolerated, 1.0) * most)
-        for name, least in self._unseen.items():
-            part = numbers[:, number(name)] if isinstance(least, float) else along[:, column(name)]
-            np.maximum(part, np.sqrt(lost) * least, out=part)
-        numbers[0, self._in_waves] = np.maximum(numbers[0, self._in_waves], lost)
+    def _frame(self, t: float, value: Columns, error: Columns, unfollowed: Array, lost: float) -> VerifiedFrame:
+        """A frame, whose errors are those of the attempts or what none of these shows: by waves that none follows,
+        `unfollowed` (WIDTH,) of the outputs along the rod, and by the energy `lost` (J)."""
+        unseen, part = self._unseen, float(np.sqrt(lost))
+        along = np.maximum(np.maximum(error.along, unfollowed), part * unseen.along)
+        numbers = np.maximum(np.maximum(error.numbers, part * unseen.numbers), lost * self._in_waves)
         curvature = float(np.linalg.norm(along[:, KAPPA], axis=-1).max())
         numbers[0, CURVATURE] = max(numbers[0, CURVATURE], curvature)
         numbers[0, BALANCE] = max(numbers[0, BALANCE], abs(value.numbers[0, BALANCE]))  # of the solution it is none
@@ -155,13 +151,16 @@ class Together:
         return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, worth, strict=True)]
 
     @cached_property
-    def _unseen(self) -> dict[str, Array | float]:
-        """See `unseen`, of an energy of 1 J."""
+    def _unseen(self) -> Columns:
+        """See `unseen`, of an energy of 1 J; at rest nothing."""
+        columns = Columns(np.zeros((self._intervals + 1, WIDTH)), np.zeros((1, len(NUMBERS))))
         if self._at_rest:
-            return {}
-        rows = self._recorded[self._chosen.finest]
-        dt = float(np.mean([number_of(row, STEP) for row in rows]))
-        return unseen(self._scene.rod, self.s, 1.0, dt)
+            return columns
+        dt = float(np.mean([number_of(row, STEP) for row in self._recorded[self._chosen.finest]]))
+        for name, least in unseen(self._scene.rod, self.s, 1.0, dt).items():
+            part = columns.numbers[:, number(name)] if isinstance(least, float) else columns.along[:, column(name)]
+            part[:] = least
+        return columns
 
     @cached_property
     def _lost(self) -> Array:

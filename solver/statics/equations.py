@@ -11,7 +11,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, segment_tangents
 from solver.methods.space.segments.chain import Residuals, Stages
-from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments
+from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.segments.joints import total_bending
 from solver.methods.space.segments.opening import add_levers
 from solver.physics.axial import axial_compliance
@@ -41,9 +41,10 @@ class Equations:
     def __init__(self, scene: Scene) -> None:
         N, length = scene.numerics.intervals, float(scene.rod.length)
         self.s, self.t_end = np.linspace(0.0, length, N + 1), scene.t_end
-        self.applied = loads_on_segments(scene, self.s, times=1)
+        section = segments_of(scene.rod, self.s)
+        self.applied = loads_on_segments(scene, section, self.s, times=1)
         self.loads = self.applied.records
-        self.chain = chain_of(scene.rod, self.applied.entrained, self.s)
+        self.chain = chain_of(scene.rod, section, self.applied.entrained, self.s)
         state, self.offset = lay_out(scene, self.chain, self.s)
         self.start = Point(state.quaternion.copy(), state.base[0].copy(), np.zeros((N + 1, 3)), 0.0)
         self.stages, self.tangents, self._stored = Stages.empty(N), Tangents.empty(N), Tangents.empty(N)

@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 from solver import Curve, DistributedLoad, Initial, Numerics, PointLoad, constant_vector
 from solver.arrays import Array
 from solver.measures.topology import writhe
-from solver.methods.space.segments.initial import chain_of, lay_out
+from solver.methods.space.segments.initial import chain_of, lay_out, segments_of
 from solver.run.first_mesh import first_mesh
 from solver.run.hidden import cancelled
 from solver.run.plan import intervals_of
@@ -70,7 +70,7 @@ def test_a_crease_bends_the_rod_where_it_is(at: float) -> None:
     """On every mesh: its angle and where this turns the rod, to first order."""
     s = np.linspace(0.0, LENGTH, 17)
     rod = replace(ROD, kappa0=table(bend(at * LENGTH, 1e-3 * LENGTH, 0.5)))
-    chain = chain_of(rod, np.zeros(16), s)
+    chain = chain_of(rod, segments_of(rod, s), np.zeros(16), s)
     lay_out(static(rod=rod, initial=Initial.straight()), chain, s)
     angles = chain.elastic.kappa0[:, 1] * chain.span
     assert_allclose(angles.sum(), 0.5)

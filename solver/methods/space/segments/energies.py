@@ -6,12 +6,12 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.handed import Reference
-from solver.kernels.kernel import kernel
+from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
 from solver.kernels.vectors import minus, times, vector
 from solver.measures.energies import Energies
 from solver.methods.space.segments.balances import Motion, motion_at
-from solver.methods.space.segments.chain import STAGES, Chain
+from solver.methods.space.segments.chain import STAGES, Chain, Stages
 from solver.methods.space.segments.opening import tension
 from solver.methods.space.segments.viscosity import dissipated
 from solver.physics.elasticity import is_viscous, strain_energy, stretch_energy, stretches
@@ -53,15 +53,28 @@ def energies_at(chain: Chain, loads: Loads, i: int, bend: Array, F: Array, motio
     return Energies(bending, torsion, stretching, moving[0], moving[1], h * by_loads[0])
 
 
+@inner
+def _end_velocities(chain: Chain, stages: Stages, i: int, ends: Array) -> None:
+    """Write the velocities (2, 3) of the first and the last node at stage i."""
+    N, R = len(chain.mass), stages.R[i]
+    for k in range(3):
+        swing = R[N, k, 0] * stages.omega[i, N, 1] - R[N, k, 1] * stages.omega[i, N, 0]
+        ends[0, k] = stages.base[i, 1, k]
+        ends[1, k] = stages.V[i, N - 1, k] + 0.5 * chain.h * swing
+        if stretches(chain.elastic):
+            ends[1, k] += stages.opening[i, 0, N] * swing + stages.opening[i, 1, N] * R[N, k, 2]
+
+
 @kernel
 def stage_powers(reference: Reference, ends: Array, out: Array) -> None:
     """Write the power (W) of the ends, of loads, and dissipated, at the stages into `out` (3, 3).
 
-    `reference`: see `newton.step`; `ends` (3, 2, 3): velocities of the first and the last node at the stages, lab.
+    And into `ends` (3, 2, 3) the velocities of the first and the last node, lab. `reference`: see `newton.step`.
     """
     chain, loads, _, _, stages, _, _ = reference.records
     N, by_loads = len(chain.mass), scratch(2)
     for i in range(STAGES):
+        _end_velocities(chain, stages, i, ends[i])
         work, by_loads[0], by_loads[1] = 0.0, 0.0, 0.0
         for k in range(3):
             work += stages.F[i, N, k] * ends[i, 1, k] - stages.F[i, 0, k] * ends[i, 0, k]

@@ -6,7 +6,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
-from solver.kernels.vectors import vector
+from solver.kernels.rotation import entries
+from solver.kernels.vectors import in_lab, in_material, matrix, plus, times, vector
 from solver.methods.space.segments.chain import Chain
 from solver.physics.elasticity import add_strain
 
@@ -27,6 +28,28 @@ def orientations_at_nodes(quaternion: Array, orientation: Array) -> None:
             square += orientation[i, k] ** 2
         for k in range(4):
             orientation[i, k] /= np.sqrt(square)
+
+
+@kernel
+def motion_at_nodes(quaternion: Array, R: Array, omega: Array, V: Array, F: Array, orientation: Array,
+                    shown: Array) -> None:  # fmt: skip
+    """Write the nodes' orientations (N + 1, 4), and `shown` (3, N + 1, 3): v, omega and f in these.
+
+    From the segments' `quaternion`, R and `omega` (N + 2, ...), and velocities V and forces F (N + 1, 3) of the nodes,
+    lab. A node turns as its neighbours do in the mean, an end as it does itself.
+    """
+    orientations_at_nodes(quaternion, orientation)
+    last = len(orientation) - 1
+    for i in range(last + 1):
+        own = i + 1 if i == last else i
+        spin = in_lab(matrix(R, own), vector(omega, own))
+        if 0 < i < last:
+            spin = times(0.5, plus(spin, in_lab(matrix(R, i + 1), vector(omega, i + 1))))
+        a, b, c, d, e, f, g, h, k = entries(orientation[i, 0], orientation[i, 1], orientation[i, 2], orientation[i, 3])
+        Q = (a, b, c), (d, e, f), (g, h, k)
+        shown[0, i, 0], shown[0, i, 1], shown[0, i, 2] = in_material(Q, vector(V, i))
+        shown[1, i, 0], shown[1, i, 1], shown[1, i, 2] = in_material(Q, spin)
+        shown[2, i, 0], shown[2, i, 1], shown[2, i, 2] = in_material(Q, vector(F, i))
 
 
 @kernel

@@ -35,15 +35,17 @@ def _across(s: Array) -> Array:
     return np.array([1.0, 1.0, 0.0]) * h * h / 12.0
 
 
-def loads_on_segments(scene: Scene, s: Array, times: int, axis: Any = None) -> AppliedLoads:
-    """The loads of a scene on the segments between nodes `s` (N + 1,), at so many times within a step."""
+def loads_on_segments(scene: Scene, section: Section, s: Array, times: int, axis: Any = None) -> AppliedLoads:
+    """The loads of a scene on the segments between nodes `s` (N + 1,), of which `section` is that of `segments_of`, at
+    so many times within a step."""
     middles = 0.5 * (s[1:] + s[:-1])
-    return AppliedLoads(scene, segments_of(scene.rod, s), middles, np.diff(s), times, axis)
+    return AppliedLoads(scene, section, middles, np.diff(s), times, axis)
 
 
-def chain_of(rod: Rod, entrained: Array, s: Array) -> Chain:
-    """The chain of a rod with nodes `s` (N + 1,), whose segments take the mass `entrained` (N,) along by loads."""
-    section, h = segments_of(rod, s), float(s[1] - s[0])
+def chain_of(rod: Rod, section: Section, entrained: Array, s: Array) -> Chain:
+    """The chain of a rod with nodes `s` (N + 1,), whose segments have that `section` and take the mass `entrained` (N,)
+    along by loads."""
+    h = float(s[1] - s[0])
     wet = section.inertia + np.outer(entrained, _across(s))
     joints = around_nodes(s, rod.corners)
     elastic = elasticity_over(elasticity_of(rod, joints.points), joints)

@@ -20,6 +20,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.handed import Reference
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import abreast
 from solver.kernels.rotation import angle_by_sine, cosine_and_sinc, cross, dot, entries, product, turned_back, unit
@@ -166,12 +167,14 @@ class Interpolation(NamedTuple):
 
 
 @kernel
-def look_back(chain: Chain, before: State, stages: Stages, part: float, dt: float, cubic: Array, parabola: Array,
-              within: Interpolation, then: State, R: Array, centres: Array) -> None:  # fmt: skip
+def look_back(reference: Reference, before: State, part: float, dt: float, cubic: Array, parabola: Array, R: Array,
+              centres: Array) -> None:  # fmt: skip
     """Write state, R (N + 2, 3, 3) and centres (3, N, 3) after a part of the step of dt that began with `before`.
 
-    `cubic` and `parabola` (3,): see `tableau.within`. Accelerations are not known there, and 0.
+    `reference`: a Chain, Stages, an Interpolation and the State that is written. `cubic` and `parabola` (3,): see
+    `tableau.within`. Accelerations are not known there, and 0.
     """
+    chain, stages, within, then = reference.records
     a, b, c = cubic[0], cubic[1], cubic[2]
     for i in range(len(then.omega)):
         for k in range(3):

@@ -14,7 +14,7 @@ from solver.kernels.handed import Handed, Reference
 from solver.methods.linear.stages import Scheme
 from solver.methods.method import NOTHING_AHEAD, Ahead
 from solver.methods.space.segments.chain import STAGES, Chain, State
-from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments
+from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.stages import Record
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
@@ -49,7 +49,9 @@ class RadauMethod(ABC):
     def __init__(self, scene: Scene, axis: Any = None) -> None:
         N, length = scene.numerics.intervals, float(scene.rod.length)
         self.s = np.linspace(0.0, length, N + 1)
-        self.applied = loads_on_segments(scene, self.s, STAGES, axis)
+        section = segments_of(scene.rod, self.s)
+        self.applied = loads_on_segments(scene, section, self.s, STAGES, axis)
+        self.chain = chain_of(scene.rod, section, self.applied.entrained, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._tolerance = min(tolerance, 1.0)
@@ -197,7 +199,7 @@ class RadauMethod(ABC):
 
     def _lay_out(self, scene: Scene) -> tuple[Chain, State, Array]:
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
-        chain = chain_of(scene.rod, self.applied.entrained, self.s)
+        chain: Chain = self.chain
         self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
         self.beside = Beside.steps(scene.rod, self.s, chain.elastic.kappa0)
         return chain, *lay_out(scene, chain, self.s)

@@ -63,7 +63,7 @@ class BoxMethod:
         self.s = np.linspace(0.0, scene.rod.length, numerics.intervals + 1)
         self.h = float(scene.rod.length) / numerics.intervals
         self.section: Section = sample_over(scene.rod, around_nodes(self.s, scene.rod.corners))
-        self.beside = Beside.steps(scene.rod, self.s)
+        self.beside = Beside.steps(scene.rod, self.s, self.section.elastic.K)
         self.applied = AppliedLoads(scene, self.section, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self.state, correction = _initial_state(scene.initial, self.s, self.section)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from math import inf
 
 import numpy as np
@@ -84,7 +85,6 @@ class StaggeredMethod(RadauMethod):
         shift_segments(R, self.state.omega, self.state.alpha, self.state.opening, *self._centres)
         self._nodes, self._strain = np.zeros((2, N + 1, 3)), np.zeros(len(chain.elastic.compliance))
         self._place_nodes()
-        self._looking = Handed.over(self.chain, self.stages, Interpolation.empty(N), self._within)
         self._R_within = np.zeros_like(R)
         self._end_velocities = np.zeros((3, 2, 3))
         """Of the first and the last node at the stages, lab."""
@@ -214,6 +214,11 @@ class StaggeredMethod(RadauMethod):
         measure_openings(self.chain, self._R, self.state.F, self._joints, np.zeros(0))
         if self.contact.present:
             self._guess_keeps_apart(1.0)
+
+    @cached_property
+    def _looking(self) -> Handed:
+        """What `look_back` reads and writes, for runs that do."""
+        return Handed.over(self.chain, self.stages, Interpolation.empty(len(self.s) - 1), self._within)
 
     @property
     def _touch(self) -> Touch:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.physics.cells import Cells, around_nodes
+from solver.physics.cells import Cells
 from solver.physics.elasticity import Coupling, Elasticity, Stretch, elasticity_of, elasticity_over
 from solver.scene.curve import corners_of
 from solver.scene.rod import Rod
@@ -36,19 +36,18 @@ class Beside(NamedTuple):
     flexibility: Array
 
     @classmethod
-    def steps(cls, rod: Rod, s: Array, kappa0: Array | None = None) -> Beside:
-        """Those of nodes `s` (n,), whose joints have a `kappa0` (n, 3), by default the nodes' own.
+    def steps(cls, rod: Rod, s: Array, K: Array, kappa0: Array | None = None) -> Beside:
+        """Those of nodes `s` (n,), whose joints have `K` (n, 3, 3) and a `kappa0` (n, 3), by default the nodes' own.
 
         The section's are none of a rod whose moment does not follow from K alone.
         """
         natural, flexibility = np.zeros((len(s), 3)), np.zeros((len(s), 3, 3))
         if kappa0 is not None and corners_of(*rod.kappa0):
             natural = np.stack([profile(s) for profile in rod.kappa0], axis=1) - kappa0
-        joints = around_nodes(s, rod.corners)
-        if len(joints.crossed) and all(isinstance(law, (Coupling, Stretch)) for law in rod.laws):
-            elastic, crossed = elasticity_of(rod, joints.points), joints.crossed
-            mean = elasticity_over(elastic, joints)
-            flexibility[crossed] = np.linalg.inv(elastic.K[crossed]) - np.linalg.inv(mean.K[crossed])
+        if rod.corners and all(isinstance(law, (Coupling, Stretch)) for law in rod.laws):
+            own = elasticity_of(rod, s).K
+            stepped = (own != K).any(axis=(1, 2))
+            flexibility[stepped] = np.linalg.inv(own[stepped]) - np.linalg.inv(K[stepped])
         nodes = np.flatnonzero(natural.any(axis=1) | flexibility.any(axis=(1, 2)))
         return cls(nodes, natural[nodes], flexibility[nodes])
 

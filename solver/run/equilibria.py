@@ -64,8 +64,8 @@ class Equilibria(Run):
         """Lay the rod down, held in one of the WAYS, by its index."""
         self._way, self._equations, self._linking = way, Equations(self._scene), LinkingNumber()
         turning, tense = WAYS[way]
-        kappa0 = self._equations.chain.elastic.kappa0 - self._equations.offset
-        self._beside = Beside.steps(self._scene.rod, self.s, kappa0)
+        elastic = self._equations.chain.elastic
+        self._beside = Beside.steps(self._scene.rod, self.s, elastic.K, elastic.kappa0 - self._equations.offset)
         self._equations.hold(first_forces(self._equations) if tense else None, turning)
         self._path = Path(self._equations, MOST_STEPS if WAYS[way] is WAYS[-1] else PATIENCE)
         start = self._equations.start  # from whose shape the turns are counted

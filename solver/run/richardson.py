@@ -44,7 +44,8 @@ def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, 
     apart = [finer[:, ::step] - coarser for coarser, finer, step in zip(meshes, meshes[1:], steps, strict=False)]
     corrections = [difference / (k**2 - 1.0) for difference, k in zip(apart, ratios, strict=True)]
     last = corrections[-1]
-    correction = np.nan_to_num(_spread(last, nodes))
+    spread = _spread(last, nodes)
+    correction = np.where(np.isnan(spread), 0.0, spread)
     if len(meshes) == 2:
         return fine + correction, nowhere_small(WARY * np.abs(last), nodes)
     far = apart[1][:, :: steps[0]]

@@ -201,7 +201,7 @@ class RadauMethod(ABC):
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
         chain: Chain = self.chain
         self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
-        self.beside = Beside.steps(scene.rod, self.s, chain.elastic.kappa0)
+        self.beside = Beside.steps(scene.rod, self.s, chain.elastic.K, chain.elastic.kappa0)
         return chain, *lay_out(scene, chain, self.s)
 
     def _make_records(self, chain: Record, state: Record, kinds: tuple[Any, ...], coupling: Record = None) -> None:

@@ -212,7 +212,7 @@ def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_inter
     for excess in sorted(errors, key=lambda excess: -excess.total):
         if excess.total <= 1.0:
             return
-        for trial in _finer(_finest(complete), excess, len(chosen(history).meshes), diagonal=is_diagonal(history)):
+        for trial in _finer(_finest(complete), excess, chosen(history).many, diagonal=is_diagonal(history)):
             if _may_do(history, excess, trial, most_intervals):
                 yield trial
 

@@ -29,12 +29,21 @@ class Chosen(NamedTuple):
     `finest`: whose nodes and values the frames have. `meshes`: up to three, the coarsest first, the last on the same
     mesh as the finest, which tell the error of the mesh: of the same steps, or, where each has shorter steps than the
     one before (a diagonal), of mesh and steps together. `series`: up to three on one mesh, those with the longest
-    steps first, which tell the error of the steps; empty where `meshes` tells it or nothing does.
+    steps first, which tell the error of the steps; empty where `meshes` tells it or nothing does. `coarser`: where
+    `meshes` are two, and longer steps were tried on the first of them and on the mesh before it, the attempts with
+    these, the coarser one first. What the steps change on the one mesh they are taken to change on the other, which is
+    a third one then, and tells how the error falls.
     """
 
     finest: int
     meshes: list[int]
     series: list[int]
+    coarser: tuple[int, ...] = ()
+
+    @property
+    def many(self) -> int:
+        """How many meshes tell the error of the finest."""
+        return len(self.meshes) + (len(self.coarser) > 0)
 
 
 def chosen(attempts: Sequence[Attempt]) -> Chosen:
@@ -49,7 +58,7 @@ def chosen(attempts: Sequence[Attempt]) -> Chosen:
     by_steps = until[-3:] if len(until) > 1 else []
     same = _chain(attempts, finest, 0)
     if len(same) > 1:
-        return Chosen(finest, same, by_steps)
+        return Chosen(finest, same, by_steps, _coarser(attempts, same))
     diagonal = _chain(attempts, finest, 1)
     on_mesh = [i for i in complete if attempts[i].mesh == attempts[finest].mesh]
     chains = [_chain(attempts, i, 0) for i in sorted(on_mesh, key=lambda i: -attempts[i].steps)]
@@ -59,6 +68,16 @@ def chosen(attempts: Sequence[Attempt]) -> Chosen:
     if len(diagonal) > 1:
         return Chosen(finest, diagonal, [])
     return Chosen(finest, longer or [finest], by_steps)
+
+
+def _coarser(attempts: Sequence[Attempt], meshes: Sequence[int]) -> tuple[int, ...]:
+    """See `Chosen`; of several the attempts whose steps are nearest."""
+    mesh, steps = attempts[meshes[0]][:2]
+    by_resolution = {(attempt.mesh, attempt.steps): i for i, attempt in enumerate(attempts) if attempt.complete}
+    longer = [k for m, k in by_resolution if m == mesh and k < steps and (mesh - 1, k) in by_resolution]
+    if len(meshes) != 2 or not longer:
+        return ()
+    return by_resolution[mesh - 1, max(longer)], by_resolution[mesh, max(longer)]
 
 
 def is_diagonal(attempts: Sequence[Attempt]) -> bool:

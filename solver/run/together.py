@@ -208,6 +208,11 @@ class Together:
         finest = self._columns(self._chosen.finest, here, judged)
         meshes = [_aligned(self._columns(k, here, judged), finest, judged) for k in self._chosen.meshes]
         doubled = [self._attempts[k].mesh for k in self._chosen.meshes]
+        if self._chosen.coarser:
+            longer, beside = (_aligned(self._columns(k, here, judged), finest, judged) for k in self._chosen.coarser)
+            along, numbers = (shorter - of for shorter, of in zip(meshes[0], beside, strict=True))
+            meshes.insert(0, Columns(longer.along + along[:, ::2], longer.numbers + numbers))
+            doubled.insert(0, doubled[0] - 1)
         ratios = [2 ** (b - a) for a, b in pairwise(doubled)]
         values, errors = zip(*(extrapolate(series, ratios) for series in zip(*meshes, strict=True)), strict=True)
         along = finest.along + (values[0] - meshes[-1].along)

@@ -124,6 +124,7 @@ def test_the_work_of_an_attempt_is_expected_to_grow_as_it_did() -> None:
         ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 1)], Chosen(3, [1, 2, 3], [0, 1])),
         ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 2)], Chosen(3, [0, 2, 3], [])),  # a diagonal
         ([ran(0, 0), ran(0, 1), ran(1, 1), ran(1, 2), ran(1, 3)], Chosen(4, [1, 2], [2, 3, 4])),
+        ([ran(0, 0), ran(0, 1), ran(1, 1), ran(1, 2), ran(2, 2)], Chosen(4, [3, 4], [2, 3], (1, 2))),
         ([ran(0, 0), slow(0, 1)], Chosen(0, [0], [])),
         ([slow(0, 0), failed(0, 0.2), failed(1, 0.3), failed(2, 0.3)], Chosen(3, [2, 3], [])),
     ],

@@ -145,6 +145,24 @@ def test_how_the_error_falls_is_not_told_where_meshes_do_not_show_the_motion(off
     assert (of_r.before == 1.0) == is_told
 
 
+def test_two_meshes_with_new_steps_are_told_apart_as_three_are() -> None:
+    """Once the error of two alone was told, tens of times too large, though a third had run with longer steps."""
+    scene, start = tolerated(1e-3), 1 + len(NUMBERS)
+    meshes = [np.array([row_of(frame) for frame in simulate(replace(scene, numerics=replace(NUMERICS, intervals=n)))])
+              for n in (16, 32, 64)]  # fmt: skip
+    by_steps = [rows.copy() for rows in meshes[:2]]
+    for rows in by_steps:
+        rows[1:, start:] += 1e-3 * LENGTH * (np.arange(rows.shape[1] - start) % WIDTH == R.start)  # r_1 of all nodes
+    trials = [(0, 0), (1, 0), (1, 1), (2, 1)]
+    attempts = [Attempt(*trial, 1.0, 4.0, complete=True, slow=False) for trial in trials]
+    none = [Excess()] * len(QUANTITIES)
+    told = Together(scene, attempts, [*by_steps, *meshes[1:]]).excesses(none)
+    third = [Attempt(mesh, 1, 1.0, 4.0, complete=True, slow=False) for mesh in range(3)]
+    assert [excess.mesh for excess in told] == pytest.approx(
+        [excess.mesh for excess in Together(scene, third, meshes).excesses(none)]
+    )
+
+
 def test_a_run_that_fails_on_every_mesh_gives_the_frames_until_then_and_fails_by_name() -> None:
     moment = Condition("load", Curve.table([0.0, 2.0], [0.0, 1e4 * EJ], "linear"))
     twisted = End((FREE, FREE, FREE), (FREE, FREE, (moment,)))

@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet install
 LOCK := uv pip compile --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-emit-find-links --no-header --no-annotate --quiet
 
-.PHONY: client site release demo test serve lint bench bench-work-precision bench-dashboard bench-skipping bench-reading load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
+.PHONY: client site release demo test serve lint bench bench-work-precision bench-dashboard bench-skipping bench-tolerances bench-reading load chaos soak rehearse fuzz attack stress plausible validate docs lock clean
 
 demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 	$(BIN)/hockle demo
@@ -64,6 +64,9 @@ bench-dashboard: .venv/.dev  ## what the dashboard's pages take in a headless Ch
 
 bench-skipping: .venv/.runtime  ## what contact, fluid and loads cost a scene that lacks them (a quarter of an hour)
 	$(BIN)/python -m benchmarks.skipping
+
+bench-tolerances: .venv/.runtime  ## CPU time of the default mode against its true error, on the paper's scene (two minutes)
+	$(BIN)/python -m benchmarks.tolerances
 
 validate: .venv/.runtime  ## published scenes, and what they must show
 	$(BIN)/python -m validation

@@ -7,6 +7,7 @@ off: these are 1e-6 of the largest curvature, and attempts at a tolerance do not
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
 from pathlib import Path
@@ -81,7 +82,7 @@ def measure(whole: Scene, tolerance: float, true: Columns, size: Array) -> dict[
             "told": run.accuracy.errors}  # fmt: skip
 
 
-def reached(rows: list[dict[str, Any]], error: float) -> dict[str, Any] | None:
+def reached(rows: Sequence[dict[str, Any]], error: float) -> dict[str, Any] | None:
     """The cheapest row whose true errors are no more than this."""
     good = [row for row in rows if max(row["true"].values()) <= error]
     return min(good, key=lambda row: row["cpu_s"], default=None)

@@ -9,6 +9,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+from benchmarks import tolerances
 from benchmarks.work_precision import table
 from benchmarks.work_precision.measure import Point
 from docs.markers import markdown
@@ -92,6 +93,29 @@ def skipping() -> str:
     ])  # fmt: skip
 
 
+def errors() -> str:
+    """CPU time in which the default mode reaches a true error."""
+    rows = _read("tolerances.json")["rows"]
+    return markdown(HEAD, [
+        (f"goyal-2003 to 25 s, true error at most {error:.0e}: {aim:g} s", *_reached(rows, error, aim),
+         "`make bench-tolerances`") for error, aim in tolerances.AIMS.items()
+    ])  # fmt: skip
+
+
+def _reached(rows: Sequence[dict[str, Any]], error: float, aim: float) -> tuple[str, str]:
+    """What the cheapest run that reaches an error costs, and whether that is within the aim."""
+    row = tolerances.reached(rows, error)
+    if row is None:
+        nearest = min(rows, key=lambda row: max(row["true"].values()))
+        name, least = max(nearest["true"].items(), key=lambda item: item[1])
+        return f"not reached: {name} {least:.1e} for {nearest['cpu_s']:.3g} s", _met(False)
+    asked = next(row for row in rows if row["tolerance"] == error)
+    measured = f"{row['cpu_s']:.3g} s by a tolerance of {row['tolerance']:.0e}"
+    if row is not asked:
+        measured += f"; {asked['cpu_s']:.3g} s by {error:.0e}, for {max(asked['true'].values()):.1e}"
+    return measured, _met(row["cpu_s"] <= aim)
+
+
 def peers() -> str:
     """Times less CPU than the peers at equal error."""
     return markdown(HEAD, [
@@ -132,6 +156,7 @@ def origins() -> str:
     parts: list[tuple[str, Iterable[str]]] = [
         ("python -m validation", _made_with(validated)), ("make bench", [_line(_read("last.json"))]),
         ("make bench-skipping", [_line(_read("skipping.json"))]), ("make bench-work-precision", _made_with(compared)),
+        ("make bench-tolerances", [_line(_read("tolerances.json"))]),
     ]  # fmt: skip
     return markdown(("command", "measured with"), [(f"`{command}`", "; or ".join(lines)) for command, lines in parts])
 
@@ -145,6 +170,6 @@ def _line(part: dict[str, Any]) -> str:
 
 
 TABLES: dict[str, Callable[[], str]] = {
-    "scenes": scenes, "figures": figures, "costs": costs, "skipping": skipping, "peers": peers, "agreement": agreement,
-    "origins": origins,
+    "scenes": scenes, "figures": figures, "costs": costs, "skipping": skipping, "errors": errors, "peers": peers,
+    "agreement": agreement, "origins": origins,
 }  # fmt: skip

@@ -50,6 +50,8 @@ FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 LAST_PART = 2.5
 """MOST_WORK that a run with the longest steps may take, where no other came to its end."""
+OVERDRAWN = 0.25
+"""Part of MOST_WORK that an attempt may take beyond what was left for it, lest all of it be lost near its end."""
 PATIENCE, MOST_PATIENCE = 8.0, 2.5
 """How many times the work that is expected of it the first run on a second mesh, or with other steps, may take; and
 how many times MOST_WORK."""
@@ -145,7 +147,7 @@ def allowance(history: Sequence[Attempt], trial: Trial) -> float:
     if len(complete) == 1 or (len(meshes) == 1 and trial.mesh not in meshes):
         # without it nothing is known of the error
         return max(remaining, min(PATIENCE * expected(complete, trial), MOST_PATIENCE * MOST_WORK))
-    return max(remaining, 0.0)
+    return remaining + OVERDRAWN * MOST_WORK
 
 
 def expected(complete: Sequence[Attempt], trial: Trial) -> float:

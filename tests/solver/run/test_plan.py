@@ -170,6 +170,15 @@ def test_where_what_is_to_tell_the_error_takes_far_too_long_nothing_else_is_trie
     assert next_trial([first, second], [Excess()], 2000) is None
 
 
+def test_an_attempt_that_is_begun_is_not_given_up_as_soon_as_nothing_is_left() -> None:
+    """Near their end several had spent most of what may be spent, for nothing."""
+    spent = [ran(0, 0), ran(0, 1), ran(1, 1, 0.1 * MOST_WORK), ran(2, 2, 0.3 * MOST_WORK)]
+    left = MOST_WORK - sum(attempt.work for attempt in spent)
+    assert left < allowance(spent, Trial(3, 3)) <= 1.5 * left
+    overdrawn = [*spent, ran(3, 3, left + 0.1 * MOST_WORK)]
+    assert next_trial(overdrawn, [Excess(900.0, 900.0, 3600.0)], 2000) is None
+
+
 def test_shorter_steps_are_tried_again_on_the_first_mesh_that_shows_the_motion() -> None:
     far, near = 2.0 * FAR_FROM_IT, 0.5 * FAR_FROM_IT
     history = [ran(0, 0), ran(0, 1), ran(1, 0)._replace(apart=far), ran(2, 0)._replace(apart=near)]

@@ -126,8 +126,10 @@ class BoxMethod:
         enter_step(self._handed.reference, old, new, self.contact.power()[0], c0_of(self._rule, dt), dt, late, self.h,
                    self._flows)  # fmt: skip
         for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
-            shift, turned = self._flows.moved[node, :3], self._flows.moved[node, 3:]
-            end.follow(shift if end.in_lab else rotate_back(old.quaternion[node : node + 1], shift[None])[0], turned)
+            moved = self._flows.moved[node]
+            if not end.in_lab:
+                moved[:3] = rotate_back(old.quaternion[node : node + 1], moved[None, :3])[0]
+            end.follow(moved)
         self.state, self.trial, self._taken_dt, self._bending = new, old, dt, self._measured.bending
         self._gain = max(self._gain, self._feedback_rate(self._measured.turning))
         self._stretch_before, self._stretch, self._trial_stretch = (

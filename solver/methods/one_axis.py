@@ -18,8 +18,8 @@ from solver.methods.space.one_axis.axis import Axis, Plane, axis_of, directions
 from solver.methods.space.one_axis.balances import Driven, Motion, Tangents
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages, State, about_axis
 from solver.methods.space.one_axis.energies import energies, stage_powers
-from solver.methods.space.one_axis.motion import bend_joints, extrapolate, follow_segments, largest_turn
-from solver.methods.time.radau import tableau
+from solver.methods.space.one_axis.fields import InSpace, Shown, place_nodes, show
+from solver.methods.space.one_axis.motion import follow_segments, largest_turn
 from solver.methods.time.radau.method import RadauMethod
 from solver.physics.axial import axial_compliance
 from solver.physics.ends import LOAD, DrivenEnd
@@ -43,7 +43,13 @@ class OneAxisMethod(RadauMethod):
         chain, state, offset = self._lay_out(scene)
         self._axis, self._offset = axis, offset[:, axis.index].copy()
         self._make_records(*about_axis(axis, chain, state), (Stages, Driven, Residuals, Tangents, Factors))
-        self._origin = state.base[0] - axis.in_lab(self.state.base[0])
+        self._in_space = InSpace.of(axis, state.base[0] - axis.in_lab(self.state.base[0]))
+        self._moved = np.zeros((2, 3))
+        """By how much start and end moved, z, and turned in the last step."""
+        self._in_six = np.stack([axis.six_components(end.in_lab) for end in (self.start, self.end)])
+        self._components = [[*axis.spanning["lab" if end.in_lab else "material"], 3 + axis.index]
+                            for end in (self.start, self.end)]  # fmt: skip
+        """Which of the ends' six conditions are not fulfilled by themselves."""
         self._condition_ends()
         follow_segments(self.chain, self._tangents(), self.state.omega, self.state.alpha, self.state.base,
                         *self._centres)  # fmt: skip
@@ -74,16 +80,9 @@ class OneAxisMethod(RadauMethod):
 
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
-        axis, (r, V), (state, _) = self._axis, self._nodes(), self._shown
-        phi, omega = at_nodes(state.phi), at_nodes(state.omega)
-        back = directions(-self.chain.swing * phi)
-        bend, q = np.diff(state.phi) / self.chain.span, np.empty(len(self.s))
-        bend_joints(self.chain, state.phi, state.omega, q)
-        return Fields(
-            v=axis.in_material(V * back), omega=axis.about(omega), f=axis.in_material(state.F * back),
-            kappa=axis.about(bend - self._offset), q=axis.about(q),
-            strain=np.zeros(len(self.s)), r=self._origin + axis.in_lab(r), orientation=axis.orientations(phi),
-        )  # fmt: skip
+        shown, nodes = Shown.empty(len(self.s)), self._nodes()
+        show(self._hand_over(), self._shown[0], *nodes, self._offset, self._in_space, shown)
+        return Fields(**shown._asdict(), strain=np.zeros(len(self.s)))
 
     def centreline(self) -> Shape:
         """The state's centreline."""
@@ -93,7 +92,7 @@ class OneAxisMethod(RadauMethod):
         """The energies of the state."""
         state, (r, V, A) = self._shown
         motion = Motion(r, V, A, self._tangents(), state.omega, self.chain.swing)
-        return energies(self._hand_over(), self.chain, state.phi, motion)
+        return energies(self._hand_over(), state.phi, motion)
 
     def twist(self) -> float:
         """Tw of the state, in turns."""
@@ -107,10 +106,9 @@ class OneAxisMethod(RadauMethod):
 
     def _nodes(self) -> tuple[Plane, Plane]:
         """Places and velocities (N + 1,) of the nodes."""
-        (state, centres), T, h = self._shown, self._tangents()[1:-1], self.chain.h
-        swing = 0.5j * h * self.chain.swing * state.omega[1:-1] * T
-        r, V = centres[0] + 0.5 * h * T, centres[1] + swing
-        return np.append(state.base[0], r), np.append(state.base[1], V)
+        r, V = np.empty((2, len(self.s)), complex)
+        place_nodes(self._hand_over(), *self._shown, r, V)
+        return r, V
 
     def _interpolate(self, part: float, cubic: Array, parabola: Array) -> None:
         before, stages, then = self.trial, self.stages, self._within
@@ -127,40 +125,23 @@ class OneAxisMethod(RadauMethod):
         return start, end
 
     def _follow_ends(self, weights: Array) -> None:
-        stages, axis = self.stages, self._axis
-        stage_powers(self._handed.reference, self._powers)
-        swing = 0.5j * self.chain.h * self.chain.swing * stages.T[:, -2] * stages.omega[:, -2]
-        for end, frame, V in ((self.start, 0, stages.base[:, 1]), (self.end, -1, stages.V[:, -1] + swing)):
-            if end.in_lab:
-                shift = axis.in_lab(weights @ V)
-            else:
-                shift = axis.in_material(weights @ (V / stages.T[:, frame]))
-            end.follow(shift, axis.about(weights @ stages.omega[:, frame]))
-
-    def _extrapolate(self, dt: float, weights: Array, theta: Array) -> None:
-        departed = np.matmul(weights, theta, out=self.stages.theta_t)  # which is not known yet
-        extrapolate(self.trial, self.state, self._last_dt, tableau.C, dt, departed, self.stages.theta)
+        stage_powers(self._handed.reference, weights, self._moved, self._powers)
+        moved = (self._moved[:, :, None] * self._in_six).sum(axis=1)
+        self.start.follow(moved[0])
+        self.end.follow(moved[1])
 
     def _drive_end(self, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
         driven, axis = self.driven, self._axis
-        driven.values[:, side] = values[:, self._components(end)]
-        driven.dead[:, side], driven.couple[:, side] = dead[:, :3] @ axis.lab, dead[:, 3:] @ axis.n
-
-    def _components(self, end: DrivenEnd) -> list[int]:
-        """Which of an end's six conditions are not fulfilled by themselves."""
-        return [*self._axis.spanning["lab" if end.in_lab else "material"], 3 + self._axis.index]
+        driven.values[:, side] = values[:, self._components[side]]
+        if self.applied.at_ends:
+            driven.dead[:, side], driven.couple[:, side] = dead[:, :3] @ axis.lab, dead[:, 3:] @ axis.n
 
     def _condition_ends(self) -> None:
         """Write the kinds and directions of the ends' conditions."""
         axis, driven = self._axis, self.driven
         for side, end in enumerate((self.start, self.end)):
-            components = self._components(end)
+            components = self._components[side]
             driven.kinds[side] = end.kinds[components]
             driven.direction[side] = (axis.lab if end.in_lab else axis.material)[components[:2]]
             if axis.index == 2:  # nothing happens across the rod, whoever holds it there
                 driven.kinds[side, 1], driven.direction[side, 1] = LOAD, 1j
-
-
-def at_nodes(x: Array) -> Array:
-    """Values (N + 1,) at the nodes of what (N + 2,) belongs to orientations: means, and those of the ends."""
-    return np.concatenate([x[:1], 0.5 * (x[1:-2] + x[2:-1]), x[-1:]])

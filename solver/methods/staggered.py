@@ -18,21 +18,21 @@ from solver.measures.passages import Shape
 from solver.methods.linear import segments_contact, segments_increments, tridiagonal
 from solver.methods.linear import stages as linear
 from solver.methods.linear.segments import Factors
-from solver.methods.linear.segments_contact import Coupling, place_nodes
+from solver.methods.linear.segments_contact import Coupling, place_nodes, show_last_stage
 from solver.methods.space import stages as space
 from solver.methods.space.segments import motion, stages
 from solver.methods.space.segments.balances import Driven, Motion, Tangents
 from solver.methods.space.segments.chain import Chain, Residuals, Stages, State
-from solver.methods.space.segments.energies import energies, stage_powers, twist
+from solver.methods.space.segments.energies import energies, stage_powers, stretch_of_ends, twist
 from solver.methods.space.segments.fields import bending_at_nodes, motion_at_nodes
 from solver.methods.space.segments.joints import bend_joints, largest_turn, total_bending
-from solver.methods.space.segments.motion import Interpolation, extrapolate, follow_segments, look_back
+from solver.methods.space.segments.motion import Interpolation, follow_segments, look_back
 from solver.methods.space.segments.opening import measure_openings, pull_joints, shift_segments
 from solver.methods.space.segments.viscosity import resist_at_nodes
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
-from solver.methods.time.radau.newton import move_guess
+from solver.methods.time.radau.next_step import move_guess
 from solver.physics.axial import axial_compliance
 from solver.physics.contact.forces import Touch, keeps_apart
 from solver.physics.contact.recipe import foreseen
@@ -86,8 +86,8 @@ class StaggeredMethod(RadauMethod):
         self._nodes, self._strain = np.zeros((2, N + 1, 3)), np.zeros(len(chain.elastic.compliance))
         self._place_nodes()
         self._R_within = np.zeros_like(R)
-        self._end_velocities = np.zeros((3, 2, 3))
-        """Of the first and the last node at the stages, lab."""
+        self._moved = np.zeros((2, 6))
+        """By how much start and end moved and turned in the last step."""
         self._joints_within, self._nodes_within = np.zeros((N + 1, 3)), np.zeros((2, N + 1, 3))
 
     @classmethod
@@ -131,9 +131,7 @@ class StaggeredMethod(RadauMethod):
     def take_step(self, t: float, dt: float) -> Array:
         """Make the trial the state: see `RadauMethod`."""
         flowed = super().take_step(t, dt)
-        self._R[:] = self.stages.R[2]
-        self._joints[:] = self.stages.bend[2]
-        self._place_nodes()
+        show_last_stage(self._handed.reference, self.state, self._centres, self._R, self._joints, self._nodes)
         return flowed
 
     def switch_ends(self, t: float) -> None:
@@ -265,32 +263,16 @@ class StaggeredMethod(RadauMethod):
         return written
 
     def _follow_ends(self, weights: Array) -> None:
-        stages, ends = self.stages, self._end_velocities
-        stage_powers(self._handed.reference, ends, self._powers)
-        for side, (end, frame) in enumerate(((self.start, 0), (self.end, -1))):
-            velocity = ends[:, side]
-            if self._ends_give:
-                velocity = velocity + (2.0 * side - 1.0) * self._stretching(side, frame)
-            if not end.in_lab:
-                velocity = rotate_back(stages.quaternion[:, frame].copy(), velocity)
-            end.follow(weights @ velocity, weights @ stages.omega[:, frame])
-
-    def _stretching(self, side: int, frame: int) -> Array:
-        """The velocity (3, 3), lab, by which what holds an end moves away from the rod's end at the stages."""
-        tangent, rate = self.stages.R[:, frame, :, 2], self.stages.F_t[:, side]
-        stretch = self.driven.compliance[side] * np.sum(tangent * rate, axis=1)
-        return np.asarray(stretch[:, None] * tangent)
+        stage_powers(self._handed.reference, weights, self._moved, self._powers)
+        self.start.follow(self._moved[0])
+        self.end.follow(self._moved[1])
 
     def strain(self) -> float:
         """The trial's largest strain; or its stretch by the compliance of its ends, in rod lengths."""
         if len(self._strain):
             np.divide(self.stages.opening[-1, 0], self.chain.span, out=self._strain)
             return float(max(self._strain.max(), -self._strain.min()))
-        if not self._ends_give:
-            return 0.0
-        forces, tangents = self.stages.F[-1, [0, -1]], self.stages.R[-1, [0, -1], :, 2]
-        stretch = self.driven.compliance * np.abs(np.sum(forces * tangents, axis=1))
-        return float(stretch.sum() / self.s[-1])
+        return stretch_of_ends(self._handed.reference) / float(self.s[-1]) if self._ends_give else 0.0
 
     def _flowed(self, weights: Array) -> Array:
         flowed = super()._flowed(weights)
@@ -305,10 +287,6 @@ class StaggeredMethod(RadauMethod):
         if self.contact.touching and not self._guess_keeps_apart(dt):
             self._guess_standstill(dt)
 
-    def _extrapolate(self, dt: float, weights: Array, theta: Array) -> None:
-        ratio = dt / self._last_dt
-        extrapolate(self.trial, theta, self._last_dt, self.state, tableau.C, weights, ratio, self.stages.theta)
-
     def _guess_keeps_apart(self, dt: float) -> bool:
         """Whether the guess leaves parts that press on each other apart: where they rattle, the last step misleads."""
         move_guess(self._hand_over(), dt, self.state)
@@ -321,5 +299,6 @@ class StaggeredMethod(RadauMethod):
         self.stages.F[:] = self.state.F
 
     def _drive_end(self, side: int, end: DrivenEnd, values: Array, dead: Array) -> None:
-        self.driven.values[:, side], self.driven.dead[:, side] = values, dead
-        self.driven.kinds[side] = end.kinds
+        self.driven.values[:, side], self.driven.kinds[side] = values, end.kinds
+        if self.applied.at_ends:
+            self.driven.dead[:, side] = dead

@@ -63,10 +63,9 @@ class DrivenEnd:
                 times += curve.corners if condition.kind in ("rate", "position") else ()
         return times
 
-    def follow(self, shift: Array, turned: Array) -> None:
-        """Add a step's displacement along, and rotation about, the axes, (3,) each."""
-        self.travel[:3] += shift
-        self.travel[3:] += turned
+    def follow(self, moved: Array) -> None:
+        """Add a step's displacement along, and rotation about, the axes (6,)."""
+        self.travel += moved
 
     def switch(self, t: float, rates: Array) -> None:
         """Put in force the conditions that hold from `t` on; `rates` (6,): the end's velocity and omega now."""
@@ -80,10 +79,9 @@ class DrivenEnd:
     def values(self, t: float, later: Sequence[float], gain: float) -> Array:
         """The six values (times, 6) at the times t + dt of a step from t, `later` being these dt."""
         values = np.empty((len(later), 6))
-        values[:] = np.where(self._held, gain * (self._travel_at_switch - self.travel), 0.0)
+        values[:] = gain * self._held * (self._travel_at_switch - self.travel)
         for i in self._moving:
-            for k, dt in enumerate(later):
-                values[k, i] = self._value(i, t, dt, gain)
+            values[:, i] = self._values_of(i, t, later, gain)
         return values
 
     def prescribed(self, component: int, t: float) -> float | None:
@@ -100,8 +98,8 @@ class DrivenEnd:
         return total
 
     def _set_kinds(self) -> None:
-        self._held = np.zeros(6, np.bool_)
-        """Which components are held where they are. Free ones are worth nothing."""
+        self._held = np.zeros(6)
+        """1 for components that are held where they are. Free ones are worth nothing."""
         self._moving: list[int] = []
         for i, component in enumerate(self._components):
             condition = component[self._active[i]]
@@ -109,20 +107,21 @@ class DrivenEnd:
             if condition.kind == "stop" or not condition.curve.is_zero:
                 self._moving.append(i)
             else:
-                self._held[i] = not load
+                self._held[i] = float(not load)
             if i < 3 and self.in_lab:
                 self.kinds[i] = LOAD_LAB if load else RATE_LAB
             else:
                 self.kinds[i] = LOAD if load else RATE
 
-    def _value(self, i: int, t: float, dt: float, gain: float) -> float:
+    def _values_of(self, i: int, t: float, later: Sequence[float], gain: float) -> list[float]:
         condition = self._components[i][self._active[i]]
         if condition.kind == "load":
-            return condition.curve.value(t + dt)
+            return [condition.curve.value(t + dt) for dt in later]
         if condition.kind == "stop":
-            return self._stopping_from[i] * (1.0 - _smoothstep((t + dt - condition.since) / condition.within))
+            speed, since, within = self._stopping_from[i], condition.since, condition.within
+            return [speed * (1.0 - _smoothstep((t + dt - since) / within)) for dt in later]
         behind = travel(condition, t) - float(self.travel[i] - self._travel_at_switch[i])
-        return _rate(condition, t + dt, dt) + gain * behind
+        return [_rate(condition, t + dt, dt) + gain * behind for dt in later]
 
 
 def _rate(condition: Condition, t: float, dt: float) -> float:

@@ -14,13 +14,14 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.copying import copy
+from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
 from solver.methods.linear.krylov import KEPT, Krylov, begin, combine, follow, project, set_out, unsolved
 from solver.methods.linear.segments import Factors
 from solver.methods.linear.segments_increments import node_moves
 from solver.methods.linear.stages import solve_stages
 from solver.methods.space.segments.balances import Driven, Tangents
-from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
+from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages, State
 from solver.methods.space.segments.joints import share
 from solver.methods.space.segments.opening import shift_nodes
 from solver.physics.contact.forces import Touch, allowed_fraction, change_forces, move_points, press
@@ -67,6 +68,16 @@ def place_nodes(chain: Chain, R: Array, omega: Array, base: Array, opening: Arra
             r[j + 1, k] = centres[j, k] + half * Q[k, 2]
             V[j + 1, k] = speeds[j, k] + half * (Q[k, 0] * w[1] - Q[k, 1] * w[0])
     shift_nodes(chain, R, omega, opening, r, V)
+
+
+@kernel
+def show_last_stage(reference: Reference, state: State, centres: Array, R: Array, joints: Array, nodes: Array) -> None:
+    """Write R (N + 2, 3, 3), the joints' rotation vectors (N + 1, 3), and the nodes' places and velocities
+    (2, N + 1, 3) of the `state` at the end of a step, whose `centres` are known. `reference`: see `newton.step`."""
+    chain, _, _, _, stages, _, _ = reference.records
+    copy(stages.R[STAGES - 1], R)
+    copy(stages.bend[STAGES - 1], joints)
+    place_nodes(chain, R, state.omega, state.base, state.opening, centres[0], centres[1], nodes[0], nodes[1])
 
 
 @inner

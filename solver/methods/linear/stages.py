@@ -18,7 +18,11 @@ from solver.methods.space.stages import Record
 
 class Scheme(NamedTuple):
     """Coefficients of a scheme of three stages: `nodes` c, `inverse` A^-1 = T diag(gamma, lambda) T^-1 with T
-    `transform` and T^-1 `back`, `gamma` and lambda `pair`, and the weights `error` of the embedded estimate."""
+    `transform` and T^-1 `back`, `gamma` and lambda `pair`, and the weights `error` of the embedded estimate.
+
+    And the coefficients of 1, x and x^2 (row) by the values at the stages (column): of the `parabola` through them, and
+    of `cubic` / x, which goes through (0, 0) and them.
+    """
 
     nodes: Array
     inverse: Array
@@ -27,6 +31,8 @@ class Scheme(NamedTuple):
     gamma: float
     pair: complex
     error: Array
+    cubic: Array
+    parabola: Array
 
 
 @dispatched

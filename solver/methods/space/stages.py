@@ -22,6 +22,20 @@ def in_contact(touch: Record) -> bool:
 
 
 @dispatched
+def become(state: Record, stages: Record) -> None:
+    """Write the state at the last stage."""
+    raise NotImplementedError
+
+
+@dispatched
+def extrapolate(before: Record, theta: Array, dt: float, state: Record, nodes: Array, weights: Array, ratio: float,
+                ahead: Array) -> None:  # fmt: skip
+    """Write theta of a step of ratio dt from `state`, if the motion of the last step, by `theta` from the state
+    `before` in dt, goes on: `weights` (3, 3) of its stages give the departure from its steady rotation."""
+    raise NotImplementedError
+
+
+@dispatched
 def begin_step(state: Record, nodes: Array, dt: float, stages: Record) -> None:
     """Write what stays as it is while the stages are iterated on."""
     raise NotImplementedError

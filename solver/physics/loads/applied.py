@@ -64,6 +64,11 @@ class AppliedLoads:
                 total += [c.value(t) for c in (*load.force, *load.moment)]
         return total if s > 0.0 else -total
 
+    @property
+    def at_ends(self) -> bool:
+        """Whether there are point loads at an end."""
+        return bool(self._at_ends)
+
     def driving(self, end: DrivenEnd, s: float, t: float, later: Sequence[float], gain: float) -> tuple[Array, Array]:
         """What drives the end at s at the times t + dt, `later` being these dt: values (times, 6) of its conditions,
         loads added, and dead lab loads (times, 6)."""

@@ -29,6 +29,7 @@ from solver.arrays import Array
 from solver.kernels.rotation import matrix_of
 from solver.methods.one_axis import OneAxisMethod
 from solver.methods.space.one_axis.axis import axis_of
+from solver.methods.space.one_axis.fields import InSpace
 from solver.methods.staggered import StaggeredMethod
 from solver.scene.curve import constant_vector
 from tests.solver.scenes import ARC, ARC_ROD, EJ, GJ, LENGTH, ROD, arc, turned_clamp
@@ -236,8 +237,8 @@ def test_the_axis_is_found(scene: Scene, index: int) -> None:
     axis = axis_of(scene)
     assert axis is not None
     assert axis.index == index
-    R, first = np.zeros((3, 3)), axis.orientations(np.array([0.3]))[0]
-    matrix_of(first, R)
+    R, lying = np.zeros((3, 3)), InSpace.of(axis, np.zeros(3))
+    matrix_of(np.cos(0.15) * lying.begin + np.sin(0.15) * lying.half, R)
     assert np.abs(R[:, index] - axis.n).max() <= 1e-15
     T = np.exp(0.3j * axis.swing)
     assert np.abs(axis.in_lab(T * axis.material)[[2]] - R[:, 2]).max() <= 1e-15

@@ -72,7 +72,7 @@ def test_steps_are_aligned_with_switches_corners_and_the_end_of_a_stop() -> None
 
 def test_drift_from_what_is_prescribed_is_fed_back() -> None:
     end = along(Condition("rate", Curve.constant(2.0)))
-    end.follow(np.array([0.0, 0.0, 0.9]), np.zeros(3))
+    end.follow(np.array([0.0, 0.0, 0.9, 0.0, 0.0, 0.0]))
     # at t = 0.5 s it should be at 1.0 m
     assert value(end, 0.5, gain=2.0) == pytest.approx(2.0 + 2.0 * 0.1)
 
@@ -80,10 +80,10 @@ def test_drift_from_what_is_prescribed_is_fed_back() -> None:
 def test_a_position_is_followed_from_where_its_curve_is_when_it_comes_into_force() -> None:
     curve = Curve.table([0.0, 4.0], [0.0, 8.0])
     end = along(FREE[0], Condition("position", curve, since=1.0))
-    end.follow(np.array([0.0, 0.0, 0.3]), np.zeros(3))
+    end.follow(np.array([0.0, 0.0, 0.3, 0.0, 0.0, 0.0]))
     end.switch(1.0, AT_REST)
     assert value(end, 1.0, gain=5.0) == pytest.approx(2.0)
-    end.follow(np.array([0.0, 0.0, 1.0]), np.zeros(3))
+    end.follow(np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0]))
     assert value(end, 2.0, gain=5.0) == pytest.approx(2.0 + 5.0 * 1.0)
 
 

@@ -63,13 +63,11 @@ class Axis:
         """Material vectors (..., 3) along the axis."""
         return np.asarray(np.multiply.outer(x, np.eye(3)[self.index]))
 
-    def orientations(self, phi: Array) -> Array:
-        """Unit quaternions (n, 4) at angles phi (n,)."""
-        half_turn, turned = np.zeros(4), np.zeros(4)
-        half_turn[1 + self.index] = 1.0
-        multiply(self.quaternion, half_turn, turned)
-        half = directions(0.5 * phi)
-        return np.asarray(half.real[:, None] * self.quaternion + half.imag[:, None] * turned)
+    def six_components(self, in_lab: bool) -> Array:
+        """What real and imaginary part of z, or of z / T, and a rotation about the axis are (3, 6) along the three axes
+        of the lab, or of the material, and about those of the material."""
+        z, rotation = self.lab if in_lab else self.material, np.eye(3)[self.index]
+        return np.block([[z.real, np.zeros(3)], [z.imag, np.zeros(3)], [np.zeros(3), rotation]])
 
 
 def axis_of(scene: Scene) -> Axis | None:

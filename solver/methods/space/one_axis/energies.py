@@ -2,60 +2,58 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.arrays import Array
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import kernel
 from solver.kernels.scratch import scratch
 from solver.measures.energies import Energies
 from solver.methods.space.one_axis.balances import Motion, along, end_velocity, motion_at
-from solver.methods.space.one_axis.chain import Chain
 from solver.methods.space.segments.chain import STAGES
 from solver.physics.elasticity import is_viscous, strain_energy, viscosity
+from solver.physics.ends import LOAD, RATE
 from solver.physics.loads.load import add_energies, add_powers
 
 
-def energies(reference: Reference, chain: Chain, phi: Array, motion: Motion) -> Energies:
+@kernel
+def energies(reference: Reference, phi: Array, motion: Motion) -> Energies:
     """The energies at the end of a step: angles (N + 2,), and the segments' motion; `reference`: see `newton.step`."""
-    by_loads, V, omega = np.zeros(2), motion.V, motion.omega[1:-1]
-    elastic = _sum(reference, phi, motion, by_loads)
-    kinetic = np.sum(chain.mass * (V.real**2 + V.imag**2)) + np.sum(chain.dry_inertia * omega**2)
-    turning = np.sum((chain.inertia - chain.dry_inertia) * omega**2)
-    return Energies(
-        bending=elastic * chain.swing,
-        torsion=elastic * (1.0 - chain.swing),
-        stretching=0.0,
-        kinetic=float(0.5 * chain.h * kinetic),
-        added_mass=chain.h * float(0.5 * turning + by_loads[1]),
-        potential=chain.h * float(by_loads[0]),
-    )
-
-
-@kernel
-def _sum(reference: Reference, phi: Array, motion: Motion, out: Array) -> float:
-    """Write the energies of loads, and return that of the joints."""
     chain, loads, _, _, _, _, _ = reference.records
-    add_energies(loads, STAGES - 1, motion, out)
-    elastic, energy = chain.elastic, 0.0
+    elastic, kinetic, turning, by_loads, h = 0.0, 0.0, 0.0, scratch(2), chain.h
+    by_loads[0], by_loads[1] = 0.0, 0.0
+    add_energies(loads, STAGES - 1, motion, by_loads)
     for j in range(len(chain.span)):
-        strain = (phi[j + 1] - phi[j]) / chain.span[j] - elastic.kappa0[j]
-        energy += chain.span[j] * strain_energy(elastic, j, strain)
-    return energy
+        strain = (phi[j + 1] - phi[j]) / chain.span[j] - chain.elastic.kappa0[j]
+        elastic += chain.span[j] * strain_energy(chain.elastic, j, strain)
+    for j in range(len(motion.V)):
+        V, spin = motion.V[j], motion.omega[j + 1] * motion.omega[j + 1]
+        kinetic += chain.mass[j] * along(V, V) + chain.dry_inertia[j] * spin
+        turning += (chain.inertia[j] - chain.dry_inertia[j]) * spin
+    moving = 0.5 * h * kinetic, 0.5 * h * turning + h * by_loads[1]
+    return Energies(elastic * chain.swing, elastic * (1.0 - chain.swing), 0.0, moving[0], moving[1], h * by_loads[0])
 
 
 @kernel
-def stage_powers(reference: Reference, out: Array) -> None:
+def stage_powers(reference: Reference, weights: Array, moved: Array, out: Array) -> None:
     """Write the power (W) of the ends, of loads, and dissipated, at the stages, into `out`.
 
-    `reference`: see `newton.step`.
+    And into `moved` (2, 3) by how much start and end have moved, z of the frame of their conditions on translation, and
+    turned (rad), by the `weights` (3,) of the stages. `reference`: see `newton.step`.
     """
-    chain, loads, _, _, stages, _, _ = reference.records
+    chain, loads, driven, _, stages, _, _ = reference.records
     N, by_loads = len(chain.mass), scratch(2)
+    moved[:] = 0.0
     for i in range(STAGES):
         by_loads[0], by_loads[1] = 0.0, 0.0
-        work = along(stages.F[i, N], end_velocity(chain, stages, i, 1)) + stages.q[i, N] * stages.omega[i, N + 1]
-        work -= along(stages.F[i, 0], end_velocity(chain, stages, i, 0)) + stages.q[i, 0] * stages.omega[i, 0]
+        work, sign = 0.0, -1.0
+        for side, frame, node in ((0, 0, 0), (1, N + 1, N)):
+            V, omega = end_velocity(chain, stages, i, side), stages.omega[i, frame]
+            work += sign * (along(stages.F[i, node], V) + stages.q[i, node] * omega)
+            if driven.kinds[side, 0] in (RATE, LOAD):
+                V *= stages.T[i, frame].conjugate()
+            moved[side, 0] += weights[i] * V.real
+            moved[side, 1] += weights[i] * V.imag
+            moved[side, 2] += weights[i] * omega
+            sign = 1.0
         add_powers(loads, i, motion_at(chain, stages, i), by_loads)
         out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads[0], chain.h * by_loads[1]
         if is_viscous(chain.elastic):

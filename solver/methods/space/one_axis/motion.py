@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.kernel import kernel
+from solver.kernels.copying import copy
+from solver.kernels.kernel import inlined, inner, kernel
 from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Stages, State
 from solver.methods.space.segments.chain import STAGES
@@ -56,17 +57,24 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
 
 
 @kernel
-def extrapolate(before: State, state: State, last: float, nodes: Array, dt: float, departed: Array,
-                theta: Array) -> None:  # fmt: skip
-    """Guess theta (3, N + 2) of a step of dt, as if the one of `last` (s) from `before` to `state` would go on.
-
-    `departed` (3, N + 2): by how much its rotation, going on, departs from the steady one at its begin.
-    """
+def extrapolate(before: State, theta: Array, dt: float, state: State, nodes: Array, weights: Array, ratio: float,
+                ahead: Array) -> None:  # fmt: skip
+    """Write theta of a step of ratio dt, if the last step's motion, `theta` from the state `before`, goes on."""
     for i in range(STAGES):
-        tau = nodes[i] * dt
+        tau, u, v, w = ratio * dt * nodes[i], weights[i, 0], weights[i, 1], weights[i, 2]
         for a in range(len(state.phi)):
-            steady = before.phi[a] - state.phi[a] + (last + tau) * before.omega[a] - tau * state.omega[a]
-            theta[i, a] = steady + departed[i, a]
+            steady = before.phi[a] - state.phi[a] + (dt + tau) * before.omega[a] - tau * state.omega[a]
+            ahead[i, a] = steady + (u * theta[0, a] + v * theta[1, a] + w * theta[2, a])
+
+
+@inner
+def become(state: State, stages: Stages) -> None:
+    """Write the state at the last stage."""
+    copy(stages.phi[STAGES - 1], state.phi)
+    copy(stages.omega[STAGES - 1], state.omega)
+    copy(stages.alpha[STAGES - 1], state.alpha)
+    copy(stages.base[STAGES - 1], state.base)
+    copy(stages.F[STAGES - 1], state.F)
 
 
 @kernel
@@ -78,10 +86,17 @@ def largest_turn(phi: Array) -> float:
     return largest
 
 
+@inlined
+def joint_moment(chain: Chain, phi: Array, omega: Array, i: int) -> float:
+    """The moment of joint i for angles phi (N + 2,) and their rates omega."""
+    q = moment(chain.elastic, i, (phi[i + 1] - phi[i]) / chain.span[i])
+    if is_viscous(chain.elastic):
+        q += viscosity(chain.elastic, i) * (omega[i + 1] - omega[i]) / chain.span[i]
+    return float(q)
+
+
 @kernel
 def bend_joints(chain: Chain, phi: Array, omega: Array, q: Array) -> None:
     """Write the moments q of all joints (N + 1,) for angles phi (N + 2,) and their rates omega."""
     for i in range(len(q)):
-        q[i] = moment(chain.elastic, i, (phi[i + 1] - phi[i]) / chain.span[i])
-        if is_viscous(chain.elastic):
-            q[i] += viscosity(chain.elastic, i) * (omega[i + 1] - omega[i]) / chain.span[i]
+        q[i] = joint_moment(chain, phi, omega, i)

@@ -8,13 +8,14 @@ from solver.arrays import Array
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
-from solver.kernels.vectors import minus, times, vector
+from solver.kernels.vectors import dot, in_material, matrix, minus, plus, times, vector
 from solver.measures.energies import Energies
-from solver.methods.space.segments.balances import Motion, motion_at
+from solver.methods.space.segments.balances import Driven, Motion, motion_at
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
 from solver.methods.space.segments.opening import tension
 from solver.methods.space.segments.viscosity import dissipated
 from solver.physics.elasticity import is_viscous, strain_energy, stretch_energy, stretches
+from solver.physics.ends import LOAD, RATE
 from solver.physics.loads.load import add_energies, add_powers
 from solver.physics.loads.registry import Loads
 
@@ -65,16 +66,36 @@ def _end_velocities(chain: Chain, stages: Stages, i: int, ends: Array) -> None:
             ends[1, k] += stages.opening[i, 0, N] * swing + stages.opening[i, 1, N] * R[N, k, 2]
 
 
+@inner
+def _follow_end(driven: Driven, stages: Stages, i: int, side: int, velocity: Array, weight: float, out: Array) -> None:
+    """Add to `out` (6,) what holds an end at the `velocity` (3,) of its node moves and turns along the axes of its
+    conditions."""
+    a, sign = (0, -1.0) if side == 0 else (stages.R.shape[1] - 1, 1.0)
+    R = matrix(stages.R[i], a)
+    T = R[0][2], R[1][2], R[2][2]
+    away = sign * driven.compliance[side] * dot(T, vector(stages.F_t[i], side))
+    speed = plus(vector(velocity, side), times(away, T))
+    if driven.kinds[side, 0] in (RATE, LOAD):
+        speed = in_material(R, speed)
+    for k in range(3):
+        out[k] += weight * speed[k]
+        out[3 + k] += weight * stages.omega[i, a, k]
+
+
 @kernel
-def stage_powers(reference: Reference, ends: Array, out: Array) -> None:
+def stage_powers(reference: Reference, weights: Array, moved: Array, out: Array) -> None:
     """Write the power (W) of the ends, of loads, and dissipated, at the stages into `out` (3, 3).
 
-    And into `ends` (3, 2, 3) the velocities of the first and the last node, lab. `reference`: see `newton.step`.
+    And into `moved` (2, 6) by how much what holds start and end has moved (m) and turned (rad) along the axes of its
+    conditions, by the `weights` (3,) of the stages. `reference`: see `newton.step`.
     """
-    chain, loads, _, _, stages, _, _ = reference.records
-    N, by_loads = len(chain.mass), scratch(2)
+    chain, loads, driven, _, stages, _, _ = reference.records
+    N, by_loads, ends = len(chain.mass), scratch(2), scratch((3, 2, 3))
+    moved[:] = 0.0
     for i in range(STAGES):
         _end_velocities(chain, stages, i, ends[i])
+        _follow_end(driven, stages, i, 0, ends[i], weights[i], moved[0])
+        _follow_end(driven, stages, i, 1, ends[i], weights[i], moved[1])
         work, by_loads[0], by_loads[1] = 0.0, 0.0, 0.0
         for k in range(3):
             work += stages.F[i, N, k] * ends[i, 1, k] - stages.F[i, 0, k] * ends[i, 0, k]
@@ -83,6 +104,19 @@ def stage_powers(reference: Reference, ends: Array, out: Array) -> None:
         out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads[0], chain.h * by_loads[1]
         if is_viscous(chain.elastic):
             out[i, 2] += dissipated(chain, stages.omega[i], stages.bend[i])
+
+
+@kernel
+def stretch_of_ends(reference: Reference) -> float:
+    """By how much (m) a step ends with the ends stretched by their compliance; `reference`: see `newton.step`."""
+    _, _, driven, _, stages, _, _ = reference.records
+    F, R, (N, stretch) = stages.F[STAGES - 1], stages.R[STAGES - 1], (stages.F.shape[1] - 1, 0.0)
+    for side, node, frame in ((0, 0, 0), (1, N, N + 1)):
+        pull = 0.0
+        for k in range(3):
+            pull += F[node, k] * R[frame, k, 2]
+        stretch += driven.compliance[side] * abs(pull)
+    return stretch
 
 
 @kernel

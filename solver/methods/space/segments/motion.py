@@ -20,6 +20,7 @@ from typing import NamedTuple, no_type_check
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.copying import copy
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import abreast
@@ -148,6 +149,17 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
     if stretches(chain.elastic):
         open_joints(chain, state, stages, inverse, dt)
     return float(np.sqrt(largest))
+
+
+@inner
+def become(state: State, stages: Stages) -> None:
+    """Write the state at the last stage."""
+    copy(stages.quaternion[STAGES - 1], state.quaternion)
+    copy(stages.omega[STAGES - 1], state.omega)
+    copy(stages.alpha[STAGES - 1], state.alpha)
+    copy(stages.base[STAGES - 1], state.base)
+    copy(stages.F[STAGES - 1], state.F)
+    copy(stages.opening[STAGES - 1], state.opening)
 
 
 class Interpolation(NamedTuple):

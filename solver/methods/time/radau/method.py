@@ -19,14 +19,16 @@ from solver.methods.space.stages import Record
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Work, estimate_error, step
+from solver.methods.time.radau.next_step import Last, finish, go_on
 from solver.physics.elasticity import mean_bending
 from solver.physics.ends import DrivenEnd
 from solver.physics.section import Beside
 from solver.scene.scene import Scene
 
 SCHEME = Scheme(
-    tableau.C, tableau.INVERSE, tableau.TRANSFORM, tableau.BACK, tableau.GAMMA, tableau.LAMBDA, tableau.ERROR
-)
+    tableau.C, tableau.INVERSE, tableau.TRANSFORM, tableau.BACK, tableau.GAMMA, tableau.LAMBDA, tableau.ERROR,
+    tableau.TO_CUBIC, tableau.TO_PARABOLA,
+)  # fmt: skip
 NEWTON_PART = 1e-3
 """Of the tolerance of a step's error: what Newton's iteration may leave. (Nothing where steps are of fixed length.)"""
 FEEDBACK = 0.5
@@ -94,15 +96,10 @@ class RadauMethod(ABC):
 
     def take_step(self, t: float, dt: float) -> Array:
         """Make the trial the state; return the energy (4,) that flowed, by Radau's quadrature: see `Method`."""
-        stages, weights = self.stages, tableau.A[-1] * dt
+        weights = tableau.A[-1] * dt
         self._follow_ends(weights)
-        for name in self.trial._fields:
-            getattr(self.trial, name)[:] = getattr(stages, name)[-1]
+        finish(self._handed.reference, self.trial, self._centres, self._last)
         self.state, self.trial = self.trial, self.state
-        for mine, series in zip(self._centres, (stages.r, stages.V, stages.A), strict=True):
-            mine[:] = series[-1]
-        for kept, now in zip(self._last, (stages.theta, stages.shift, stages.F), strict=True):
-            kept[:] = now
         self._last_dt, self._step, self._ago = dt, dt, 0.0
         return self._flowed(weights)
 
@@ -154,13 +151,9 @@ class RadauMethod(ABC):
         """Write what is given at an end at the stages: `values` (3, 6) of its conditions, `dead` lab loads (3, 6)."""
 
     @abstractmethod
-    def _extrapolate(self, dt: float, weights: Array, theta: Array) -> None:
-        """Guess theta of the stages of a step of dt, by `weights` (3, 3) of that of the last one, `theta`."""
-
-    @abstractmethod
     def _follow_ends(self, weights: Array) -> None:
-        """Tell the ends how they moved in a step; write the power (W) of ends and loads, and what is dissipated,
-        at the stages into `_powers`."""
+        """Tell the ends how they moved in a step, by the `weights` (3,) of its stages; write the power (W) of ends and
+        loads, and what is dissipated, at the stages into `_powers`."""
 
     @abstractmethod
     def _interpolate(self, part: float, cubic: Array, parabola: Array) -> None:
@@ -215,7 +208,7 @@ class RadauMethod(ABC):
         )  # fmt: skip
         self._handed = Handed.over(*self._records)
         unknown = self.stages.theta, self.stages.shift, self.stages.F
-        self._last: tuple[Array, ...] = tuple(np.zeros_like(series) for series in unknown)
+        self._last = Last(*(np.zeros_like(series) for series in unknown))
         self._centres: NDArray[Any] = np.zeros_like(self.stages.r)
         """Positions, velocities and accelerations of the segments' centres, of the state."""
         self._within, self._centres_within = type(state).empty(N), np.zeros_like(self._centres)
@@ -233,13 +226,7 @@ class RadauMethod(ABC):
         """The motion of the last step goes on; after a start, that of the state."""
         stages, state = self.stages, self.state
         if self._last_dt > 0.0:
-            ratio = dt / self._last_dt
-            weights = tableau.extrapolation(ratio)
-            theta, shift, force = self._last
-            self._extrapolate(dt, weights, theta)
-            stages.shift[:] = weights @ shift - shift[-1]
-            by_stage = STAGES, -1
-            np.matmul(tableau.quadratic_extrapolation(ratio), force.reshape(by_stage), out=stages.F.reshape(by_stage))
+            go_on(self._hand_over(), self._last, self.trial, state, self._last_dt, dt)
             return
         tau = tableau.C * dt
         stages.theta[:] = np.multiply.outer(0.5 * tau**2, state.alpha)

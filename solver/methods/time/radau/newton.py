@@ -161,14 +161,6 @@ def step(reference: Reference, dt: float, unit: float, part: float, state: Recor
     return STALLED, LARGEST_ITERATIONS
 
 
-@kernel
-def move_guess(reference: Reference, dt: float, state: Record) -> None:
-    """Write how the first guess of a step of dt moves at all stages; `reference`: see `step`."""
-    chain, _, _, scheme, stages, _, _ = reference.records
-    begin_step(state, scheme.nodes, dt, stages)
-    move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
-
-
 @inner
 def shift_departure(shift: Array, base: Array, dt: float) -> float:
     """The largest component (m) of the start's departure from steady motion in a step; `shift` (3, ...) at the stages,

@@ -6,8 +6,6 @@ and one complex eigenvalue by TRANSFORM, and the embedded estimate of order 3 wi
 
 from __future__ import annotations
 
-from functools import lru_cache
-
 import numpy as np
 
 ROOT = np.sqrt(6.0)
@@ -63,15 +61,3 @@ def within(part: float) -> np.ndarray:
     them; of what may jump there, in the parabola through them; of rates, in what is gained until the end of the step.
     """
     return np.asarray(_WITHIN @ np.array([1.0, part, part * part, part * part * part]))
-
-
-@lru_cache(maxsize=8)
-def extrapolation(ratio: float) -> np.ndarray:
-    """(3, 3): values of the polynomial through (0, 0) and the stages at the stages of a next step `ratio` as long."""
-    return np.asarray(_cubic(1.0 + ratio * C) @ TO_CUBIC)
-
-
-@lru_cache(maxsize=8)
-def quadratic_extrapolation(ratio: float) -> np.ndarray:
-    """(3, 3): values of the parabola through the three stages at the stages of a next step `ratio` as long."""
-    return np.asarray(_parabola(1.0 + ratio * C) @ TO_PARABOLA)

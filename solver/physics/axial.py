@@ -9,6 +9,8 @@ See docs/decisions/0015-held-at-both-ends.md. A rod with a law of stretch (`phys
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 
 from solver.arrays import Array
@@ -70,10 +72,13 @@ def _holds(end: End) -> bool:
 
 def _path(end: End, r: Array, quaternion: Array, times: Array) -> Array:
     """Where an end is held (times, 3), as far as its first conditions say, along the axes that it has at t = 0."""
-    moved = np.array([[_moved(component, t) for component in end.translation] for t in times])
+    moved = np.stack([_moved(component, times) for component in end.translation], axis=1)
     return np.asarray(r + (moved if end.frame == "lab" else moved @ rotation_of(quaternion).T))
 
 
-def _moved(component: Component, t: float) -> float:
-    until = component[1].since if len(component) > 1 else t
-    return travel(component[0], min(t, until))
+def _moved(component: Component, times: Array) -> Array:
+    first = component[0]
+    if first.curve.is_zero:
+        return np.zeros_like(times)
+    until = component[1].since if len(component) > 1 else inf
+    return np.array([travel(first, min(t, until)) for t in times.tolist()])

@@ -34,7 +34,7 @@ def judge(motion: Motion) -> dict[str, Measured]:
 def runs() -> list[Run]:
     """By hockle and the peers."""
     boxes = [box(n, 1.0 / n, 0.9) for n in (10, 14, 20, 28, 40, 56, 80, 160)]
-    staggereds = [staggered(n, 1.0, 0.1) for n in (10, 20, 40, 80, 160)]
+    staggereds = [staggered(n, 1.0, 0.1) for n in (10, 14, 20, 28, 40, 56, 80, 160)]
     return [
         *hockle_runs(SCENE, boxes, staggereds, lambda numerics: judge(solve(CANTILEVER, numerics))),
         *peers(SCENE, CANTILEVER, judge, (10, 20, 30, 40, 60), (10, 20, 40)),

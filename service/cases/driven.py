@@ -20,10 +20,11 @@ BACK = 0.01
 @dataclass(frozen=True)
 class Driven:
     """How both ends are moved. `turned`: the largest rotation (rad) of one about itself relative to the other, where
-    both are prescribed; `moved`: whether one changes its place or leans; `to_and_fro`: whether one comes back;
-    `acceleration`: the largest (m/s^2) of an end, or of the rod's length where it leans."""
+    both are prescribed; `spun`: that of any; `moved`: whether one changes its place or leans; `to_and_fro`: whether one
+    comes back; `acceleration`: the largest (m/s^2) of an end, or of the rod's length where it leans."""
 
     turned: float
+    spun: float
     moved: bool
     to_and_fro: bool
     acceleration: float
@@ -34,13 +35,15 @@ class Driven:
         times = np.linspace(0.0, scene.t_end, TIMES)
         start, end = (_prescribed(e, times) for e in (scene.start, scene.end))
         turned = np.nan_to_num(np.abs(end[:, ABOUT_A3] - start[:, ABOUT_A3]))
+        spun = np.nan_to_num(np.abs([start[:, ABOUT_A3], end[:, ABOUT_A3]]))
         lengths = np.repeat([1.0, scene.rod.length], (3, 2))  # two rotations lean the rod
         places = np.hstack([np.nan_to_num(known[:, :ABOUT_A3]) * lengths for known in (start, end)])
         speeds = np.diff(places, axis=0) / times[1]
         fastest = np.abs(speeds).max(axis=0)
         there, back = ((sign * speeds > BACK * fastest).any(axis=0) for sign in (1.0, -1.0))
         return cls(
-            turned=float(turned.max()), moved=bool(fastest.any()), to_and_fro=bool((there & back).any()),
+            turned=float(turned.max()), spun=float(spun.max()), moved=bool(fastest.any()),
+            to_and_fro=bool((there & back).any()),
             acceleration=float(np.abs(np.diff(speeds, axis=0, prepend=0.0)).max() / times[1]),
         )  # fmt: skip
 

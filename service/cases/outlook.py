@@ -3,12 +3,12 @@
 A run whose motion the frames follow needs a few coarse meshes. One that is let go, loaded at once or thrown has waves
 that only short steps follow, and one that is wound up buckles and winds on: there the work grows until what may be
 spent is spent. The seconds of CPU time are about those of such scenes in `stress/plausible/bank.py`, of 40 to 60 frames
-each, at a tolerance of 1e-3, in the middle between the least and the most: fitted to the numbers 0 to 5 on an EPYC and
-on a Xeon that takes 1.5 times as long, and to 500 to 505; those of straight rods between two holds that fall, and of
-tows that turn, to 16 and 7 others. For how many they are right to a factor of 3 stands in
-`stress/results/plausible.md`. What else is known of a scene before it runs tells little more: a forest of trees over
-twenty of its numbers, fitted to 320 scenes, is right for 83 % of those of the bank that it has not seen, and the work
-of a run on the coarsest mesh besides, which `hockle validate` would have to compile kernels for, for 88 %.
+each, at a tolerance of 1e-3, in the middle between the least and the most: fitted to the numbers 0 to 11 and 500 to
+505 on an EPYC; those of straight rods between two holds that fall, and of tows that turn, to 16 and 7 others. For how
+many they are right to a factor of 3 stands in `stress/results/plausible.md`. What else is known of a scene before it
+runs tells little more: a forest of trees over twenty of its numbers, fitted to 320 scenes, is right for 83 % of those
+of the bank that it has not seen, and the work of a run on the coarsest mesh besides, which `hockle validate` would have
+to compile kernels for, for 88 %.
 """
 
 from __future__ import annotations
@@ -31,27 +31,32 @@ from solver.scene.curve import Vector
 from solver.scene.ends import End
 from solver.scene.layout import nodes_at_rest
 
-SLOWLY, RINGING = "slow in space", "undamped"
+RINGING = "undamped"
 SECONDS = {
-    "wound up": 12.0, "lies on itself": 12.0, "may spring onto itself": 4.0, "taut": 10.0,
-    "held straight and twisted": 3.5, "held straight and moved": 1.2, "held straight": 0.4,
-    "on a floor": 4.2, "slides as a whole": 0.12, "overdamped": 0.12,
-    "in space and moved or let go": 4.0, "flying freely": 0.12, "settling in space": 0.18, SLOWLY: 0.36,
-    "long and heavy in water": 0.8, "shaken in water": 0.45, "towed through water": 0.18, "in water": 0.36,
-    "in space and in water": 0.6, "moved in space and in water": 2.6,
-    "let go or loaded at once": 1.8, "let go and settling": 0.65, "let go gently": 0.5, "let go between pins": 0.9,
-    "snapping through": 5.0, RINGING: 0.25, "followed by the frames": 0.18,
+    "wound up": 12.0, "lies on itself": 12.0, "may spring onto itself": 3.5, "taut": 9.5,
+    "held straight and twisted": 2.6, "held straight and moved": 1.6, "held straight": 0.3,
+    "on a floor": 6.0, "slides as a whole": 0.1, "overdamped": 0.08, "overdamped and wound up": 2.2,
+    "in space and moved or let go": 3.2, "spun": 2.7, "flying freely": 0.11, "settling in space": 0.14,
+    "slow in space": 0.25, "long and heavy in water": 0.4, "shaken in water": 0.5, "towed through water": 0.17,
+    "in water": 0.25, "in space and in water": 0.45, "moved in space and in water": 2.2,
+    "let go or loaded at once": 1.4, "let go and settling": 1.0, "let go and settling between holds": 0.3,
+    "let go gently": 0.25, "let go between pins": 0.85,
+    "snapping through": 5.0, RINGING: 0.08, "followed by the frames": 0.11,
 }  # fmt: skip
-"""CPU seconds at a tolerance of 1e-3, by what moves the rod; what is slow in space with a first mesh of 16 intervals: a
-finer one costs the more; and undamped of FRAMES: what rings lasts through all of them."""
-STATIC, STATIC_START, STATIC_DOUBLED = 0.012, 15, 1.5
+"""CPU seconds at a tolerance of 1e-3, by what moves the rod; undamped of FRAMES: what rings lasts through all of them.
+"""
+STATIC, STATIC_START, STATIC_DOUBLED = 0.008, 30, 1.5
 """CPU seconds of a frame of a static analysis, how many frames the start counts for, and how many times more for every
 doubling of the first mesh."""
-DEARER = {"wound up": 4.0, "on solids": 4.0, "limp": 3.0, "stressed at the start": 2.5, "touching": 3.0}
+DEARER = {"wound up": 4.0, "on solids": 4.0, "limp": 3.0, "stressed at the start": 1.5, "touching": 3.0}
 """How many times more a static analysis takes."""
 FRAMES = 60
-TURN = 15.0
-"""Rotation (rad) of the ends relative to each other from which on a rod is taken to buckle and wind itself up."""
+GREENHILL = 8.987
+"""Torque, in EJ/L, at which a straight rod with clamped ends buckles (Greenhill 1883)."""
+WINDS = 1.3
+"""Torque, in that at which a rod buckles that is pulled as it is, from which on it is taken to wind itself up."""
+SPINS = 15.0
+"""Rotation (rad) of an end about itself, more than of the ends against each other, from which on a rod spins."""
 INTERVALS = 16
 SMALL, DRIVEN = 1e-3, 0.02
 """Moment, in EJ/L, that sets nothing moving; and that of the rod's inertia where its ends are moved."""
@@ -88,8 +93,6 @@ def likely_seconds(scene: Scene) -> float:
     if scene.analysis == "static":
         return _at_rest(scene)
     kind = kind_of(scene)
-    if kind == SLOWLY:
-        return SECONDS[kind] * 2.0 ** first_mesh(scene, pressed=False)
     if kind == RINGING:
         return SECONDS[kind] * max(scene.t_end / scene.output_interval / FRAMES, 1.0)
     return SECONDS[kind]
@@ -99,7 +102,8 @@ def _at_rest(scene: Scene) -> float:
     driven = Driven.of(scene)
     urged = Urged.of(scene, driven)
     dear = {
-        "wound up": driven.turned > TURN, "on solids": any(isinstance(load, solids.Given) for load in scene.loads),
+        "wound up": _winding(scene, driven) > WINDS,
+        "on solids": any(isinstance(load, solids.Given) for load in scene.loads),
         "limp": urged.weight_across > LIMP, "stressed at the start": urged.stress > STRESSED,
         "touching": scene.contact is not None,
     }  # fmt: skip
@@ -112,8 +116,8 @@ def kind_of(scene: Scene) -> str:
     driven, frequency = Driven.of(scene), _frequency(scene)
     urged = Urged.of(scene, driven)
     overdamped, held = scene.damping > MUCH * frequency, _is_held(scene.start) or _is_held(scene.end)
-    if driven.turned > TURN:
-        return "wound up"
+    if _winding(scene, driven) > WINDS:
+        return "overdamped and wound up" if overdamped else "wound up"
     if scene.contact is not None and urged.bent > TIED and not overdamped:
         return "lies on itself"
     if scene.contact is not None and (urged.stress > BOWED or (urged.bent > BOWED and not held)):
@@ -139,7 +143,9 @@ def kind_of(scene: Scene) -> str:
             return "in space and moved or let go"
         if not (urging or held):
             return "flying freely"
-        return "settling in space" if scene.damping > IN_SPACE * frequency else SLOWLY
+        if driven.spun - driven.turned > SPINS:
+            return "spun"
+        return "settling in space" if scene.damping > IN_SPACE * frequency else "slow in space"
     if scene.fluid is not None:
         if urged.weight > LIMP:
             return "long and heavy in water"
@@ -150,9 +156,12 @@ def kind_of(scene: Scene) -> str:
         gentle = max(urged.stress, urged.force) < SMALL and urged.weight < GENTLE and scene.damping > DAMPED * frequency
         if gentle:
             return "let go gently"
-        if distances(scene) is not None and not (_is_turned(scene.start) or _is_turned(scene.end)):
+        between_holds = distances(scene) is not None
+        if between_holds and not (_is_turned(scene.start) or _is_turned(scene.end)):
             return "let go between pins"
-        return "let go and settling" if scene.damping > SETTLING * frequency else "let go or loaded at once"
+        if scene.damping > SETTLING * frequency:
+            return "let go and settling between holds" if between_holds else "let go and settling"
+        return "let go or loaded at once"
     if distances(scene) is not None and urged.pushed > SNAPS * urged.bent:
         return "snapping through"
     return RINGING if scene.damping < UNDAMPED * frequency else "followed by the frames"
@@ -205,6 +214,18 @@ class Urged:
         return self.thrown or max(self.weight_across, self.stress, self.force) > SMALL
 
 
+def _winding(scene: Scene, driven: Driven) -> float:
+    """The torque of the ends' turning, if the rod stayed straight, over that at which it buckles: with a tension T, in
+    EJ/L^2, that is 2 sqrt(T + (GREENHILL / 2)^2) EJ/L."""
+    s = np.linspace(0.0, float(scene.rod.length), INTERVALS + 1)
+    bending, torsion = _mean(scene)[0], float(principal(elasticity_of(scene.rod, s))[:, 2].mean())
+    _, quaternion, _ = nodes_at_rest(scene.initial, s)
+    tangent = rotate(quaternion, np.tile([0.0, 0.0, 1.0], (len(quaternion), 1)))
+    pull = max(_along(scene.start, tangent[0], scene.t_end), _along(scene.end, tangent[-1], scene.t_end), 0.0)
+    bearable = 2.0 * np.sqrt(pull * scene.rod.length**2 / bending + 0.25 * GREENHILL**2)
+    return float(torsion / bending * driven.turned / bearable)
+
+
 def _is_braked(scene: Scene) -> bool:
     """Whether the rod is in a fluid that is not much lighter than it is itself."""
     section = sample(scene.rod, np.linspace(0.0, scene.rod.length, INTERVALS + 1))
@@ -255,3 +276,9 @@ def _across(end: End, tangent: Array) -> float:
     """The force (N) across the rod that is there at once at a free end."""
     loads = [c[0].curve.value(0.0) if c[0].kind == "load" else 0.0 for c in end.translation]
     return float(np.linalg.norm(np.cross(tangent, loads) if end.frame == "lab" else loads[:2]))
+
+
+def _along(end: End, tangent: Array, t: float) -> float:
+    """The force (N) along the rod at an end that it leaves free, at a time."""
+    loads = [c[0].curve.value(t) if c[0].kind == "load" else 0.0 for c in end.translation]
+    return float(tangent @ loads if end.frame == "lab" else loads[2])

@@ -14,6 +14,7 @@ from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
 from service.cases.extents import forces, largest, times, widest
 from service.cases.initial import Straight
+from service.cases.outlook import GREENHILL
 from service.cases.quantities import ProfileTable, ScheduleTable
 from service.cases.size import tables_in
 from service.cases.units import units_of
@@ -40,8 +41,6 @@ BESIDE, WITHIN = 8.0, 0.9
 """In D: how far along the rod places are neighbours; and how near others overlap."""
 JERK = 1e-3
 """Part of the largest speed that an end which is held may have at first: that of a rod which begins to swing."""
-GREENHILL = 8.987
-"""A straight rod with clamped ends buckles at the twist moment GREENHILL EJ/L (Greenhill 1883)."""
 
 
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:

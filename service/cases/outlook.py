@@ -86,6 +86,8 @@ DENSE = 0.05
 """Density of a fluid that brakes a rod, by the rod's."""
 FIRST_FREQUENCY = 3.516
 """Of a cantilever, in sqrt(EJ / mu) / L^2."""
+HANGING = 1.2024
+"""Of a chain that hangs, in sqrt(g / L): half the first zero of J0."""
 
 
 def likely_seconds(scene: Scene) -> float:
@@ -260,9 +262,10 @@ def _is_turned(end: End) -> bool:
 
 
 def _frequency(scene: Scene) -> float:
-    """The first angular frequency (rad/s) of the rod as a cantilever."""
-    stiffness, mass = _mean(scene)
-    return float(FIRST_FREQUENCY * np.sqrt(stiffness / mass) / scene.rod.length**2)
+    """The first angular frequency (rad/s) of the rod as a cantilever, or as a chain that hangs, the larger."""
+    (stiffness, mass), length = _mean(scene), float(scene.rod.length)
+    hanging = HANGING * np.sqrt(np.linalg.norm(scene.gravity) / length)
+    return float(max(FIRST_FREQUENCY * np.sqrt(stiffness / mass) / length**2, hanging))
 
 
 def _mean(scene: Scene) -> tuple[float, float]:

@@ -21,7 +21,7 @@ from solver.methods.linear.segments import Factors
 from solver.methods.linear.segments_contact import Coupling, place_nodes, show_last_stage
 from solver.methods.space import stages as space
 from solver.methods.space.segments import motion, stages
-from solver.methods.space.segments.balances import Driven, Motion, Tangents
+from solver.methods.space.segments.balances import Driven, Motion, Tangents, load_segments
 from solver.methods.space.segments.chain import Chain, Residuals, Stages, State
 from solver.methods.space.segments.energies import energies, stage_powers, stretch_of_ends, twist
 from solver.methods.space.segments.fields import bending_at_nodes, motion_at_nodes
@@ -85,6 +85,8 @@ class StaggeredMethod(RadauMethod):
         shift_segments(R, self.state.omega, self.state.alpha, self.state.opening, *self._centres)
         self._nodes, self._strain = np.zeros((2, N + 1, 3)), np.zeros(len(chain.elastic.compliance))
         self._place_nodes()
+        if self._ends_give:
+            self._bear_along()
         self._R_within = np.zeros_like(R)
         self._moved = np.zeros((2, 6))
         """By how much start and end moved and turned in the last step."""
@@ -121,6 +123,21 @@ class StaggeredMethod(RadauMethod):
             spin = np.array(scene.initial.angular_velocity, dtype=float)
             state.base[:] += np.stack([back, np.cross(spin, back), np.cross(spin, np.cross(spin, back))])
         state.opening[0], state.F[:] = e, rigid.state.F
+
+    def _bear_along(self) -> None:
+        """Let the state's forces bear what loads the rod along itself at t = 0, half at either end.
+
+        So its bar does at rest. Without them it would fall into its ends, and bounce on them.
+        """
+        stages, tangents = self.stages, self._R[:, :, 2]
+        self.applied.set_time(0.0)
+        stages.R[0], stages.omega[0] = self._R, self.state.omega
+        stages.r[0], stages.V[0] = self._centres[:2]
+        load_segments(self._handed.reference)
+        gained = np.sum(self.work.residuals.translation[0] * tangents[1:-1], axis=1)
+        pull = np.append(0.0, np.cumsum(gained))
+        between = np.concatenate([tangents[:1], 0.5 * (tangents[1:-2] + tangents[2:-1]), tangents[-1:]])
+        self.state.F[:] = (pull - 0.5 * pull[-1])[:, None] * between
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
         """Try to go from t to t + dt: see `RadauMethod`. What may come into contact is looked for first."""
@@ -210,6 +227,7 @@ class StaggeredMethod(RadauMethod):
         super().compile()
         self.contact.compile()
         measure_openings(self.chain, self._R, self.state.F, self._joints, np.zeros(0))
+        load_segments(self._handed.reference)
         if self.contact.present:
             self._guess_keeps_apart(1.0)
 

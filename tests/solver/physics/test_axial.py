@@ -95,3 +95,17 @@ def test_a_slack_rod_that_is_pulled_taut_stretches() -> None:
     *_, last = run
     assert last.f[:, 2].min() > 0.0
     assert run.attributes()["axial_stiffness"] == pytest.approx(EA)
+
+
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (0.6, 0.0, -0.8)])
+def test_a_straight_rod_between_clamps_bears_what_loads_it_along_from_the_start(direction: tuple[float, ...]) -> None:
+    """Half at either end, as its bar does: else it would bounce on it, and steps would follow that."""
+    gravity = tuple(9.81 * component for component in direction)
+    scene = held(End.clamp(), Initial.straight(direction=direction), gravity=gravity, damping=0.0)
+    run = simulate(scene)
+    frames = list(run)
+    weight = 9.81 * float(ROD.mass(np.zeros(1))[0]) * LENGTH
+    for frame in frames:
+        assert frame.f[:, 2] == pytest.approx(weight * (0.5 - run.s / LENGTH), abs=1e-9 * weight)
+        assert np.abs(frame.v).max() <= 1e-12
+    assert run.statistics.steps < 300

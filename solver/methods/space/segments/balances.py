@@ -19,6 +19,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.dispatch import variant
+from solver.kernels.handed import Reference
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.vectors import (
     add_matrix,
@@ -195,6 +196,13 @@ def balance_segments(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
         for k in range(3):
             out[k] += right[j, k] - left[j + 1, k]
     add_forces(loads, i, motion_at(stages, i), Balance(residuals.translation[i], residuals.rotation[i], h))
+
+
+@kernel
+def load_segments(reference: Reference) -> None:
+    """Write the residuals of all segments at the first stage, whose motion is known. `reference`: see `newton.step`."""
+    chain, loads, driven, _, stages, _, work = reference.records
+    balance_segments(chain, loads, driven, stages, work.residuals, 0)
 
 
 @kernel

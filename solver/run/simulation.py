@@ -126,6 +126,9 @@ class Simulation(Run):
             if outcome in FATAL or 0.5 * dt < self._control.smallest:
                 if consistent and outcome is Outcome.STEP_TOO_SMALL:
                     raise RunFailed(Outcome.NO_CONSISTENT_START, 0.0, 0, refusal)
+                crossed = "" if consistent else self._watch.see(self._accounts.frame(t))
+                if crossed:  # since the last frame, which may be why no step leads on from here
+                    outcome, refusal = Outcome.ROD_CROSSED_ITSELF, crossed
                 raise RunFailed(outcome, t, self.statistics.steps, refusal)
             self._control.rejected(dt)
             dt *= 0.5

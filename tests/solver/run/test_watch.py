@@ -8,8 +8,9 @@ from math import nan
 import numpy as np
 import pytest
 
-from solver import End, Frame, Initial, Numerics, Simulation
+from solver import Contact, End, Frame, Initial, Numerics, Outcome, RunFailed, Simulation
 from solver.measures.topology import writhe
+from solver.methods.status import STALLED
 from solver.run.remarks import Remarks
 from solver.run.watch import Watch
 from solver.scene.scene import Scene
@@ -85,3 +86,18 @@ def test_a_run_without_contact_goes_on_and_says_that_it_crossed() -> None:
     assert times[-1] == 1.0
     assert simulation.remarks.crossings == 1
     assert 0.0 < simulation.remarks.first_crossing <= 1.0
+
+
+@pytest.mark.parametrize(("jumped", "outcome"), [(4.0, Outcome.ROD_CROSSED_ITSELF), (0.0, Outcome.STEP_TOO_SMALL)])
+def test_a_run_that_fails_between_frames_says_if_the_rod_had_passed_through_itself(
+    monkeypatch: pytest.MonkeyPatch, jumped: float, outcome: Outcome
+) -> None:
+    run = Simulation(looped(Contact(), 0.0))
+    while run.advance() is None or run.t == 0.0:
+        pass
+    monkeypatch.setattr(run._method, "try_step", lambda *_: (STALLED, 1))
+    twist = run._method.twist()
+    monkeypatch.setattr(run._method, "twist", lambda: twist + jumped)
+    with pytest.raises(RunFailed) as failed:
+        list(run)
+    assert failed.value.outcome is outcome

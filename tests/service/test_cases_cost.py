@@ -125,6 +125,8 @@ TWISTED = {"shape": "straight", "direction": [0, 0, 1],
            "twist": {"s": [0, 1], "value": [0, 6.0], "interpolation": "linear"}}  # fmt: skip
 PINNED = {"ends__start": "pin", "ends__end": "pin", "initial": arc(1.0), "rod__kappa0": "initial",
           "loads__damping": 1.0}  # fmt: skip
+STRUCK = [{"s": 0.5, "force": [{"t": [0.0, 0.1, 0.2], "value": [0.0, 8.0 * STIFFNESS, 0.0],
+                                "interpolation": "linear"}, 0, 0]}]  # fmt: skip
 LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
 
 
@@ -135,7 +137,13 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"loads__gravity": [1e-3, 0, 0], "loads__damping": 0.1}, "let go gently"),
     ({"loads__gravity": LYING, "loads__damping": 1e3}, "overdamped"),
     ({"loads__gravity": ASKEW}, "in space and moved or let go"),
-    ({"loads__gravity": ASKEW, "loads__damping": 0.1}, "slow in space"),
+    ({"loads__gravity": ASKEW, "loads__damping": 0.1}, "swinging in space"),
+    ({"loads__gravity": [1e-3, 1e-3, 0], "loads__damping": 0.1}, "slow in space"),
+    ({"loads__gravity": [0.1, 0.1, 0], "loads__damping": 3.0}, "settling in space"),
+    ({"loads__gravity": [1e3, 1e3, 0], "loads__damping": 30.0}, "limp in space"),
+    ({"loads__point": STRUCK}, "struck"),
+    (SEA | {"loads__point": STRUCK}, "struck in water"),
+    ({"loads__point": []}, "still"),
     ({"loads__gravity": ASKEW, "loads__damping": 0.1, "ends__start": moved(x1=True, to=1.0)},
      "in space and moved or let go"),
     ({"loads__gravity": ASKEW, "loads__damping": 0.1, "loads__point": [{"s": 1.0, "force": [0.1 * STIFFNESS, 0, 0]}]},
@@ -147,7 +155,7 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"ends__start": "free", "loads__point": [], "initial__angular_velocity": [0, 5, 0]}, "flying freely"),
     ({"ends__end": moved(x3=True, to=0.01)}, "taut"),
     ({"ends__end": "clamp", "loads__gravity": LYING}, "taut"),
-    ({"ends__end": "clamp", "loads__gravity": LYING, "loads__damping": 1e3}, "held straight"),
+    ({"ends__end": "clamp", "loads__gravity": LYING, "loads__damping": 1e3}, "overdamped"),
     ({"loads__floor": {"stiffness": 1.0}}, "on a floor"),
     ({"loads__floor": {"stiffness": 1.0, "normal": [1, 0, 0]}, "ends__start": "free", "loads__point": []},
      "slides as a whole"),

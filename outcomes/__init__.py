@@ -66,7 +66,7 @@ class Outcome(StrEnum):
         "the rod bends or twists by more than half a turn from one node to the next, which no longer says how it "
         "lies",
         "use more intervals, with a tolerance a smaller one; or look for a load or an end that is far too strong for "
-        "the rod",
+        "the rod; a limp rope that whips needs damping, or a retardation_time",
         "solver",
     )
     ROD_STRETCHED = (

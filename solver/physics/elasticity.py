@@ -145,7 +145,7 @@ def elasticity_of(rod: Rod, s: Array) -> Elasticity:
         elif isinstance(law, Locking):
             locking = _of_law(law, s)
         elif isinstance(law, Viscosity):
-            time = _positive("time", "s", law.time(s))
+            time = _positive("time", "s", law.time(s)) + (time if len(time) else 0.0)
         else:
             raise TypeError(f"a law of elasticity must be of a kind that physics.elasticity knows, got {law!r}")
     by_tension = _coupled(g, compliance, K[:, 2, 2])

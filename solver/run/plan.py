@@ -17,11 +17,14 @@ from math import ceil, inf, log, sqrt
 from typing import NamedTuple
 
 from solver.outcome import Outcome
+from solver.run.artificial_viscosity import highest_grade
 from solver.run.series import Attempt, chosen, is_diagonal
 
 MADE, LOST = (tuple(Outcome).index(outcome) for outcome in (Outcome.ENERGY_MADE, Outcome.EQUILIBRIUM_LOST))
 """The outcome of a run whose steps, rather than its mesh, are the reason that it failed; and of a static analysis on
 what may be too coarse a mesh."""
+WAVES = tuple(tuple(Outcome).index(outcome) for outcome in (Outcome.MESH_TOO_COARSE, Outcome.STEP_TOO_SMALL))
+"""Outcomes of a run whose waves may be too short for its mesh."""
 FIRST_INTERVALS = 16
 """Of the coarsest mesh, or somewhat more: see `first_mesh`. The work is counted as if it were as many."""
 FIRST_STEPS = 0.5
@@ -48,16 +51,18 @@ MOST_WORK_AT_REST = 20.0 * MOST_WORK
 """Of a static analysis on one mesh, if none as coarse has come to its end: no waves can keep it from that."""
 FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
-LAST_PART = 2.5
-"""MOST_WORK that a run with the longest steps may take, where no other came to its end."""
 OVERDRAWN = 0.25
 """Part of MOST_WORK that an attempt may take beyond what was left for it, lest all of it be lost near its end."""
 PATIENCE, MOST_PATIENCE = 8.0, 2.5
 """How many times the work that is expected of it the first run on a second mesh, or with other steps, may take; and
 how many times MOST_WORK."""
-LOOSEST, AT_REST = -4, -9
-"""The longest steps that are tried: their error hardly counts; and what stands for those of a static analysis, which
-make no error and are no other when they are tried again."""
+LOOSEST, AT_REST = -2, -99
+"""The longest steps that are tried; numbers below stand for steps of such a length of a rod with an artificial
+viscosity, see `grade_of`. And what stands for those of a static analysis, which make no error and are no other when
+they are tried again."""
+DAMPED_PART, LAST_PART, STEEPER = 0.6, 2.0, 2
+"""Part of MOST_WORK that a run with artificial viscosity may take, and that the last ones may: after one that was slow,
+or of the highest grade; and by how many grades the next one has more where one was slow, rather than one."""
 SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
 BY_STEPS = 1.5
@@ -108,7 +113,16 @@ def intervals_of(mesh: int, first: int = FIRST_INTERVALS) -> int:
 
 def step_tolerance(steps: int, tolerance: float) -> float:
     """The largest error of a step relative to its motion."""
-    return FIRST_STEPS * sqrt(tolerance) / 4.0**steps
+    return FIRST_STEPS * sqrt(tolerance) / 4.0 ** max(steps, LOOSEST)
+
+
+def grade_of(steps: int) -> int | None:
+    """The grade of the rod's artificial viscosity, see `artificial_viscosity`; None where it has none."""
+    return LOOSEST - 1 - steps if AT_REST < steps < LOOSEST else None
+
+
+def _is_damped(attempt: Attempt | Trial) -> bool:
+    return grade_of(attempt.steps) is not None
 
 
 def strides_of(tolerance: float, steps: int = 0) -> int:
@@ -136,12 +150,16 @@ def longest_step(steps: int, interval: float) -> float:
 
 
 def allowance(history: Sequence[Attempt], trial: Trial) -> float:
-    """The work that an attempt may take before it is given up as slow."""
-    complete = [attempt for attempt in history if attempt.complete]
+    """The work that an attempt may take before it is given up as slow. With viscosity those without it do not count."""
+    complete = [attempt for attempt in history if attempt.complete and _is_damped(attempt) == _is_damped(trial)]
     if trial.steps == AT_REST and all(trial.mesh < attempt.mesh for attempt in complete):
         return MOST_WORK_AT_REST
     if not complete:
-        return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else LAST_PART)
+        if not _is_damped(trial):
+            return MOST_WORK * FIRST_PART
+        last = any(attempt.slow and _is_damped(attempt) for attempt in history)
+        last = last or grade_of(trial.steps) == highest_grade(intervals_of(trial.mesh))
+        return MOST_WORK * (LAST_PART if last else DAMPED_PART)
     remaining = MOST_WORK - _work(history)
     meshes = {attempt.mesh for attempt in complete}
     if len(complete) == 1 or (len(meshes) == 1 and trial.mesh not in meshes):
@@ -196,12 +214,18 @@ def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_inter
         return
     meshes = {attempt.mesh for attempt in complete}
     if len(meshes) == 1 and history[-1].slow and _work(history) > MOST_WORK:
-        return  # what was to tell the error took far longer than what it is the error of
+        # what was to tell the error took far longer than what it is the error of, or had too many waves
+        if any(attempt.outcome in WAVES for attempt in history):
+            yield _more_damped(history[-1])
+        return
+    if _is_damped(_finest(complete)) and all(excess.mesh == inf for excess in errors):
+        yield from _second_damped(history, _finest(complete), most_intervals)
+        return
     if len(complete) == 1 and complete[0].steps != AT_REST:
         mesh, steps = complete[0].mesh, complete[0].steps
         if _is_for(history, Trial(mesh, steps + 1), most_intervals):
             yield Trial(mesh, steps + 1)
-        yield Trial(max(mesh - 1, 0), steps - 1)  # if it can, the last one is to tell all
+        yield Trial(max(mesh - 1, 0), max(steps - 1, LOOSEST))  # if it can, the last one is to tell all
     if len(meshes) == 1:
         yield from _second_mesh(history, complete, errors, most_intervals)
         return
@@ -249,8 +273,45 @@ def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], errors
         finer = Trial(finer.mesh, steps[-2])
     if mesh > 0 and not _is_for(history, finer, most_intervals):
         yield Trial(mesh - 1, steps[-1])
-    once = finer.mesh == mesh + 1 and intervals_of(finer.mesh) <= most_intervals
-    yield finer if once else _beyond_failures(history, most_intervals)
+    if finer.mesh == mesh + 1 and intervals_of(finer.mesh) <= most_intervals:
+        yield finer
+    if beyond := _beyond_failures(history, most_intervals):
+        yield beyond
+    failed = [attempt for attempt in history if not attempt.complete and attempt.mesh > mesh]
+    if failed:
+        yield _more_damped(failed[-1])
+
+
+def _second_damped(history: Sequence[Attempt], finest: Attempt, most_intervals: int) -> Iterator[Trial]:
+    """A finer mesh, whose waves are damped less, or else a coarser one, to tell what the mesh and the viscosity change;
+    where that needs more viscosity than the `finest` has, the finest with as much. At last a finer one in any case."""
+    complete = {(attempt.mesh, attempt.steps) for attempt in history if attempt.complete}
+    if _is_for(history, Trial(finest.mesh + 1, finest.steps), most_intervals):
+        yield Trial(finest.mesh + 1, finest.steps)
+    for mesh in (finest.mesh - 1, finest.mesh + 1):
+        for trial in _with_grades(mesh, finest.steps, most_intervals):
+            yield trial
+            if trial in complete:
+                yield Trial(finest.mesh, trial.steps)
+                return
+
+
+def _with_grades(mesh: int, steps: int, most_intervals: int) -> list[Trial]:
+    """On a mesh, if there is one, with as much viscosity as `steps` say and more."""
+    if not 0 <= mesh or intervals_of(mesh) > most_intervals:
+        return []
+    return [Trial(mesh, more) for more in range(steps, LOOSEST - 2 - highest_grade(intervals_of(mesh)), -1)]
+
+
+def _more_damped(last: Attempt) -> Trial | None:
+    """After a motion that had waves which are too short, or too many; none has more viscosity than there may be."""
+    if last.steps == AT_REST or not (last.slow or last.outcome in WAVES or _is_damped(last)):
+        return None
+    grade, highest = grade_of(last.steps), highest_grade(intervals_of(last.mesh))
+    if grade == highest:
+        return None
+    higher = 0 if grade is None else min(grade + (STEEPER if last.slow else 1), highest)
+    return Trial(last.mesh, LOOSEST - 1 - higher)
 
 
 def _beyond_failures(history: Sequence[Attempt], most_intervals: int) -> Trial | None:
@@ -258,7 +319,8 @@ def _beyond_failures(history: Sequence[Attempt], most_intervals: int) -> Trial |
     came to their end by being farther from the motion."""
     last = history[-1]
     finer = Trial(last.mesh + 1, last.steps)
-    return finer if not last.complete and not last.slow and _is_for(history, finer, most_intervals) else None
+    wanted = not (last.complete or last.slow or _is_damped(last))
+    return finer if wanted and _is_for(history, finer, most_intervals) else None
 
 
 def _steps_are_dear(complete: Sequence[Attempt], errors: Sequence[Excess]) -> bool:
@@ -273,6 +335,8 @@ def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Tr
     other steps there would be two of them."""
     mesh, steps = Trial(best.mesh + 1, best.steps), Trial(best.mesh, best.steps + 1)
     both = Trial(best.mesh + 1, best.steps + 1)
+    if grade_of(steps.steps) is None and _is_damped(best):  # without viscosity it did not come to its end
+        return [mesh]
     alone = [mesh, steps] if excess.mesh >= excess.steps else [steps, mesh]
     alike = chain < 3 and excess.mesh <= FAR * excess.steps
     diagonal = diagonal and excess.steps > STEP_SHARE
@@ -283,14 +347,16 @@ def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Tr
 
 def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> Trial | None:
     last = history[-1]
-    if last.slow:
-        return Trial(last.mesh, max(last.steps - 2, LOOSEST)) if last.steps > LOOSEST else None
+    if last.slow and last.steps > LOOSEST:
+        return Trial(last.mesh, last.steps - 2)
+    if last.slow or _is_damped(last):
+        return _more_damped(last)
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
     branch_ends = last.steps == AT_REST and len(failed) > 3 and (last.outcome != LOST or last.t > 0.0)
     same = same and (branch_ends or _work(history) > ENOUGH * MOST_WORK)  # a rope may be too limp for coarse meshes
-    if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > LAST_PART * MOST_WORK:
-        return None
+    if same or intervals_of(last.mesh + 1) > most_intervals or _work(history) > MOST_WORK:
+        return _more_damped(last)
     if last.outcome == MADE and not any(attempt.mesh == last.mesh for attempt in failed[:-1]):
         return Trial(last.mesh, last.steps + 1)
     return Trial(last.mesh + 1, last.steps)

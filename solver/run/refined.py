@@ -17,6 +17,7 @@ from solver.arrays import Array
 from solver.measures.frame import Frame
 from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
+from solver.run.artificial_viscosity import with_viscosity
 from solver.run.first_mesh import first_intervals, first_mesh
 from solver.run.plan import (
     AT_REST,
@@ -24,6 +25,7 @@ from solver.run.plan import (
     Excess,
     Trial,
     allowance,
+    grade_of,
     longest_step,
     next_trial,
     step_tolerance,
@@ -93,8 +95,8 @@ class Refined(Run):
 
     @property
     def chosen(self) -> Scene:
-        """A scene whose verified run has the two finest meshes of this one, and steps like these."""
-        together = self._together
+        """A scene whose verified run has the two finest meshes of this one, and steps and viscosity like these."""
+        together, rod = self._together, self._scene.rod
         steps, intervals = together.finest.steps, len(together.s) - 1
         tolerance = self._scene.numerics.tolerance or 1.0
         numerics = replace(
@@ -102,7 +104,10 @@ class Refined(Run):
             dt_max=longest_step(steps, self._scene.output_interval), strides=strides_of(tolerance, steps),
             increment_tolerance=step_tolerance(steps, tolerance),
         )  # fmt: skip
-        return replace(self._scene, numerics=numerics)
+        grade = grade_of(steps)
+        if grade is not None:
+            rod = with_viscosity(rod, intervals, grade)
+        return replace(self._scene, rod=rod, numerics=numerics)
 
     @property
     def accuracy(self) -> Accuracy | None:

@@ -16,8 +16,9 @@ class Remarks:
     `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
     it has to stretch, see `physics.axial`; `end_stretch` (m): how far both ends together were away from where
     they are held, at the most, at a frame. `energy_lost`: energy that went nowhere, over the largest
-    that motion, strain and contact ever had, if that is more than a tenth. `turning_loads`: frames of a static
-    analysis in which forces turned with the rod.
+    that motion, strain and contact ever had, if that is more than a tenth. `retardation_time` (s): of the rod's
+    material, with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`:
+    frames of a static analysis in which forces turned with the rod.
     """
 
     crossings: int = 0
@@ -29,6 +30,7 @@ class Remarks:
     axial_stiffness: float = 0.0
     end_stretch: float = 0.0
     energy_lost: float = 0.0
+    retardation_time: float = 0.0
     turning_loads: int = 0
 
     def stretched(self, by: float) -> None:
@@ -66,6 +68,12 @@ class Remarks:
             sentences.append(
                 f"Energy went nowhere, {self.energy_lost:.0%} of the largest that the rod's motion and strain had: the "
                 "steps are too long for the waves that had it."
+            )
+        if self.retardation_time:
+            sentences.append(
+                "The rod by itself bends too sharply for any mesh that was tried, or has too many waves: its material "
+                f"was made to resist bending, with a retardation time of {self.retardation_time:.3g} s, which damps "
+                "short waves."
             )
         if self.axial_stiffness:
             sentences.append(

@@ -21,6 +21,8 @@ CLEAN = 0.1
 LEFT, LEFT_IF_CLEAN = 1.0 / 3.0, 2.0 / 15.0
 """Part of the change from one extrapolated solution to the next that is left: as order 2 would leave it; and twice what
 order 4 would, where order 2 shows in the meshes. Three such errors are more than the third."""
+DAMPED = 2.5
+"""How many times the difference of two meshes the error is, where viscosity damps the motion: see `unextrapolated`."""
 LEAST, LEAST_IF_CLEAN = 0.02, 0.005
 """Part of the finest mesh's own error that the extrapolated one is never told to be below; and where order 2 shows."""
 
@@ -58,6 +60,16 @@ def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, 
     left = np.clip(1.0 / np.maximum(fall - 1.0, 1e-3), 1.0 / (ratios[1] ** 2 - 1.0), 1.0)
     errors = nowhere_small(settled, nodes), nowhere_small(left * np.abs(apart[1]), nodes)
     return fine + np.where(believed, correction, 0.0), np.where(believed, *errors)
+
+
+def unextrapolated(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, Array]:
+    """The same of meshes on which an artificial viscosity damps the motion: its waves do not converge as a power of h,
+    so the solution is that of the finest, and in error by `DAMPED` times what it differs from the one before."""
+    fine = meshes[-1]
+    if not ratios:
+        return fine, np.full_like(fine, np.nan)
+    step = ratios[-1] if fine.shape[1] > 1 else 1
+    return fine, nowhere_small(DAMPED * np.abs(fine[:, ::step] - meshes[-2]), fine.shape[1])
 
 
 def error_of_steps(series: Sequence[Array], shorter: bool, nodes: int) -> Array:

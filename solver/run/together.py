@@ -12,7 +12,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, excess, sizes
 from solver.run.first_mesh import first_intervals
-from solver.run.plan import FAR_FROM_IT, WORTH, Excess, intervals_of, step_tolerance
+from solver.run.plan import FAR_FROM_IT, WORTH, Excess, grade_of, intervals_of, step_tolerance
 from solver.run.recording import (
     BALANCE,
     CURVATURE,
@@ -32,7 +32,7 @@ from solver.run.recording import (
     number,
     number_of,
 )
-from solver.run.richardson import alike, error_of_steps, extrapolate
+from solver.run.richardson import alike, error_of_steps, extrapolate, unextrapolated
 from solver.run.series import Attempt, chosen, is_diagonal, step_series
 from solver.run.verify import VerifiedFrame, of_waves, unseen
 from solver.scene.scene import Scene
@@ -214,7 +214,8 @@ class Together:
             meshes.insert(0, Columns(longer.along + along[:, ::2], longer.numbers + numbers))
             doubled.insert(0, doubled[0] - 1)
         ratios = [2 ** (b - a) for a, b in pairwise(doubled)]
-        values, errors = zip(*(extrapolate(series, ratios) for series in zip(*meshes, strict=True)), strict=True)
+        combine = extrapolate if grade_of(self.finest.steps) is None else unextrapolated
+        values, errors = zip(*(combine(series, ratios) for series in zip(*meshes, strict=True)), strict=True)
         along = finest.along + (values[0] - meshes[-1].along)
         numbers = finest.numbers + (values[1] - meshes[-1].numbers)
         if not judged:

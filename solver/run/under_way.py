@@ -7,11 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 from solver.measures.frame import Frame, Statistics
+from solver.run.artificial_viscosity import retardation_time, with_viscosity
 from solver.run.checkpoint import Saved, restore, saved
 from solver.run.equilibria import Equilibria
 from solver.run.first_mesh import first_intervals
 from solver.run.plan import (
     Trial,
+    grade_of,
     intervals_of,
     longest_step,
     step_tolerance,
@@ -44,11 +46,15 @@ class UnderWay:
             dt_max=longest_step(trial.steps, scene.output_interval), strides=strides_of(tolerance, trial.steps),
             small_motion=SMALL_MOTION, increment_tolerance=step_tolerance(trial.steps, tolerance),
         )  # fmt: skip
-        resolved = replace(scene, numerics=numerics)
+        resolved, grade = replace(scene, numerics=numerics), grade_of(trial.steps)
+        if grade is not None:
+            resolved = replace(resolved, rod=with_viscosity(scene.rod, intervals, grade))
         self.run: Simulation | Equilibria = (
             Equilibria(resolved, self.statistics) if scene.at_rest
             else Simulation(resolved, self.statistics, goes_on=True)
         )  # fmt: skip
+        if grade is not None:
+            self.run.remarks.retardation_time = retardation_time(resolved.rod)
 
     def advance(self) -> Frame | None:
         """Take a step; give the frame where it ends, if one is due there. Raises RunFailed."""

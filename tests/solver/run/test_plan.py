@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from solver.run.plan import (
+    AT_REST,
     FAR_FROM_IT,
     MADE,
     MOST_PATIENCE,
     MOST_WORK,
+    WAVES,
     Excess,
     Trial,
     allowance,
@@ -29,16 +31,16 @@ def ran(mesh: int, steps: int, work: float = SMALL) -> Attempt:
     return Attempt(mesh, steps, work, 1.0, complete=True, slow=False)
 
 
-def failed(mesh: int, t: float, work: float = SMALL) -> Attempt:
-    return Attempt(mesh, 0, work, t, complete=False, slow=False, outcome=3)
+def failed(mesh: int, t: float, work: float = SMALL, steps: int = 0) -> Attempt:
+    return Attempt(mesh, steps, work, t, complete=False, slow=False, outcome=WAVES[0])
 
 
-def made(mesh: int, steps: int) -> Attempt:
-    return Attempt(mesh, steps, SMALL, 0.8, complete=False, slow=False, outcome=MADE)
+def made(mesh: int, steps: int, work: float = SMALL) -> Attempt:
+    return Attempt(mesh, steps, work, 0.8, complete=False, slow=False, outcome=MADE)
 
 
-def slow(mesh: int, steps: int) -> Attempt:
-    return Attempt(mesh, steps, SMALL, 0.1, complete=False, slow=True)
+def slow(mesh: int, steps: int, work: float = SMALL) -> Attempt:
+    return Attempt(mesh, steps, work, 0.1, complete=False, slow=True)
 
 
 @pytest.mark.parametrize(
@@ -63,15 +65,26 @@ def slow(mesh: int, steps: int) -> Attempt:
         ([made(0, 0)], Excess(), Trial(0, 1)),  # shorter steps first
         ([made(0, 0), made(0, 1)], Excess(), Trial(1, 1)),
         ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2)], Excess(), Trial(3, 0)),
-        ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2, 0.6 * MOST_WORK)], Excess(), None),
+        ([failed(0, 0.5), failed(1, 0.2), failed(2, 0.2, 0.6 * MOST_WORK)], Excess(), Trial(2, -3)),  # with viscosity
+        ([failed(0, 0.5), failed(1, 0.2), made(2, 0), made(2, 1, 2 * MOST_WORK)], Excess(), None),
+        ([failed(0, 0.5, steps=AT_REST), failed(1, 0.5, 2 * MOST_WORK, AT_REST)], Excess(), None),  # what rests, rests
         ([slow(0, 0)], Excess(), Trial(0, -2)),
-        ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK)], Excess(), Trial(1, -5)),
-        ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK), ran(1, -5)], Excess(9.0, 9.0), None),
-        ([slow(2, 0), slow(2, -2), ran(2, -4, 3 * MOST_WORK), ran(2, -5)], Excess(inf, 9.0), Trial(1, -4)),
-        ([ran(2, -4, 3 * MOST_WORK), ran(2, -5), ran(1, -4)], Excess(9.0, 9.0), None),
+        ([slow(0, 0), slow(0, -2)], Excess(), Trial(0, -3)),
+        ([slow(0, 0), slow(0, -2), failed(0, 0.5, steps=-3)], Excess(), Trial(0, -4)),
+        ([slow(0, 0), slow(0, -2), slow(0, -3)], Excess(), Trial(0, -5)),
+        ([slow(0, -4)], Excess(), Trial(0, -5)),  # the highest grade that a mesh may have
+        ([failed(0, 0.5, steps=-5)], Excess(), None),
+        ([slow(2, -2), ran(2, -3)], Excess(), Trial(3, -3)),
+        ([slow(2, -2), ran(2, -3), failed(3, 0.2, steps=-3)], Excess(), Trial(1, -3)),
+        ([slow(2, -2), ran(2, -3, MOST_WORK)], Excess(), Trial(1, -3)),
+        ([ran(2, -3, MOST_WORK), failed(1, 0.2, steps=-3)], Excess(), Trial(1, -4)),
+        ([ran(2, -3, MOST_WORK), failed(1, 0.2, steps=-3), ran(1, -4)], Excess(), Trial(2, -4)),
+        ([ran(2, -3), ran(3, -3)], Excess(9.0), Trial(4, -3)),  # and never without again
+        ([ran(2, -3), ran(3, -3, MOST_WORK)], Excess(9.0), None),
         ([ran(0, 0), ran(0, 1), failed(1, 0.2)], Excess(inf, 0.1), Trial(2, 0)),
         ([ran(0, 0), ran(0, 1), failed(1, 0.2), failed(2, 0.2), failed(3, 0.2)], Excess(inf, 0.1), Trial(4, 0)),
-        ([ran(0, 0), ran(0, 1), failed(1, 0.2), failed(2, 0.2, MOST_WORK)], Excess(inf, 0.1), None),
+        ([ran(0, 0), ran(0, 1), failed(1, 0.2), failed(2, 0.2, MOST_WORK)], Excess(inf, 0.1), Trial(2, -3)),
+        ([ran(0, 0), ran(0, 1), failed(1, 0.2), slow(2, 0, MOST_WORK)], Excess(inf, 0.1), Trial(2, -3)),
         ([ran(0, 0), ran(0, 1), ran(1, 0), failed(2, 0.2)], Excess(9.0, 0.1), Trial(3, 0)),
     ],
 )
@@ -164,9 +177,9 @@ def test_an_error_of_exactly_nothing_wants_no_more_work() -> None:
 
 
 def test_where_what_is_to_tell_the_error_takes_far_too_long_nothing_else_is_tried() -> None:
-    first, second = ran(2, -4, 1.5 * MOST_WORK), slow(1, -5)._replace(work=MOST_WORK)
-    assert next_trial([first], [Excess()], 2000) == Trial(1, -5)
-    assert allowance([first], Trial(1, -5)) == MOST_PATIENCE * MOST_WORK
+    first, second = ran(2, -2, 1.5 * MOST_WORK), slow(1, -2)._replace(work=MOST_WORK)
+    assert next_trial([first], [Excess()], 2000) == Trial(1, -2)
+    assert allowance([first], Trial(1, -2)) == MOST_PATIENCE * MOST_WORK
     assert next_trial([first, second], [Excess()], 2000) is None
 
 

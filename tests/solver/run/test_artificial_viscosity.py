@@ -1,0 +1,78 @@
+"""A limp rope that whips more sharply than any mesh shows has an answer: its shortest waves are damped."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solver import Curve, End, Initial, Numerics, Rod, Scene, VerifiedFrame, simulate
+from solver.physics.elasticity import Viscosity, elasticity_of
+from solver.run.artificial_viscosity import highest_grade, retardation_time, with_viscosity
+from solver.run.plan import LOOSEST, Trial, grade_of
+from solver.run.refined import Refined
+
+ROPE = Rod.circular(length=1.0, diameter=5e-3, youngs_modulus=2.1e5, shear_modulus=8e4, density=1000.0)
+"""Its weight times L^3 is 30,000 times its bending stiffness."""
+MASS, EJ = (float(profile(np.zeros(1))[0]) for profile in (ROPE.mass, ROPE.stiffness[0]))
+
+
+def let_go() -> Scene:
+    """From the horizontal, at a pin, without damping."""
+    level = Initial.straight(direction=(1.0, 0.0, 0.0))
+    return Scene(ROPE, level, End.pin(), End.free(), t_end=4.0, output_interval=0.1, gravity=(0.0, 0.0, -9.81),
+                 numerics=Numerics("staggered", tolerance=1e-3))  # fmt: skip
+
+
+def test_the_retardation_time_falls_with_the_square_of_an_interval_and_grows_by_grades() -> None:
+    for intervals, grade in ((16, 0), (64, 0), (64, 2)):
+        time = retardation_time(with_viscosity(ROPE, intervals, grade))
+        assert time == pytest.approx(8.0**grade / intervals**2 * np.sqrt(MASS / EJ))
+
+
+def test_it_comes_on_top_of_the_rods_own() -> None:
+    own = replace(ROPE, laws=(Viscosity(Curve.constant(0.1)),))
+    both = with_viscosity(own, 64, 0)
+    added = retardation_time(with_viscosity(ROPE, 64, 0))
+    assert retardation_time(both) == pytest.approx(0.1 + added)
+    s = np.linspace(0.0, 1.0, 5)
+    elastic = elasticity_of(both, s)
+    np.testing.assert_allclose(elastic.viscosity, (0.1 + added) * elastic.K, rtol=1e-12)
+
+
+@pytest.mark.parametrize("intervals", [16, 20, 64, 128, 512, 1024])
+def test_waves_as_long_as_the_rod_are_hardly_damped(intervals: int) -> None:
+    def longest(grade: int) -> float:
+        return retardation_time(with_viscosity(ROPE, intervals, grade)) / float(np.sqrt(MASS / EJ))
+
+    assert longest(highest_grade(intervals)) <= 0.25 < longest(highest_grade(intervals) + 1)
+
+
+def test_a_limp_rope_that_is_let_go_has_an_answer_with_its_errors_and_says_what_was_done_to_it() -> None:
+    run = simulate(let_go())
+    assert isinstance(run, Refined)
+    frames = [frame for frame in run if isinstance(frame, VerifiedFrame)]
+    assert frames[-1].t == 4.0
+    assert run.accuracy is not None and np.isfinite(list(run.accuracy.errors.values())).all()
+    assert 1e-3 < run.accuracy.errors["r"] < 1.0
+    attributes = run.attributes()
+    assert any(f"retardation time of {attributes['retardation_time']:.3g} s" in note for note in run.notes())
+    # it swings, and what the viscosity takes is told as dissipated
+    assert min(frame.r[-1, 2] for frame in frames) < -0.5
+    assert abs(frames[-1].energy_balance) < 0.05 * frames[-1].dissipation
+    assert run.chosen.rod.laws
+
+
+def test_a_rope_that_meshes_can_show_is_left_as_it_is() -> None:
+    scene = replace(let_go(), rod=replace(ROPE, stiffness=(Curve.constant(100.0 * EJ),) * 3), damping=3.0)
+    run = simulate(scene)
+    assert isinstance(run, Refined)
+    list(run)
+    assert "retardation_time" not in run.attributes()
+    assert not run.chosen.rod.laws
+
+
+def test_only_steps_longer_than_the_longest_stand_for_viscosity() -> None:
+    assert [grade_of(LOOSEST - more) for more in range(4)] == [None, 0, 1, 2]
+    assert grade_of(Trial(3, 1).steps) is None

@@ -9,6 +9,7 @@ from numpy.random import Generator
 from stress.plausible.parts import GRAVITY, Drawn, Part, arc, case, curve, harmonic, log, ramp, straight, water
 
 ANY = ("steel", "carbon", "glass fibre", "nylon", "rubber")
+LIMP = ("silicone", "rubber", "polypropylene")
 
 
 def towed(rng: Generator) -> Part:
@@ -119,6 +120,44 @@ def swing(rng: Generator) -> Part:
                 loads={"gravity": GRAVITY})  # fmt: skip
 
 
+def rope(rng: Generator) -> Part:
+    """A limp rope that is let go: from the horizontal, or out of an arc one end of which is cut."""
+    d = Drawn(rng, LIMP, (0.5, 30.0), (1e-3, 1e-2))
+    shape = straight(1, 0, 0) if rng.random() < 0.5 else curve(arc(d.L, log(rng, 0.5, 2.5)), a1=[0.0, 1.0, 0.0])
+    return case("rope", d.rod, shape, ("pin", "free"), log(rng, 1.0, 5.0) * 2.0 * pi * sqrt(d.L / 9.81), 50,
+                loads={"gravity": GRAVITY, "damping": _little(rng) * sqrt(9.81 / d.L)})  # fmt: skip
+
+
+def rope_struck(rng: Generator) -> Part:
+    """A limp rope that hangs and is struck."""
+    d = Drawn(rng, LIMP, (0.5, 30.0), (1e-3, 1e-2))
+    t_end = log(rng, 1.0, 5.0) * 2.0 * pi * sqrt(d.L / 9.81)
+    blow = _blow(0.02 * t_end, log(rng, 0.3, 3.0) * d.mass * 9.81 * d.L, t_end)
+    loads = {"gravity": GRAVITY, "damping": _little(rng) * sqrt(9.81 / d.L),
+             "point": [{"s": d.L * log(rng, 0.3, 1.0), "force": [0.0, blow, 0.0]}]}  # fmt: skip
+    return case("rope-struck", d.rod, straight(0, 0, -1), ("pin", "free"), t_end, 50, loads=loads)
+
+
+def struck(rng: Generator) -> Part:
+    """A bar that is clamped at one end, or floats, and is struck."""
+    d = Drawn(rng, ANY, (0.1, 2.0), (5e-3, 2e-2))
+    held, t_end = "clamp" if rng.random() < 0.7 else "free", 3.0 * d.period
+    blow = _blow(log(rng, 0.02, 0.1) * d.period, log(rng, 0.3, 5.0) * d.EJ / d.L**2, t_end)
+    return case("struck", d.rod, straight(1, 0, 0), (held, "free"), t_end,
+                loads={"damping": _little(rng) / d.period,
+                       "point": [{"s": d.L * log(rng, 0.3, 1.0), "force": [0.0, blow, 0.0]}]})  # fmt: skip
+
+
+def _little(rng: Generator) -> float:
+    """Damping per time, as often as not none."""
+    return 0.0 if rng.random() < 0.5 else log(rng, 0.02, 0.3)
+
+
+def _blow(until: float, force: float, t_end: float) -> Part:
+    """A force that rises to its most and is gone again."""
+    return {"t": [0.0, 0.5 * until, until, t_end], "value": [0.0, force, 0.0, 0.0], "interpolation": "linear"}
+
+
 def string(rng: Generator) -> Part:
     """A tight string that is plucked."""
     d = Drawn(rng, ("steel", "nylon"), (0.3, 1.0), (6e-4, 2e-3))
@@ -153,5 +192,5 @@ def thrown(rng: Generator) -> Part:
     return case("thrown", rod, shape, ("free", "free"), 4.0 * d.period, loads={"gravity": GRAVITY})
 
 
-KINDS = (towed, umbilical, deep_sea, whirled, dropped, suture, whip, resonance, released, shaft, swing, string,
-         fishing_rod, thrown)  # fmt: skip
+KINDS = (towed, umbilical, deep_sea, whirled, dropped, suture, whip, resonance, released, shaft, swing, rope,
+         rope_struck, struck, string, fishing_rod, thrown)  # fmt: skip

@@ -42,6 +42,17 @@ def column(rng: Generator) -> Part:
                 loads={"damping": 1.0 / d.period, "point": [seed]})  # fmt: skip
 
 
+def mast(rng: Generator) -> Part:
+    """A straight rod that stands or hangs between its ends under its own weight, and is pushed at its middle."""
+    d = Drawn(rng, ANY, (0.1, 10.0), (3e-3, 2e-2))
+    weight = d.mass * min(9.81, log(rng, 1.0, 15.0) * d.EJ / (d.mass * d.L**3))  # below that of its buckling, mostly
+    push = {"s": 0.5 * d.L, "force": [ramp(0.0, 3.0 * d.period, log(rng, 0.1, 3.0) * d.EJ / d.L**2), 0.0, 0.0]}
+    up = 1.0 if rng.random() < 0.5 else -1.0
+    return case("mast", d.rod, straight(0, 0, up), (str(rng.choice(["clamp", "pin"])), "pin"), 8.0 * d.period,
+                loads={"gravity": [0.0, 0.0, -weight / d.mass], "damping": log(rng, 0.2, 2.0) / d.period,
+                       "point": [push]})  # fmt: skip
+
+
 def sagging(rng: Generator) -> Part:
     """A cable between two pins, let go from an arc; or its equilibrium."""
     d = Drawn(rng, ("steel", "nylon", "polypropylene"), (1.0, 100.0), (1e-3, 5e-3))
@@ -171,5 +182,5 @@ def hooked(rng: Generator) -> Part:
                 analysis="static", loads=loads)  # fmt: skip
 
 
-KINDS = (riser, cantilever, column, sagging, coil, tape, slack_twist, plectoneme, knot, dna, bent_and_pushed, loop,
-         stepped, hooked)
+KINDS = (riser, cantilever, column, mast, sagging, coil, tape, slack_twist, plectoneme, knot, dna, bent_and_pushed,
+         loop, stepped, hooked)

@@ -60,7 +60,7 @@ LOOSEST, AT_REST = -2, -99
 """The longest steps that are tried; numbers below stand for steps of such a length of a rod with an artificial
 viscosity, see `grade_of`. And what stands for those of a static analysis, which make no error and are no other when
 they are tried again."""
-DAMPED_PART, LAST_PART, STEEPER = 0.6, 2.0, 2
+DAMPED_PART, LAST_PART, STEEPER = 0.6, 2.0, 3
 """Part of MOST_WORK that a run with artificial viscosity may take, and that the last ones may: after one that was slow,
 or of the highest grade; and by how many grades the next one has more where one was slow, rather than one."""
 SAME_TIME = 0.02

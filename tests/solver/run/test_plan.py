@@ -71,7 +71,7 @@ def slow(mesh: int, steps: int, work: float = SMALL) -> Attempt:
         ([slow(0, 0)], Excess(), Trial(0, -2)),
         ([slow(0, 0), slow(0, -2)], Excess(), Trial(0, -3)),
         ([slow(0, 0), slow(0, -2), failed(0, 0.5, steps=-3)], Excess(), Trial(0, -4)),
-        ([slow(0, 0), slow(0, -2), slow(0, -3)], Excess(), Trial(0, -5)),
+        ([slow(2, 0), slow(2, -2), slow(2, -3)], Excess(), Trial(2, -6)),
         ([slow(0, -4)], Excess(), Trial(0, -5)),  # the highest grade that a mesh may have
         ([failed(0, 0.5, steps=-5)], Excess(), None),
         ([slow(2, -2), ran(2, -3)], Excess(), Trial(3, -3)),

@@ -3,11 +3,11 @@
 from solver.measures.frame import Frame, Statistics
 from solver.outcome import Outcome, RunFailed
 from solver.run.checkpoint import code_digest
-from solver.run.plan import Trial, strides_of
 from solver.run.refined import Refined
 from solver.run.run import Run
 from solver.run.simulate import simulate
 from solver.run.simulation import Simulation
+from solver.run.trial import Trial, strides_of
 from solver.run.under_way import UnderWay
 from solver.run.verify import Verified, VerifiedFrame
 from solver.run.warming import warm

@@ -15,7 +15,7 @@ from service.cases.errors import CaseError, FieldError
 from service.cases.initial import InitialSpec
 from service.cases.rod import RodSpec
 from solver import Initial, Rod, Scene, check_end, check_place
-from solver.run.plan import FIRST_INTERVALS
+from solver.run.trial import FIRST_INTERVALS
 from solver.scene.layout import curvature_of, nodes_at_rest
 from solver.scene.rod import Profiles
 from solver.scene.scene import check_frame

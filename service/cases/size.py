@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from service.cases.errors import refusal
 from service.cases.quantities import ProfileTable, ScheduleTable
 from solver.physics.contact.recipe import IN_MOTION
-from solver.run.plan import FIRST_INTERVALS
+from solver.run.trial import FIRST_INTERVALS
 
 if TYPE_CHECKING:
     from service.cases.case import CaseSpec

@@ -10,7 +10,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.physics.ends import ABOUT_A3, DrivenEnd
 from solver.run.hidden import Creases, Hidden, hidden_in
-from solver.run.plan import FIRST_INTERVALS, intervals_of
+from solver.run.trial import FIRST_INTERVALS, intervals_of
 from solver.scene.fluid import Shear
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene

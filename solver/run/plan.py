@@ -1,52 +1,38 @@
 """Which resolution a run to a tolerance tries next: a pure function of what those before have shown.
 
-A resolution is a mesh of some 16 times 2^mesh intervals (see `first_mesh`) and steps whose error relative to their
-motion, as the embedded formula has it, is at most FIRST_STEPS tolerance^(1/2) / 4^steps: where the motion is smooth,
-the true one falls faster. The coarsest mesh runs with two kinds of steps, which tells for next to nothing what shorter
-ones would change. Then the mesh is made finer, or the steps shorter, or both at once: both errors fall to a quarter
-then, so that one difference tells them together. It ends when their sum is below the tolerance, when the work is done
-that may be, or when it shows that this work cannot bring it there. This is asked of each quantity that the tolerance is
-for: one that cannot be brought there, as the curvature where a moment jumps, does not keep the others from it. Of those
-that can be, the one with the largest error says what is made finer.
+The coarsest mesh runs with two kinds of steps, which tells for next to nothing what shorter ones would change. Then the
+mesh is made finer, or the steps shorter, or both at once: both errors fall to a quarter then, so that one difference
+tells them together. It ends when their sum is below the tolerance, when the work is done that may be, or when it shows
+that this work cannot bring it there. This is asked of each quantity that the tolerance is for: one that cannot be
+brought there, as the curvature where a moment jumps, does not keep the others from it. Of those that can be, the one
+with the largest error says what is made finer. Where no run comes to its end, the rod is given an artificial viscosity,
+more and more of it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import ceil, inf, log, sqrt
+from math import ceil, inf, log
 from typing import NamedTuple
 
 from solver.outcome import Outcome
 from solver.run.artificial_viscosity import highest_grade
 from solver.run.series import Attempt, chosen, is_diagonal
+from solver.run.trial import AT_REST, LOOSEST, OVERHEAD, Trial, grade_of, intervals_of
 
 MADE, LOST = (tuple(Outcome).index(outcome) for outcome in (Outcome.ENERGY_MADE, Outcome.EQUILIBRIUM_LOST))
 """The outcome of a run whose steps, rather than its mesh, are the reason that it failed; and of a static analysis on
 what may be too coarse a mesh."""
 WAVES = tuple(tuple(Outcome).index(outcome) for outcome in (Outcome.MESH_TOO_COARSE, Outcome.STEP_TOO_SMALL))
 """Outcomes of a run whose waves may be too short for its mesh."""
-FIRST_INTERVALS = 16
-"""Of the coarsest mesh, or somewhat more: see `first_mesh`. The work is counted as if it were as many."""
-FIRST_STEPS = 0.5
-STRIDES = 5
-"""Frames that a step may pass at the most, see `Numerics`, and does at tolerances from 1e-3 on. Where the motion is
-smooth, which such steps are for, their error is of order 5."""
 STEP_SHARE = 0.4
 """Part of the tolerance that the error of the steps may take."""
 FAR = 64.0
 """How many times larger than that of the steps the error of the mesh is where it is made finer alone first."""
 FAR_FROM_IT = 0.1
 """Relative error of the next finer mesh from which on a mesh is too coarse to show what shorter steps would change."""
-OVERHEAD = 60
-"""Intervals that take as long as all else in a Newton iteration."""
 MOST_WORK = 1.2e7
 """Newton iterations times (intervals + OVERHEAD), in all, after which nothing is refined: five to ten seconds."""
-IN_CONTACT = 6.0
-"""How many times more work an iteration is where strands press on each other."""
-DEAR_AT_REST, PRESSED_AT_REST, COUPLED_AT_REST = 20.0, 4.0, 0.5
-"""How many times more work an iteration of a static analysis is, with all that goes with it; of that how many times
-more where strands press on each other; and what the square of its intervals adds where rotations are coupled far apart.
-"""
 MOST_WORK_AT_REST = 20.0 * MOST_WORK
 """Of a static analysis on one mesh, if none as coarse has come to its end: no waves can keep it from that."""
 FIRST_PART = 0.1
@@ -56,10 +42,6 @@ OVERDRAWN = 0.25
 PATIENCE, MOST_PATIENCE = 8.0, 2.5
 """How many times the work that is expected of it the first run on a second mesh, or with other steps, may take; and
 how many times MOST_WORK."""
-LOOSEST, AT_REST = -2, -99
-"""The longest steps that are tried; numbers below stand for steps of such a length of a rod with an artificial
-viscosity, see `grade_of`. And what stands for those of a static analysis, which make no error and are no other when
-they are tried again."""
 DAMPED_PART, LAST_PART, STEEPER = 0.6, 2.0, 3
 """Part of MOST_WORK that a run with artificial viscosity may take, and that the last ones may: after one that was slow,
 or of the highest grade; and by how many grades the next one has more where one was slow, rather than one."""
@@ -99,54 +81,8 @@ class Excess(NamedTuple):
         return self.mesh + self.steps
 
 
-class Trial(NamedTuple):
-    """What is to be tried."""
-
-    mesh: int
-    steps: int
-
-
-def intervals_of(mesh: int, first: int = FIRST_INTERVALS) -> int:
-    """Of a mesh; `first`: of the coarsest."""
-    return int(first * 2**mesh)
-
-
-def step_tolerance(steps: int, tolerance: float) -> float:
-    """The largest error of a step relative to its motion."""
-    return FIRST_STEPS * sqrt(tolerance) / 4.0 ** max(steps, LOOSEST)
-
-
-def grade_of(steps: int) -> int | None:
-    """The grade of the rod's artificial viscosity, see `artificial_viscosity`; None where it has none."""
-    return LOOSEST - 1 - steps if AT_REST < steps < LOOSEST else None
-
-
 def _is_damped(attempt: Attempt | Trial) -> bool:
     return grade_of(attempt.steps) is not None
-
-
-def strides_of(tolerance: float, steps: int = 0) -> int:
-    """How many frames a step may pass; none where steps are longer than their error allows, as to get to the end."""
-    if steps < 0:
-        return 1
-    return int(max(round(STRIDES * min(tolerance / 1e-3, 1.0) ** 0.2), 1))
-
-
-def work_of_iteration(mesh: int, pressed: bool) -> float:
-    """Of a motion; `pressed`: whether strands press on each other."""
-    return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT if pressed else 1.0)
-
-
-def work_at_rest(mesh: int, pressed: bool, coupled: bool) -> float:
-    """Of an iteration of a static analysis; `coupled`: whether it counts all rotations together."""
-    nearby = (intervals_of(mesh) + OVERHEAD) * (PRESSED_AT_REST if pressed else 1.0)
-    return DEAR_AT_REST * nearby + (COUPLED_AT_REST * intervals_of(mesh) ** 2 if coupled else 0.0)
-
-
-def longest_step(steps: int, interval: float) -> float:
-    """The longest step (s), in strides, where frames are an `interval` apart: waves that two runs damp alike show in
-    neither."""
-    return interval / 2.0 ** max(steps, 0)
 
 
 def allowance(history: Sequence[Attempt], trial: Trial) -> float:

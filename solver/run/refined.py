@@ -19,24 +19,13 @@ from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
 from solver.run.artificial_viscosity import with_viscosity
 from solver.run.first_mesh import first_intervals, first_mesh
-from solver.run.plan import (
-    AT_REST,
-    FIRST_INTERVALS,
-    Excess,
-    Trial,
-    allowance,
-    grade_of,
-    longest_step,
-    next_trial,
-    step_tolerance,
-    strides_of,
-    to_come,
-)
+from solver.run.plan import Excess, allowance, next_trial, to_come
 from solver.run.recording import row_of
 from solver.run.remarks import Remarks
 from solver.run.run import Run
 from solver.run.series import Attempt, chosen
 from solver.run.together import Piece, Together
+from solver.run.trial import AT_REST, FIRST_INTERVALS, Trial, grade_of, longest_step, step_tolerance, strides_of
 from solver.run.under_way import UnderWay
 from solver.scene.scene import MOST_AT_REST, Scene
 

@@ -12,7 +12,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, excess, sizes
 from solver.run.first_mesh import first_intervals
-from solver.run.plan import FAR_FROM_IT, WORTH, Excess, grade_of, intervals_of, step_tolerance
+from solver.run.plan import FAR_FROM_IT, WORTH, Excess
 from solver.run.recording import (
     BALANCE,
     CURVATURE,
@@ -34,6 +34,7 @@ from solver.run.recording import (
 )
 from solver.run.richardson import alike, error_of_steps, extrapolate, unextrapolated
 from solver.run.series import Attempt, chosen, is_diagonal, step_series
+from solver.run.trial import grade_of, intervals_of, step_tolerance
 from solver.run.verify import VerifiedFrame, of_waves, unseen
 from solver.scene.scene import Scene
 

@@ -11,7 +11,8 @@ from solver.run.artificial_viscosity import retardation_time, with_viscosity
 from solver.run.checkpoint import Saved, restore, saved
 from solver.run.equilibria import Equilibria
 from solver.run.first_mesh import first_intervals
-from solver.run.plan import (
+from solver.run.simulation import Simulation
+from solver.run.trial import (
     Trial,
     grade_of,
     intervals_of,
@@ -21,7 +22,6 @@ from solver.run.plan import (
     work_at_rest,
     work_of_iteration,
 )
-from solver.run.simulation import Simulation
 from solver.scene.scene import Scene
 
 SMALL_MOTION = 1e-3

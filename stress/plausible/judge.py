@@ -31,6 +31,7 @@ from solver.run.first_mesh import first_intervals
 from solver.run.recording import Columns, columns_of, row_of
 from solver.run.refined import Refined
 from solver.run.simulation import Simulation
+from solver.run.trial import FIRST_INTERVALS
 from solver.run.verify import VerifiedFrame
 from stress.plausible.__main__ import PROCESSES, RESULTS
 from stress.plausible.bank import KINDS, scene
@@ -40,7 +41,7 @@ from validation.provenance import provenance
 
 TRUTH, WORK, SMALL = 0.02, 12.0, 0.1
 STEPS = 4
-FIXED = [(plan.FIRST_INTERVALS * 2**mesh, 0.1**steps) for mesh in range(7) for steps in range(1, STEPS + 1)]
+FIXED = [(FIRST_INTERVALS * 2**mesh, 0.1**steps) for mesh in range(7) for steps in range(1, STEPS + 1)]
 LONGEST, DEAR = 300.0, 2.0
 """Seconds of CPU time after which a truth is given up; and how many times the answer's a fixed run may take."""
 HEADER = ("kind", "scenes", "values outside 3 bars", "largest", "CPU s, median", "over the cheapest fixed run, median",
@@ -83,7 +84,7 @@ def judge(kind: str, number: int) -> Verdict:
     verdict.error, verdict.error_of_truth = float(errors.max()), float(known.max())
     bounds = np.maximum(np.maximum(errors, known), SMALL)
     too_dear: list[tuple[int, float]] = []
-    alike = first_intervals(built) / plan.FIRST_INTERVALS  # meshes that have nodes in common with those of the answer
+    alike = first_intervals(built) / FIRST_INTERVALS  # meshes that have nodes in common with those of the answer
     at_rest = built.analysis == "static"  # whose steps are no choice
     for sixteenths, tolerated in FIXED[:: STEPS if at_rest else 1]:
         intervals = int(sixteenths * alike)

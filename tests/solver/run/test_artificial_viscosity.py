@@ -10,8 +10,8 @@ import pytest
 from solver import Curve, End, Initial, Numerics, Rod, Scene, VerifiedFrame, simulate
 from solver.physics.elasticity import Viscosity, elasticity_of
 from solver.run.artificial_viscosity import highest_grade, retardation_time, with_viscosity
-from solver.run.plan import LOOSEST, Trial, grade_of
 from solver.run.refined import Refined
+from solver.run.trial import LOOSEST, Trial, grade_of
 
 ROPE = Rod.circular(length=1.0, diameter=5e-3, youngs_modulus=2.1e5, shear_modulus=8e4, density=1000.0)
 """Its weight times L^3 is 30,000 times its bending stiffness."""

@@ -14,7 +14,7 @@ from solver.measures.topology import writhe
 from solver.methods.space.segments.initial import chain_of, lay_out, segments_of
 from solver.run.first_mesh import first_mesh
 from solver.run.hidden import cancelled
-from solver.run.plan import intervals_of
+from solver.run.trial import intervals_of
 from solver.scene.layout import nodes_at_rest
 from tests.solver.scenes import EJ, LENGTH, ROD, last
 from tests.solver.statics.resting import ZERO, ramp, static

@@ -8,21 +8,19 @@ import numpy as np
 import pytest
 
 from solver.run.plan import (
-    AT_REST,
     FAR_FROM_IT,
     MADE,
     MOST_PATIENCE,
     MOST_WORK,
     WAVES,
     Excess,
-    Trial,
     allowance,
     expected,
     next_trial,
-    step_tolerance,
     to_come,
 )
 from solver.run.series import Attempt, Chosen, chosen
+from solver.run.trial import AT_REST, Trial, step_tolerance
 
 SMALL = 0.01 * MOST_WORK
 

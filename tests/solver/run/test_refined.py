@@ -24,11 +24,12 @@ from solver import (
 from solver.run import plan
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN, first_intervals
-from solver.run.plan import FIRST_INTERVALS, Excess, Trial
+from solver.run.plan import Excess
 from solver.run.recording import BALANCE, NUMBERS, WIDTH, Columns, R, columns_of, number_of, row_of
 from solver.run.refined import Refined
 from solver.run.series import Attempt
 from solver.run.together import Together
+from solver.run.trial import FIRST_INTERVALS, Trial
 from solver.run.under_way import UnderWay
 from solver.scene.ends import FREE
 from tests.solver.bent import bent_cantilever

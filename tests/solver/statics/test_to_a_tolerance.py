@@ -26,8 +26,8 @@ from solver import (
 )
 from solver.physics.loads.solids import Floor
 from solver.run.first_mesh import first_mesh
-from solver.run.plan import AT_REST, intervals_of
 from solver.run.refined import Refined
+from solver.run.trial import AT_REST, intervals_of
 from tests.solver.scenes import ARC, ARC_ROD, EJ, LENGTH, ROD
 from tests.solver.statics.resting import ZERO, ramp, static
 

@@ -16,7 +16,7 @@ from solver.physics.loads import sheared_drag
 from solver.physics.loads.load import Point, Samples
 from solver.physics.section import sample
 from solver.run.first_mesh import first_mesh
-from solver.run.plan import intervals_of
+from solver.run.trial import intervals_of
 from tests.solver.physics.loads.test_fluid import act, frame
 from tests.solver.scenes import DENSITY, DIAMETER, EJ, LENGTH, ROD
 

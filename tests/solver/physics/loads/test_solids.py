@@ -15,7 +15,7 @@ from solver.physics.loads import solids
 from solver.physics.loads.load import Point, conservative, energy, force, tangents
 from solver.physics.loads.solids import Floor, Obstacle
 from solver.run.first_mesh import first_mesh
-from solver.run.plan import intervals_of
+from solver.run.trial import intervals_of
 from solver.run.verify import VerifiedFrame
 from tests.solver.methods.problem import problem
 from tests.solver.methods.test_box_tangents import LARGEST_ERROR, error

@@ -1,0 +1,76 @@
+"""A resolution that a run to a tolerance tries, see `plan`, and what an iteration at it costs.
+
+It is a mesh of some 16 times 2^mesh intervals (see `first_mesh`) and steps whose error relative to their motion, as the
+embedded formula has it, is at most FIRST_STEPS tolerance^(1/2) / 4^steps: where the motion is smooth, the true one
+falls faster.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+from typing import NamedTuple
+
+FIRST_INTERVALS = 16
+"""Of the coarsest mesh, or somewhat more: see `first_mesh`. The work is counted as if it were as many."""
+FIRST_STEPS = 0.5
+STRIDES = 5
+"""Frames that a step may pass at the most, see `Numerics`, and does at tolerances from 1e-3 on. Where the motion is
+smooth, which such steps are for, their error is of order 5."""
+OVERHEAD = 60
+"""Intervals that take as long as all else in a Newton iteration."""
+IN_CONTACT = 6.0
+"""How many times more work an iteration is where strands press on each other."""
+DEAR_AT_REST, PRESSED_AT_REST, COUPLED_AT_REST = 20.0, 4.0, 0.5
+"""How many times more work an iteration of a static analysis is, with all that goes with it; of that how many times
+more where strands press on each other; and what the square of its intervals adds where rotations are coupled far apart.
+"""
+LOOSEST, AT_REST = -2, -99
+"""The longest steps that are tried; numbers below stand for steps of such a length of a rod with an artificial
+viscosity, see `grade_of`. And what stands for those of a static analysis, which make no error and are no other when
+they are tried again."""
+
+
+class Trial(NamedTuple):
+    """Numbers of a mesh and of steps."""
+
+    mesh: int
+    steps: int
+
+
+def intervals_of(mesh: int, first: int = FIRST_INTERVALS) -> int:
+    """Of a mesh; `first`: of the coarsest."""
+    return int(first * 2**mesh)
+
+
+def step_tolerance(steps: int, tolerance: float) -> float:
+    """The largest error of a step relative to its motion."""
+    return FIRST_STEPS * sqrt(tolerance) / 4.0 ** max(steps, LOOSEST)
+
+
+def grade_of(steps: int) -> int | None:
+    """The grade of the rod's artificial viscosity, see `artificial_viscosity`; None where it has none."""
+    return LOOSEST - 1 - steps if AT_REST < steps < LOOSEST else None
+
+
+def strides_of(tolerance: float, steps: int = 0) -> int:
+    """How many frames a step may pass; none where steps are longer than their error allows, as to get to the end."""
+    if steps < 0:
+        return 1
+    return int(max(round(STRIDES * min(tolerance / 1e-3, 1.0) ** 0.2), 1))
+
+
+def work_of_iteration(mesh: int, pressed: bool) -> float:
+    """Of a motion; `pressed`: whether strands press on each other."""
+    return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT if pressed else 1.0)
+
+
+def work_at_rest(mesh: int, pressed: bool, coupled: bool) -> float:
+    """Of an iteration of a static analysis; `coupled`: whether it counts all rotations together."""
+    nearby = (intervals_of(mesh) + OVERHEAD) * (PRESSED_AT_REST if pressed else 1.0)
+    return DEAR_AT_REST * nearby + (COUPLED_AT_REST * intervals_of(mesh) ** 2 if coupled else 0.0)
+
+
+def longest_step(steps: int, interval: float) -> float:
+    """The longest step (s), in strides, where frames are an `interval` apart: waves that two runs damp alike show in
+    neither."""
+    return interval / 2.0 ** max(steps, 0)

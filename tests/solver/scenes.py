@@ -37,6 +37,16 @@ def arc(s: Array) -> Array:
 
 ARC = Initial(arc)
 
+ROPE = Rod.circular(length=1.0, diameter=5e-3, youngs_modulus=2.1e5, shear_modulus=8e4, density=1000.0)
+"""Limp: its weight times L^2 is 30,000 times its bending stiffness."""
+
+
+def rope_let_go() -> Scene:
+    """From the horizontal, at a pin, without damping."""
+    level = Initial.straight(direction=(1.0, 0.0, 0.0))
+    return Scene(ROPE, level, End.pin(), End.free(), t_end=4.0, output_interval=0.1, gravity=(0.0, 0.0, -9.81),
+                 numerics=Numerics("staggered", tolerance=1e-3))  # fmt: skip
+
 
 def fixed_steps(intervals: int, dt: float, rho_inf: float = 0.5) -> Numerics:
     """Numerics with steps of dt."""

@@ -7,22 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solver import Curve, End, Initial, Numerics, Rod, Scene, VerifiedFrame, simulate
+from solver import Curve, VerifiedFrame, simulate
 from solver.physics.elasticity import Viscosity, elasticity_of
 from solver.run.artificial_viscosity import highest_grade, retardation_time, with_viscosity
 from solver.run.refined import Refined
 from solver.run.trial import LOOSEST, Trial, grade_of
+from tests.solver.scenes import ROPE, rope_let_go
 
-ROPE = Rod.circular(length=1.0, diameter=5e-3, youngs_modulus=2.1e5, shear_modulus=8e4, density=1000.0)
-"""Its weight times L^3 is 30,000 times its bending stiffness."""
 MASS, EJ = (float(profile(np.zeros(1))[0]) for profile in (ROPE.mass, ROPE.stiffness[0]))
-
-
-def let_go() -> Scene:
-    """From the horizontal, at a pin, without damping."""
-    level = Initial.straight(direction=(1.0, 0.0, 0.0))
-    return Scene(ROPE, level, End.pin(), End.free(), t_end=4.0, output_interval=0.1, gravity=(0.0, 0.0, -9.81),
-                 numerics=Numerics("staggered", tolerance=1e-3))  # fmt: skip
 
 
 def test_the_retardation_time_falls_with_the_square_of_an_interval_and_grows_by_grades() -> None:
@@ -50,7 +42,7 @@ def test_waves_as_long_as_the_rod_are_hardly_damped(intervals: int) -> None:
 
 
 def test_a_limp_rope_that_is_let_go_has_an_answer_with_its_errors_and_says_what_was_done_to_it() -> None:
-    run = simulate(let_go())
+    run = simulate(rope_let_go())
     assert isinstance(run, Refined)
     frames = [frame for frame in run if isinstance(frame, VerifiedFrame)]
     assert frames[-1].t == 4.0
@@ -65,7 +57,7 @@ def test_a_limp_rope_that_is_let_go_has_an_answer_with_its_errors_and_says_what_
 
 
 def test_a_rope_that_meshes_can_show_is_left_as_it_is() -> None:
-    scene = replace(let_go(), rod=replace(ROPE, stiffness=(Curve.constant(100.0 * EJ),) * 3), damping=3.0)
+    scene = replace(rope_let_go(), rod=replace(ROPE, stiffness=(Curve.constant(100.0 * EJ),) * 3), damping=3.0)
     run = simulate(scene)
     assert isinstance(run, Refined)
     list(run)

@@ -17,7 +17,7 @@ from solver.run import checkpoint as checkpoints
 from solver.scene.ends import FIXED
 from tests.solver.bent import bent_cantilever
 from tests.solver.physics.contact.test_self_contact import CONTACT, looped
-from tests.solver.scenes import ARC, ARC_ROD, EJ, FIXED_STEPS, LENGTH
+from tests.solver.scenes import ARC, ARC_ROD, EJ, FIXED_STEPS, LENGTH, rope_let_go
 from tests.solver.statics.test_statics import arch, ramp
 
 SPIN = Curve.table([0.0, 0.3, 1.0], [0.0, 6.0, 6.0], "smoothstep")
@@ -86,6 +86,12 @@ def refined() -> Scene:
     return bent_cantilever(Numerics(method="staggered", tolerance=3e-3))
 
 
+def damped() -> Scene:
+    """One mesh, then the other, then with viscosity."""
+    rope = rope_let_go()
+    return replace(rope, t_end=2.0, numerics=replace(rope.numerics, most_intervals=32))
+
+
 def refined_at_rest() -> Scene:
     """The branch on one mesh after the other."""
     return replace(balanced(), numerics=Numerics("staggered", tolerance=1e-3))
@@ -121,7 +127,7 @@ def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], 
 
 
 @pytest.mark.parametrize("after", [7, 40, 300])
-@pytest.mark.parametrize("make", [refined, refined_at_rest])
+@pytest.mark.parametrize("make", [refined, damped, refined_at_rest])
 def test_a_run_that_is_interrupted_while_it_is_refined_gives_the_same_frames_to_the_bit(
     make: Callable[[], Scene], after: int
 ) -> None:

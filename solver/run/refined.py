@@ -66,8 +66,9 @@ class Refined(Run):
 
     @property
     def phase(self) -> str:
-        """Which mesh it is at."""
-        return f"run {len(self._history) + 1}: {len(self._under_way.run.s) - 1} intervals"
+        """Which mesh it is at, and whether the rod has an artificial viscosity there."""
+        damped = "" if grade_of(self._under_way.trial.steps) is None else ", with viscosity"
+        return f"run {len(self._history) + 1}: {len(self._under_way.run.s) - 1} intervals{damped}"
 
     @property
     def progress(self) -> float:

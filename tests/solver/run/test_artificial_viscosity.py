@@ -44,8 +44,14 @@ def test_waves_as_long_as_the_rod_are_hardly_damped(intervals: int) -> None:
 def test_a_limp_rope_that_is_let_go_has_an_answer_with_its_errors_and_says_what_was_done_to_it() -> None:
     run = simulate(rope_let_go())
     assert isinstance(run, Refined)
-    frames = [frame for frame in run if isinstance(frame, VerifiedFrame)]
+    frames, phases = [], set()
+    while not run.finished:
+        phases.add(run.phase)
+        frames.append(run.advance())
+    frames = [frame for frame in frames if isinstance(frame, VerifiedFrame)]
     assert frames[-1].t == 4.0
+    assert {"run 1: 16 intervals", "run 2: 32 intervals"} <= phases
+    assert any(phase.endswith(" intervals, with viscosity") for phase in phases)
     assert run.accuracy is not None and np.isfinite(list(run.accuracy.errors.values())).all()
     assert 1e-3 < run.accuracy.errors["r"] < 1.0
     attributes = run.attributes()

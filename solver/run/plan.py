@@ -18,7 +18,7 @@ from typing import NamedTuple
 from solver.outcome import Outcome
 from solver.run.artificial_viscosity import highest_grade
 from solver.run.series import Attempt, chosen, is_diagonal
-from solver.run.trial import AT_REST, LOOSEST, OVERHEAD, Trial, grade_of, intervals_of
+from solver.run.trial import AT_REST, DAMPED, LOOSEST, OVERHEAD, Trial, grade_of, intervals_of
 
 MADE, LOST = (tuple(Outcome).index(outcome) for outcome in (Outcome.ENERGY_MADE, Outcome.EQUILIBRIUM_LOST))
 """The outcome of a run whose steps, rather than its mesh, are the reason that it failed; and of a static analysis on
@@ -236,7 +236,7 @@ def _with_grades(mesh: int, steps: int, most_intervals: int) -> list[Trial]:
     """On a mesh, if there is one, with as much viscosity as `steps` say and more."""
     if not 0 <= mesh or intervals_of(mesh) > most_intervals:
         return []
-    return [Trial(mesh, more) for more in range(steps, LOOSEST - 2 - highest_grade(intervals_of(mesh)), -1)]
+    return [Trial(mesh, more) for more in range(steps, DAMPED - 1 - highest_grade(intervals_of(mesh)), -1)]
 
 
 def _more_damped(last: Attempt) -> Trial | None:
@@ -247,7 +247,7 @@ def _more_damped(last: Attempt) -> Trial | None:
     if grade == highest:
         return None
     higher = 0 if grade is None else min(grade + (STEEPER if last.slow else 1), highest)
-    return Trial(last.mesh, LOOSEST - 1 - higher)
+    return Trial(last.mesh, DAMPED - higher)
 
 
 def _beyond_failures(history: Sequence[Attempt], most_intervals: int) -> Trial | None:
@@ -284,7 +284,7 @@ def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Tr
 def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> Trial | None:
     last = history[-1]
     if last.slow and last.steps > LOOSEST:
-        return Trial(last.mesh, last.steps - 2)
+        return Trial(last.mesh, max(last.steps - 2, LOOSEST))
     if last.slow or _is_damped(last):
         return _more_damped(last)
     failed = [attempt for attempt in history if not attempt.slow]

@@ -24,10 +24,10 @@ DEAR_AT_REST, PRESSED_AT_REST, COUPLED_AT_REST = 20.0, 4.0, 0.5
 """How many times more work an iteration of a static analysis is, with all that goes with it; of that how many times
 more where strands press on each other; and what the square of its intervals adds where rotations are coupled far apart.
 """
-LOOSEST, AT_REST = -2, -99
-"""The longest steps that are tried; numbers below stand for steps of such a length of a rod with an artificial
-viscosity, see `grade_of`. And what stands for those of a static analysis, which make no error and are no other when
-they are tried again."""
+LOOSEST, AT_REST, DAMPED = -2, -9, -11
+"""The longest steps that are tried; what stands for those of a static analysis, which make no error and are no other
+when they are tried again; and what stands for the longest steps of a rod with an artificial viscosity, as do all
+numbers below, see `grade_of`. (Those between stood for longer steps in checkpoints that may still be there.)"""
 
 
 class Trial(NamedTuple):
@@ -49,7 +49,7 @@ def step_tolerance(steps: int, tolerance: float) -> float:
 
 def grade_of(steps: int) -> int | None:
     """The grade of the rod's artificial viscosity, see `artificial_viscosity`; None where it has none."""
-    return LOOSEST - 1 - steps if AT_REST < steps < LOOSEST else None
+    return DAMPED - steps if steps <= DAMPED else None
 
 
 def strides_of(tolerance: float, steps: int = 0) -> int:

@@ -11,7 +11,7 @@ from solver import Curve, VerifiedFrame, simulate
 from solver.physics.elasticity import Viscosity, elasticity_of
 from solver.run.artificial_viscosity import highest_grade, retardation_time, with_viscosity
 from solver.run.refined import Refined
-from solver.run.trial import LOOSEST, Trial, grade_of
+from solver.run.trial import AT_REST, DAMPED, LOOSEST, grade_of
 from tests.solver.scenes import ROPE, rope_let_go
 
 MASS, EJ = (float(profile(np.zeros(1))[0]) for profile in (ROPE.mass, ROPE.stiffness[0]))
@@ -71,6 +71,6 @@ def test_a_rope_that_meshes_can_show_is_left_as_it_is() -> None:
     assert not run.chosen.rod.laws
 
 
-def test_only_steps_longer_than_the_longest_stand_for_viscosity() -> None:
-    assert [grade_of(LOOSEST - more) for more in range(4)] == [None, 0, 1, 2]
-    assert grade_of(Trial(3, 1).steps) is None
+def test_numbers_of_steps_that_stand_for_viscosity_stand_for_nothing_else() -> None:
+    assert [grade_of(DAMPED - more) for more in range(3)] == [0, 1, 2]
+    assert all(grade_of(steps) is None for steps in (*range(LOOSEST, 10), AT_REST))

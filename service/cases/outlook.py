@@ -34,13 +34,13 @@ from solver.scene.layout import nodes_at_rest
 RINGING = "undamped"
 SECONDS = {
     "wound up": 9.0, "lies on itself": 12.0, "may spring onto itself": 5.5, "taut": 5.6, "still": 0.1, "struck": 4.5,
-    "struck in water": 1.4, "held straight and twisted": 2.6, "held straight and moved": 1.6, "held straight": 0.3,
+    "struck in water": 1.4, "held straight and twisted": 2.6, "held straight and moved": 1.5, "held straight": 0.3,
     "on a floor": 6.0, "slides as a whole": 0.1, "overdamped": 0.12, "overdamped and wound up": 2.2,
     "in space and moved or let go": 3.2, "spun": 2.7, "flying freely": 0.11, "settling in space": 0.14,
-    "limp in space": 3.2, "swinging in space": 4.0, "slow in space": 0.5, "long and heavy in water": 0.8,
-    "shaken in water": 0.5, "towed through water": 0.17, "in water": 0.15, "in space and in water": 0.25,
+    "limp in space": 3.2, "swinging in space": 4.0, "slow in space": 0.4, "long and heavy in water": 0.8,
+    "shaken in water": 0.5, "towed through water": 0.17, "in water": 0.25, "in space and in water": 0.25,
     "let go in water": 2.6, "let go or loaded at once": 1.8, "let go and settling": 1.4,
-    "let go and settling between holds": 0.8, "let go gently": 0.2, "let go between pins": 1.4,
+    "let go and settling between holds": 0.6, "let go gently": 0.2, "let go between pins": 1.4,
     "loaded on a slide": 2.7,
     "snapping through": 5.0, RINGING: 0.08, "followed by the frames": 0.11,
 }  # fmt: skip
@@ -62,7 +62,7 @@ INTERVALS, FINELY = 16, 2001
 """Intervals of a rod, and times of a schedule, that are looked at."""
 SMALL, DRIVEN = 1e-3, 0.02
 """Moment, in EJ/L, that sets nothing moving; and that of the rod's inertia where its ends are moved."""
-STRUCK, DEADENED = 3.0, 0.5
+STRUCK, DEADENED = 1.5, 0.5
 """By how much a force in a point changes, in EJ/L^2, within a radian of the first frequency, if it is a blow;
 and damping, in that frequency, with which its waves do not matter."""
 GENTLE, DAMPED = 4.0, 0.3

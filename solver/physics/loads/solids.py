@@ -291,8 +291,9 @@ def force(load: Record, i: int, j: int, at: Point) -> Any:
 def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """By place and by velocity.
 
-    With w = V_t / sqrt(...): dd = -n . dr, dw = (I - w w^t) dV_t / sqrt(...), and
-    dV_t = (I - n n^t) dV - (n V^t + (n . V) I) dn.
+    With w = V_t / sqrt(...): dd = -n . dr, dV_t = (I - n n^t) dV - (n V^t + (n . V) I) dn, and dw by place as
+    (I - w w^t) dV_t / sqrt(...). By velocity as dV_t / sqrt(...), a secant to where the rod sticks: where it slides
+    nothing resists a change along w, and an iteration with that tangent leaps over sticking, to and fro.
     """
     K, C = identity(0.0, at.r), identity(0.0, at.r)
     for m in range(len(load.radius)):
@@ -306,7 +307,7 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
             K = add(K, outer(times(-turned, by.a), by.a))
             K = add(K, outer(times(rubbed, n), turning(by, at.V)))
             K = add(K, outer(times(-rubbed * leaving, w), turning(by, w)))
-            C = add(C, add(identity(-rubbed, n), add(outer(times(rubbed, n), n), outer(times(rubbed, w), w))))
+            C = add(C, add(identity(-rubbed, n), outer(times(rubbed, n), n)))
     return Tangents(K, C, None, None, None, None, None)
 
 

@@ -20,7 +20,7 @@ from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Work, estimate_error, step
 from solver.methods.time.radau.next_step import Last, finish, go_on
-from solver.physics.elasticity import mean_bending
+from solver.physics.elasticity import can_stretch, mean_bending
 from solver.physics.ends import DrivenEnd
 from solver.physics.section import Beside
 from solver.scene.scene import Scene
@@ -74,10 +74,10 @@ class RadauMethod(ABC):
             self._guess_rest()
         else:
             self._guess(dt)
-        status, iterations = self._solve(dt)
+        status, iterations = self._solve(dt, consistent)
         if consistent and iterations == LARGEST_ITERATIONS and status != CONVERGED:
             # an end that is let go turns at once, however short the step: go on from there, with new tangents
-            status, more = self._solve(dt)
+            status, more = self._solve(dt, consistent)
             iterations += more
         return status, iterations
 
@@ -194,6 +194,8 @@ class RadauMethod(ABC):
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
         chain: Chain = self.chain
         self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
+        # m h^2 of the lightest segment; what forces do to a rod that stretches is more than to turn it
+        self._swung = 0.0 if can_stretch(scene.rod) else float(chain.mass.min()) * chain.h**2
         self.beside = Beside.steps(scene.rod, self.s, chain.elastic.K, chain.elastic.kappa0)
         return chain, *lay_out(scene, chain, self.s)
 
@@ -205,6 +207,7 @@ class RadauMethod(ABC):
         self.work = Work(
             residuals.empty(N), residuals.empty(N), tangents.empty(N), factors.empty(N, np.float64),
             factors.empty(N, np.complex128), coupling, np.zeros_like(self.stages.r[0]),
+            factors.empty(N, np.float64).x, factors.empty(N, np.complex128).x,
         )  # fmt: skip
         self._handed = Handed.over(*self._records)
         unknown = self.stages.theta, self.stages.shift, self.stages.F
@@ -242,8 +245,10 @@ class RadauMethod(ABC):
         self._handed = self._handed.again(*self._records)
         return self._handed.reference
 
-    def _solve(self, dt: float) -> tuple[int, int]:
+    def _solve(self, dt: float, consistent: bool) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""
-        status, iterations = step(self._hand_over(), dt, self._unit, self._newton_part, self.state)
+        rough = self.applied.strikes
+        force = 0.0 if consistent else (inf if rough else self._swung / dt**2)
+        status, iterations = step(self._hand_over(), dt, self._unit, self._newton_part, force, rough, self.state)
         self.applied.check()
         return int(status), int(iterations)

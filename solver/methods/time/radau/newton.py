@@ -1,7 +1,9 @@
 """One Radau IIA step: simplified Newton on the three stages at once, and the estimate of its error.
 
 With delta = T d the stages' increments fall apart into one real and one complex system (Hairer & Wanner II, IV.8); the
-tangents are those at the middle stage of the first guess, for all stages and iterations.
+tangents are those at the middle stage of the first guess, for all stages and iterations. Where these converge slowly on
+solids, as where parts of the rod come to stick to a floor or to slide, the tangents are written anew, and the
+increments are relaxed (Irons & Tuck, Int. J. Numer. Methods Eng. 1 (1969) 275). See decision 0036.
 
 Written once for segments in space and about one axis: their records say which kernels are meant (`kernels.dispatch`).
 """
@@ -47,16 +49,20 @@ TOLERANCE = 1e-10
 iteration has converged: far below a buckling seed. A step may leave a part of its largest departure from steady
 rotation, and of that of the start from steady motion, if that is more; not of the rotation itself, for a rod may spin
 fast with a small seed. (A rod that slides without turning has no other error than that of its place.)"""
-IN_CONTACT = 10.0
-"""How many times more a step in contact may leave, whose error is that of strands that rattle."""
-
+ROUGH = 10.0
+"""How many times more a step may leave that presses strands together or the rod against a solid, whose error is that of
+what rattles."""
+STALE = 0.3
+"""Part of the increment before that one may be for the tangents to serve again where solids strike and rub."""
+LEAST_PART, LARGEST_PART = 0.1, 2.0
+"""Of an increment that is relaxed."""
 SERVES = 0.7
 """Part of the increment before that one may be for the tangents of contact to serve again."""
 
 
 class Work(NamedTuple):
     """Arrays that a step writes and nobody keeps: residuals and their transforms, tangents, both factored systems, what
-    contact needs, and `velocities` of the segments' centres."""
+    contact needs, `velocities` of the segments' centres, and the two systems' solutions before the last ones."""
 
     residuals: Record
     transformed: Record
@@ -65,6 +71,8 @@ class Work(NamedTuple):
     pair: Record
     coupling: Record
     velocities: Array
+    earlier: Array
+    earlier_pair: Array
 
 
 @inner
@@ -111,15 +119,37 @@ def diverges(iteration: int, size: float, before: float) -> bool:
     return iteration > 2 and before > 0.0 and size > 2.0 * before
 
 
+@inner
+def relaxation(work: Record, part: float, first: bool) -> float:
+    """The part of the increments that is taken after `part` of those before, unless they are the `first`: by what the
+    forces' increments changed from the one to the other, Aitken's; and keep them."""
+    x, z, (width, _) = work.real.x, work.pair.x, widths(work.real)
+    earlier, earlier_pair, along, square = work.earlier, work.earlier_pair, 0.0, 0.0
+    for a in range(len(x)):
+        for k in range(width, x.shape[1]):
+            u, w = earlier[a, k], earlier_pair[a, k]
+            change, turn = x[a, k] - u, z[a, k] - w
+            along += u * change + w.real * turn.real + w.imag * turn.imag
+            square += change * change + turn.real * turn.real + turn.imag * turn.imag
+            earlier[a, k], earlier_pair[a, k] = x[a, k], z[a, k]
+    if first or not square > 0.0:
+        return 1.0
+    return float(min(max(-part * along / square, LEAST_PART), LARGEST_PART))
+
+
 @kernel
-def step(reference: Reference, dt: float, unit: float, part: float, state: Record) -> tuple[int, int]:
+def step(reference: Reference, dt: float, unit: float, part: float, force: float, rough: bool,
+         state: Record) -> tuple[int, int]:  # fmt: skip
     """Solve for the stages of a step of dt; theta, shift and F hold the first guess. `unit` = EJ/L^2 (N).
 
     `reference`: a Chain, Loads, Driven, Scheme, Stages, Touch and Work. `part` of the step's largest departure from
-    steady rotation may be left, where that is more than TOLERANCE. Returns how it ended and the iterations. Records of
-    many arrays go only to where they are needed: each one passed on costs some ns in every iteration.
+    steady rotation may be left, where that is more than TOLERANCE; and as much of `force` (N), which turns a segment by
+    1 rad in the step, at most `part` of the largest force there is. `rough`: whether loads may strike or rub. Returns
+    how it ended and the iterations. Records of many arrays go only to where they are needed: each one passed on costs
+    some ns in every iteration.
     """
     chain, loads, driven, scheme, stages, touch, work = reference.records
+    stale, relaxed, part_taken = True, False, 1.0
     before, contact, fresh, length = 0.0, in_contact(touch), True, chain.h * len(chain.mass)
     residuals, transformed, tangents, real, pair = work.residuals, work.transformed, work.tangents, work.real, work.pair
     begin_step(state, scheme.nodes, dt, stages)
@@ -129,7 +159,7 @@ def step(reference: Reference, dt: float, unit: float, part: float, state: Recor
         if contact:
             press_stages(chain, stages, driven, touch, work.coupling, fresh)
         evaluate(chain, loads, driven, stages, residuals)
-        if iteration == 1:
+        if stale:
             if not factor_both(chain, loads, driven, scheme, dt, stages, tangents, real, pair):
                 return SINGULAR, iteration
         transform_residuals(driven, scheme, stages, tangents, residuals, transformed)
@@ -137,16 +167,21 @@ def step(reference: Reference, dt: float, unit: float, part: float, state: Recor
         if contact:
             fraction = solve_with_contact(chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma,
                                           lam, dt, transformed, real, pair, touch, work.coupling,
-                                          iteration == 1, fresh)  # fmt: skip
+                                          stale, fresh)  # fmt: skip
         else:
             solve_stages(chain, driven, tangents, gamma, lam, transformed, real, pair)
-        turned, forced, shifted = update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
-        if not max(turned, forced) < LARGEST_INCREMENT:
+            slow = stale and iteration > 1
+            if slow:
+                fraction = part_taken = relaxation(work, part_taken, not relaxed)
+            relaxed = slow
+        turned, forced, largest, shifted = update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
+        if not max(turned, forced / largest) < LARGEST_INCREMENT:
             return STALLED, iteration
-        share = part * IN_CONTACT if contact else part
+        share = part * ROUGH if contact or rough else part
         enough = max(TOLERANCE, share * largest_departure(stages.theta[STAGES - 1]))
         # contact's forces are as large as they are whatever the step: what counts is their own relative error
-        size = max(turned / enough, forced / (max(enough, share) if contact else enough))
+        bearable = max(enough, share if contact else min(share, enough * force / largest))
+        size = max(turned / enough, forced / (bearable * largest))
         size = max(size, shifted / max(TOLERANCE * length, share * shift_departure(stages.shift, state.base, dt)))
         if is_enough(size, before):
             move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
@@ -154,10 +189,11 @@ def step(reference: Reference, dt: float, unit: float, part: float, state: Recor
                 press_stages(chain, stages, driven, touch, work.coupling, False)
             join_stages(chain, stages)
             return CONVERGED, iteration
-        if diverges(iteration, size, before) and not contact:
+        if diverges(iteration, size, before) and not contact and (stale or not rough):
             return STALLED, iteration
+        stale = rough and before > 0.0 and size > STALE * before
         fresh = fraction < 1.0 or not size < SERVES * before
-        before = size if fraction == 1.0 else 0.0
+        before = size if fraction == 1.0 or not contact else 0.0
     return STALLED, LARGEST_ITERATIONS
 
 

@@ -238,9 +238,9 @@ def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transfo
 
 @kernel
 def update(chain: Chain, transform: Array, unit: float, fraction: float, stages: Stages, tangents: Tangents,
-           real: Factors, pair: Factors) -> tuple[float, float, float, float]:  # fmt: skip
-    """Add a fraction of the increments to the stages; return their size, rotation (rad) and force (N), the largest
-    force there is, and the size of the displacement of the start (m)."""
+           real: Factors, pair: Factors) -> tuple[float, float, float]:  # fmt: skip
+    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one, and
+    displacement of the start (m)."""
     T, x, z, half = transform, real.x, pair.x, 0.5 * chain.h * chain.swing
     turned, forced, shifted, largest = 0.0, 0.0, 0.0, unit
     for i in range(STAGES):
@@ -248,7 +248,7 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
         for a in range(len(x)):
             psi = t0 * x[a, 0] + t1 * z[a, 0].real + t2 * z[a, 0].imag
             if not np.isfinite(psi):
-                return np.inf, np.inf, 1.0, np.inf
+                return np.inf, np.inf, np.inf
             stages.theta[i, a] += psi
             turned = max(turned, abs(psi))
         for a in range(len(x) - 1):
@@ -264,4 +264,4 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
         moved -= half * psi * 1j * tangents.T[1]
         stages.shift[i] += moved
         shifted = max(shifted, abs(moved))
-    return turned / fraction, forced / fraction, largest, shifted / fraction
+    return turned / fraction, forced / (fraction * largest), shifted / fraction

@@ -90,9 +90,9 @@ def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k:
 
 @kernel
 def update(chain: Chain, transform: Array, unit: float, fraction: float, stages: Stages, tangents: Tangents,
-           real: Factors, pair: Factors) -> tuple[float, float, float, float]:  # fmt: skip
-    """Add a fraction of the increments to the stages; return their size, rotation (rad) and force (N), the largest
-    force there is, and the size of the displacement of the start (m)."""
+           real: Factors, pair: Factors) -> tuple[float, float, float]:  # fmt: skip
+    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one, and
+    displacement of the start (m)."""
     T = transform
     turned, forced, shifted, largest = 0.0, 0.0, 0.0, unit
     for i in range(STAGES):
@@ -113,7 +113,7 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
                 stages.theta[i, a, k] += p[k] - 0.5 * once[k] + (1 / 12) * twice[k]
             turned = max(turned, abs(p[0]), abs(p[1]), abs(p[2]))
             if not np.isfinite(p[0]):
-                return np.inf, np.inf, 1.0, np.inf
+                return np.inf, np.inf, np.inf
         for a in range(stages.F.shape[1]):
             for k in range(3):
                 change = t0 * real.x[a, 3 + k] + t1 * pair.x[a, 3 + k].real + t2 * pair.x[a, 3 + k].imag
@@ -125,4 +125,4 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
             moved = t0 * node_moves(chain, tangents, real, 0, k).real + t1 * z0.real + t2 * z0.imag
             stages.shift[i, k] += moved
             shifted = max(shifted, abs(moved))
-    return turned / fraction, forced / fraction, largest, shifted / fraction
+    return turned / fraction, forced / (fraction * largest), shifted / fraction

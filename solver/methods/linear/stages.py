@@ -63,9 +63,9 @@ def solve_with_contact(chain: Record, driven: Record, tangents: Record, transfor
 
 @dispatched
 def update(chain: Record, transform: Array, unit: float, fraction: float, stages: Record, tangents: Record,
-           real: Record, pair: Record) -> tuple[float, float, float, float]:  # fmt: skip
-    """Add a fraction of the increments to the stages; return their size, rotation (rad) and force (N), the largest
-    force there is, and the size of the displacement of the start (m)."""
+           real: Record, pair: Record) -> tuple[float, float, float]:  # fmt: skip
+    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one, and
+    displacement of the start (m)."""
     raise NotImplementedError
 
 

@@ -20,7 +20,7 @@ from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Work, estimate_error, step
 from solver.methods.time.radau.next_step import Last, finish, go_on
-from solver.physics.elasticity import can_stretch, mean_bending
+from solver.physics.elasticity import mean_bending
 from solver.physics.ends import DrivenEnd
 from solver.physics.section import Beside
 from solver.scene.scene import Scene
@@ -194,8 +194,6 @@ class RadauMethod(ABC):
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
         chain: Chain = self.chain
         self._unit = mean_bending(chain.elastic) / float(self.s[-1]) ** 2
-        # m h^2 of the lightest segment; what forces do to a rod that stretches is more than to turn it
-        self._swung = 0.0 if can_stretch(scene.rod) else float(chain.mass.min()) * chain.h**2
         self.beside = Beside.steps(scene.rod, self.s, chain.elastic.K, chain.elastic.kappa0)
         return chain, *lay_out(scene, chain, self.s)
 
@@ -247,8 +245,7 @@ class RadauMethod(ABC):
 
     def _solve(self, dt: float, consistent: bool) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""
-        rough = self.applied.strikes
-        force = 0.0 if consistent else (inf if rough else self._swung / dt**2)
-        status, iterations = step(self._hand_over(), dt, self._unit, self._newton_part, force, rough, self.state)
+        rough = self.applied.strikes and not consistent
+        status, iterations = step(self._hand_over(), dt, self._unit, self._newton_part, rough, self.state)
         self.applied.check()
         return int(status), int(iterations)

@@ -138,13 +138,11 @@ def relaxation(work: Record, part: float, first: bool) -> float:
 
 
 @kernel
-def step(reference: Reference, dt: float, unit: float, part: float, force: float, rough: bool,
-         state: Record) -> tuple[int, int]:  # fmt: skip
+def step(reference: Reference, dt: float, unit: float, part: float, rough: bool, state: Record) -> tuple[int, int]:
     """Solve for the stages of a step of dt; theta, shift and F hold the first guess. `unit` = EJ/L^2 (N).
 
     `reference`: a Chain, Loads, Driven, Scheme, Stages, Touch and Work. `part` of the step's largest departure from
-    steady rotation may be left, where that is more than TOLERANCE; and as much of `force` (N), which turns a segment by
-    1 rad in the step, at most `part` of the largest force there is. `rough`: whether loads may strike or rub. Returns
+    steady rotation may be left, where that is more than TOLERANCE. `rough`: whether loads may strike or rub. Returns
     how it ended and the iterations. Records of many arrays go only to where they are needed: each one passed on costs
     some ns in every iteration.
     """
@@ -174,14 +172,13 @@ def step(reference: Reference, dt: float, unit: float, part: float, force: float
             if slow:
                 fraction = part_taken = relaxation(work, part_taken, not relaxed)
             relaxed = slow
-        turned, forced, largest, shifted = update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
-        if not max(turned, forced / largest) < LARGEST_INCREMENT:
+        turned, forced, shifted = update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
+        if not max(turned, forced) < LARGEST_INCREMENT:
             return STALLED, iteration
         share = part * ROUGH if contact or rough else part
         enough = max(TOLERANCE, share * largest_departure(stages.theta[STAGES - 1]))
-        # contact's forces are as large as they are whatever the step: what counts is their own relative error
-        bearable = max(enough, share if contact else min(share, enough * force / largest))
-        size = max(turned / enough, forced / (bearable * largest))
+        # what presses does so by as much whatever the step: what counts is the forces' own relative error
+        size = max(turned / enough, forced / (max(enough, share) if contact or rough else enough))
         size = max(size, shifted / max(TOLERANCE * length, share * shift_departure(stages.shift, state.base, dt)))
         if is_enough(size, before):
             move(chain, state, stages, scheme.nodes, scheme.inverse, dt)

@@ -221,6 +221,7 @@ class BoxMethod:
 
     def compile(self) -> None:
         """Have every kernel compiled that a run may need."""
+        self.applied.compile()
         self.contact.compile()
         rescale_aux(self.state, 1.0)
 

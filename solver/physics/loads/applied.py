@@ -95,6 +95,11 @@ class AppliedLoads:
         """By how much (m) a step of dt may be off where loads set in, or cease, within it: see `Source.missed`."""
         return max((source.missed(r, mass, dt) for source in self._striking), default=0.0)
 
+    def compile(self) -> None:
+        """Have every kernel compiled that a load alone needs."""
+        for source in self._sources:
+            source.compile()
+
     def check(self) -> None:
         """Raise what a load could not say to the kernel that asked it."""
         for source in self._moving:

@@ -117,6 +117,9 @@ class Source:
     def check(self) -> None:
         """Raise what the load could not say to the kernel that asked it."""
 
+    def compile(self) -> None:
+        """Have every kernel compiled that only this load needs, be it there or not."""
+
 
 @dataclass(frozen=True)
 class Samples:

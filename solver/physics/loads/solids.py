@@ -17,7 +17,7 @@ a the direction of the segment where c lies within it, and nothing beyond its en
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,20 +25,13 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.kernel import inner
 from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, times, vector
+from solver.physics.loads import blows
 from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
 from solver.scene.checks import require_finite, unit_vector
 from solver.scene.scene import Scene
 
 account = as_lost
 
-LEAP = 0.5
-"""Part of the way to an obstacle, or of its radius, that a node may come nearer in a step."""
-STRUCK = 0.02
-"""How far off Radau's quadrature is, in (w dt)^2 of the speed, where a force sets in within a step."""
-SHARE = 0.3
-"""Part of the rod's largest speed with which a point meets or leaves a solid in a blow."""
-AT_IT, TINY = 1e-4, 1e-3
-"""In 1/w: how soon a point that is as good as on the surface passes it; and rad, how soon it would leave again."""
 FOLLOWED = 2.0
 """By how much (rad) a swing in a blow goes on in a step, at a tolerance of 1: times its 4th root, so that the error of
 order 5 falls somewhat faster than it."""
@@ -137,79 +130,24 @@ class Solids(Source):
         self.bars = not record.flat.all()
 
     def longest_step(self, r: Array, V: Array) -> float:
-        """In which no node comes nearer by more than LEAP of its gap, or of the radius where that is more."""
-        way, distance = self._from_axes(r)
-        radius = self.record.radius[~self.record.flat]
-        closing = -(way * V[:, None]).sum(axis=2) / np.maximum(distance, SMALLEST)
-        allowed = LEAP * np.maximum(distance - radius, radius)
-        return float(1.0 / max(np.max(closing / allowed), SMALLEST))
+        """See `blows`."""
+        return float(blows.longest_step(self.record, r, np.ascontiguousarray(V)))
 
     def missed(self, r: Array, mass: Array, dt: float) -> float:
-        """Twice the way that a part of the rod goes on the one side of a surface which it passes in the step, on that
-        where it is less, times STRUCK (w dt)^2, at most 1; w^2 = k / mass, as it swings on the solid."""
-        record, places = self.record, r.reshape(-1, 3)
-        depth = record.radius - places @ record.axis.T  # (times n, m): of floors
-        if self.bars:
-            depth[:, ~record.flat] = record.radius[~record.flat] - self._from_axes(places)[1]
-        depth = depth.reshape(*r.shape[:2], -1)
-        within = depth > 0.0
-        struck = within.any(axis=0) & ~within.all(axis=0)
-        if not struck.any():
-            return 0.0
-        unseen = np.minimum(STRUCK * dt**2 * record.stiffness / mass[:, None], 1.0)
-        less = np.minimum(depth.max(axis=0), -depth.min(axis=0))
-        return float((2.0 * unseen * less)[struck].max())
+        """See `blows`."""
+        return float(blows.missed(self.record, r, mass, dt))
 
     def next_blow(self, motion: Array, mass: Array, tolerance: float) -> float:
-        """Where parts come to a solid, or leave it, faster than SHARE of what is fastest: free flight until then, and a
-        swing on the solid's spring; of that a part in a step whose error falls with the tolerance."""
+        """See `blows`."""
         r, V, A = motion
-        record, w = self.record, np.sqrt(self.record.stiffness / mass[:, None])
-        height, up = r @ record.axis.T - record.radius, record.axis  # (n, m): of floors
-        rate, bend = V @ up.T, A @ up.T
-        if self.bars:
-            curved = ~record.flat
-            way, distance = self._from_axes(r)
-            height[:, curved] = distance - record.radius[curved]
-            away = way / np.maximum(distance, SMALLEST)[:, :, None]
-            rate[:, curved], bend[:, curved] = ((x[:, None] * away).sum(axis=2) for x in (V, A))
-        fast = np.abs(rate) > SHARE * np.sqrt((V * V).sum(axis=1).max())
-        if not fast.any():
-            return inf
-        height, rate, bend, w = (np.broadcast_to(x, fast.shape)[fast] for x in (height, rate, bend, w))
-        deep = np.where(np.abs(height) < AT_IT * np.abs(rate) / w, rate < 0.0, height < 0.0)
-        followed = FOLLOWED * tolerance**0.25
-        return float(min(_until_left(height[deep], rate[deep], bend[deep], w[deep], followed),
-                         _until_met(height[~deep], rate[~deep], bend[~deep])))  # fmt: skip
+        return float(blows.next_blow(self.record, r, V, A, mass, FOLLOWED * tolerance**0.25))
 
-    def _from_axes(self, r: Array) -> tuple[Array, Array]:
-        """The way (n, m, 3) from the obstacles' axes to places r (n, 3), and its length (n, m)."""
-        curved = ~self.record.flat
-        start, axis = self.record.start[curved], self.record.axis[curved]
-        away = r[:, None] - start
-        part = np.clip((away * axis).sum(axis=2) / np.maximum((axis * axis).sum(axis=1), SMALLEST), 0.0, 1.0)
-        way = away - part[:, :, None] * axis
-        return way, np.linalg.norm(way, axis=2)
-
-
-def _until_met(height: Array, rate: Array, bend: Array) -> float:
-    """When the first of some points in free flight is at height 0."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.sqrt(rate * rate - 2.0 * bend * height)
-        falls, comes_back = 2.0 * height / (root - rate), (-rate - root) / bend
-        times = np.where(rate < 0.0, falls, np.where(bend < 0.0, comes_back, inf))
-    return float(np.min(times[times > 0.0], initial=inf))
-
-
-def _until_left(height: Array, rate: Array, bend: Array, w: Array, followed: float) -> float:
-    """When the first of some points that swing about where a solid bears them is at height 0, or has `followed` that
-    (rad); those that stay below do not count."""
-    beside, speed = -bend / w**2, rate / w
-    rest, size = height - beside, np.hypot(beside, speed)
-    leaves = size > np.abs(rest)
-    phase = np.arctan2(speed[leaves], beside[leaves]) - np.arccos(-rest[leaves] / size[leaves])
-    phase %= 2.0 * np.pi
-    return float(np.min(np.minimum(np.where(phase < TINY, inf, phase), followed) / w[leaves], initial=inf))
+    def compile(self) -> None:
+        """Have the kernels compiled that ask where a rod comes to solids."""
+        motion, mass = np.zeros((3, 1, 3)), np.ones(1)
+        self.longest_step(motion[0], motion[1])
+        self.missed(motion, mass, 0.0)
+        self.next_blow(motion, mass, 1.0)
 
 
 class Near(NamedTuple):

@@ -141,6 +141,7 @@ class RadauMethod(ABC):
 
     def compile(self) -> None:
         """Have every kernel compiled that a run may need, after its first step."""
+        self.applied.compile()
         self._guess(1.0)
         self.relative_increment(1.0)
         self.look_back(0.5 * self._step)

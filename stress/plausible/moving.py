@@ -4,9 +4,23 @@ from __future__ import annotations
 
 from math import pi, sqrt
 
+import numpy as np
 from numpy.random import Generator
 
-from stress.plausible.parts import GRAVITY, Drawn, Part, arc, case, curve, harmonic, log, ramp, straight, water
+from stress.plausible.parts import (
+    GRAVITY,
+    MATERIALS,
+    Drawn,
+    Part,
+    arc,
+    case,
+    curve,
+    harmonic,
+    log,
+    ramp,
+    straight,
+    water,
+)
 
 ANY = ("steel", "carbon", "glass fibre", "nylon", "rubber")
 LIMP = ("silicone", "rubber", "polypropylene")
@@ -28,6 +42,25 @@ def umbilical(rng: Generator) -> Part:
     ship = {"preset": "pin", "frame": "lab", "x3": harmonic(log(rng, 0.2, 2.0), period, 4.0 * period)}
     return case("umbilical", d.rod, straight(0, 0, -1), (ship, "free"), 4.0 * period, 60,
                 fluid=water(rng, log(rng, 0.1, 0.8)), loads={"gravity": GRAVITY})  # fmt: skip
+
+
+def mooring(rng: Generator) -> Part:
+    """A chain from its anchor along the sea floor and up to a buoy that heaves and sways."""
+    D, height = log(rng, 0.02, 0.12), log(rng, 20.0, 200.0)
+    a = height * log(rng, 0.1, 1.5)  # of its catenary: horizontal tension over weight per length
+    hanging = sqrt(height**2 + 2.0 * height * a)
+    L, mass = hanging / rng.uniform(0.4, 0.9), 2e4 * D**2
+    s = np.linspace(0.0, L, 401)
+    up = np.maximum(s - (L - hanging), 0.0)
+    points = np.stack([s - up + a * np.arcsinh(up / a), 0.0 * s, np.sqrt(a**2 + up**2) - a], axis=1)
+    EJ, period = 1e-3 * MATERIALS["steel"][0] * pi * D**4 / 64.0, log(rng, 6.0, 14.0)
+    rod = {"length": L, "diameter": D, "bending_stiffness": EJ, "torsional_stiffness": EJ,
+           "axial_stiffness": 8.5e10 * D**2, "mass_per_length": mass}  # fmt: skip
+    buoy = {"preset": "pin", "frame": "lab", "x1": harmonic(log(rng, 0.1, 2.0), period, 4.0 * period),
+            "x3": harmonic(log(rng, 0.2, 3.0), period, 4.0 * period)}  # fmt: skip
+    floor = {"stiffness": mass * 9.81 / (0.05 * D), "friction": log(rng, 0.2, 0.8)}
+    return case("mooring", rod, curve(points, a1=[0.0, 1.0, 0.0]), ("pin", buoy), 4.0 * period, 60, fluid=water(rng),
+                loads={"gravity": GRAVITY, "floor": floor})  # fmt: skip
 
 
 def deep_sea(rng: Generator) -> Part:
@@ -192,5 +225,5 @@ def thrown(rng: Generator) -> Part:
     return case("thrown", rod, shape, ("free", "free"), 4.0 * d.period, loads={"gravity": GRAVITY})
 
 
-KINDS = (towed, umbilical, deep_sea, whirled, dropped, suture, whip, resonance, released, shaft, swing, rope,
+KINDS = (towed, umbilical, mooring, deep_sea, whirled, dropped, suture, whip, resonance, released, shaft, swing, rope,
          rope_struck, struck, string, fishing_rod, thrown)  # fmt: skip

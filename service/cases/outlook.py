@@ -35,7 +35,7 @@ RINGING = "undamped"
 SECONDS = {
     "wound up": 9.0, "lies on itself": 12.0, "may spring onto itself": 5.5, "taut": 5.6, "still": 0.1, "struck": 4.5,
     "struck in water": 1.4, "held straight and twisted": 2.6, "held straight and moved": 1.5, "held straight": 0.3,
-    "on a floor": 6.0, "slides as a whole": 0.1, "overdamped": 0.12, "overdamped and wound up": 2.2,
+    "on a floor": 8.0, "slides as a whole": 0.1, "overdamped": 0.12, "overdamped and wound up": 2.2,
     "in space and moved or let go": 3.2, "spun": 2.7, "flying freely": 0.11, "settling in space": 0.14,
     "limp in space": 3.2, "swinging in space": 4.0, "slow in space": 0.4, "long and heavy in water": 0.8,
     "shaken in water": 0.5, "towed through water": 0.17, "in water": 0.25, "in space and in water": 0.25,

@@ -6,7 +6,7 @@ from math import isnan
 
 from solver.arrays import Array
 from solver.measures.frame import Frame
-from solver.measures.passages import Passages, Shape, passages, shape_of
+from solver.measures.passages import QUIET, Passages, Shape, passages, shape_of
 from solver.measures.topology import share_of_rays
 from solver.run.remarks import Remarks
 
@@ -27,15 +27,17 @@ class Watch:
         """`holds`: the scene has contact."""
         self._remarks, self._holds = remarks, holds
         self._turns, self._share = 0.0, 0.0
-        self._hops = 0
-        """Over an end since the last frame, with signs."""
+        self._hops, self._near = 0, False
+        """Over an end since the last frame, with signs; and whether the rod has come so near to a ray of an end since
+        then that their share of Wr changed at a step."""
         self._last: tuple[Array, ...] = ()
         """The parts of the last shape, if there is one."""
 
     def follow(self, shape: Shape) -> None:
         """After each step of a rod whose strands are held apart."""
         share = share_of_rays(shape.r, shape.tangents[0], shape.tangents[1])
-        if self._last and abs(share - self._share) > JUMP:
+        if self._last and abs(share - self._share) > QUIET:
+            self._near = True
             self._hops += passages(Shape(*self._last), shape).hops
         self._share = share
         self._keep(shape)
@@ -51,9 +53,13 @@ class Watch:
         self._turns = turns
         if self._holds:
             self.follow(shape)
-            hops, self._hops = self._hops, 0
+            hops, near, self._hops, self._near = self._hops, self._near, 0, False
             self._remarks.end_hops += abs(hops)
-            return "Tw + Wr - Lk jumped" if abs(jump - 2.0 * hops) > JUMP else ""
+            left = jump - 2.0 * hops
+            if near:  # as where the ends of a ring lie closer together than a step goes: the way is not a straight one
+                self._remarks.unclear_jumps += abs(round(0.5 * left))
+                return ""
+            return "Tw + Wr - Lk jumped" if abs(left) > JUMP else ""
         if self._last and abs(jump) > JUMP:
             self._enter(round(0.5 * jump), passages(Shape(*self._last), shape), frame.t)
         self._keep(shape)

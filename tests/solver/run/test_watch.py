@@ -71,6 +71,17 @@ def test_a_crossing_ends_a_run_with_contact_and_is_told_without(frame: Frame) ->
     assert remarks.attributes() == {"crossings": 1, "first_crossing": 2.0}
 
 
+def test_a_jump_that_hops_do_not_explain_ends_no_run_while_the_rod_is_near_a_ray(frame: Frame) -> None:
+    """As in a ring of DNA whose ends lie closer together than a step goes, which is no straight way."""
+    remarks = Remarks()
+    watch = Watch(remarks, True)
+    watch.see(looks(frame, -0.52, 0.3, 1.0))
+    hopped = looks(frame, -0.52, -0.3, 2.0)
+    assert not watch.see(replace(hopped, Tw=hopped.Tw - 2.0))
+    assert remarks.attributes() == {"end_hops": 1, "unclear_jumps": 1}
+    assert watch.see(replace(hopped, Tw=hopped.Tw + 2.0))  # nowhere near: nothing but a crossing is left
+
+
 def test_the_deepest_overlap_is_kept(frame: Frame) -> None:
     remarks = Remarks()
     watch = Watch(remarks, True)

@@ -27,9 +27,8 @@ class Watch:
         """`holds`: the scene has contact."""
         self._remarks, self._holds = remarks, holds
         self._turns, self._share = 0.0, 0.0
-        self._hops, self._near = 0, False
-        """Over an end since the last frame, with signs; and whether the rod has come so near to a ray of an end since
-        then that their share of Wr changed at a step."""
+        self._hops, self._hopped = 0, False
+        """Over an end since the last frame, with signs; and whether there were any."""
         self._last: tuple[Array, ...] = ()
         """The parts of the last shape, if there is one."""
 
@@ -37,8 +36,8 @@ class Watch:
         """After each step of a rod whose strands are held apart."""
         share = share_of_rays(shape.r, shape.tangents[0], shape.tangents[1])
         if self._last and abs(share - self._share) > QUIET:
-            self._near = True
-            self._hops += passages(Shape(*self._last), shape).hops
+            hops = passages(Shape(*self._last), shape).hops
+            self._hops, self._hopped = self._hops + hops, self._hopped or hops != 0
         self._share = share
         self._keep(shape)
 
@@ -53,10 +52,10 @@ class Watch:
         self._turns = turns
         if self._holds:
             self.follow(shape)
-            hops, near, self._hops, self._near = self._hops, self._near, 0, False
+            hops, hopped, self._hops, self._hopped = self._hops, self._hopped, 0, False
             self._remarks.end_hops += abs(hops)
             left = jump - 2.0 * hops
-            if near:  # as where the ends of a ring lie closer together than a step goes: the way is not a straight one
+            if hopped:  # as where the ends of a ring nearly meet: a step's way past them is not straight
                 self._remarks.unclear_jumps += abs(round(0.5 * left))
                 return ""
             return "Tw + Wr - Lk jumped" if abs(left) > JUMP else ""

@@ -2,8 +2,9 @@
 
 Three proofs, each cheaper than the next search: an arc of length l and total curvature K has a chord of at least
 l cos(K/2) (Schur), so while the rod's total curvature is small no pair can be near; neighbouring points are at most
-`longest_spacing` apart, so a search marches by (d - radius) / longest_spacing points; and a gap once measured holds
-until somebody has moved by half of it.
+`longest_spacing` apart, so a search marches by (d - radius) / longest_spacing points, first from arc to arc of ARC
+points, each within a ball, as in a coil all points are near; and a gap once measured holds until somebody has moved by
+half of it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.physics.contact.law import Law
 from solver.physics.contact.members import Members, dismiss, take_in
-from solver.physics.contact.points import Points, farthest, neighbours
+from solver.physics.contact.points import ARC, Points, farthest, neighbours
 
 
 class Pairs(NamedTuple):
@@ -49,46 +50,63 @@ def longest_spacing(points: Points) -> float:
     """The largest distance (m) of two neighbours: how far apart one point farther along may be, at the most."""
     longest = 0.0
     for i in range(len(points.p) - 1):
-        longest = max(longest, _distance(points, i + 1, i))
+        longest = max(longest, _distance(points.p, i + 1, i))
     return longest
 
 
 @inlined
-def _distance(points: Points, a: int, b: int) -> float:
-    x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
+def _distance(p: Array, a: int, b: int) -> float:
+    x, y, z = p[a, 0] - p[b, 0], p[a, 1] - p[b, 1], p[a, 2] - p[b, 2]
     return np.sqrt(x * x + y * y + z * z)  # type: ignore[no-any-return]
+
+
+@inner
+def _enclose(points: Points) -> float:
+    """Write the balls around the arcs. Returns the largest radius (m)."""
+    p, balls, last, largest = points.p, points.balls, len(points.p) - 1, 0.0
+    for arc in range(len(balls)):
+        first, radius = ARC * arc, 0.0
+        middle = min(first + ARC // 2, last)
+        for i in range(first, min(first + ARC, last + 1)):
+            radius = max(radius, _distance(p, i, middle))
+        balls[arc, 0], balls[arc, 1], balls[arc, 2], balls[arc, 3] = p[middle, 0], p[middle, 1], p[middle, 2], radius
+        largest = max(largest, radius)
+    return largest
 
 
 @kernel
 def smallest_distance(points: Points, skip: float, enough: float) -> float:
     """The smallest distance (m) of two points more than `skip` of arc apart, or `enough` if none are nearer."""
-    M, pitch = len(points.p), longest_spacing(points)
-    apart = neighbours(points, skip)
-    best = enough
-    for a in range(M):
-        b = farthest(points, skip, a)  # from the far end, so that a rod that is not folded is passed in one leap
-        while b >= a + apart:
-            d = _distance(points, a, b)
-            if d < best:
-                best = d
-            b -= max(1, int((d - best) / pitch))
-    return best
+    return float(_smallest(points, skip, enough, 0.0))
 
 
 @kernel
 def smallest_gap(points: Points, skip: float) -> float:
     """The smallest distance (m) of the surfaces at two points more than `skip` of arc apart; inf if there are none."""
-    M, pitch, widest = len(points.p), longest_spacing(points), 0.0
-    for i in range(M):
-        widest = max(widest, points.diameter[i])
-    apart = neighbours(points, skip)
-    best = np.inf
-    for a in range(M):
-        b = farthest(points, skip, a)
-        while b >= a + apart:
-            d = _distance(points, a, b)
-            best = min(best, d - 0.5 * (points.diameter[a] + points.diameter[b]))
-            b -= max(1, int((d - widest - best) / pitch))
+    return float(_smallest(points, skip, np.inf, 0.5))
+
+
+@inner
+def _smallest(points: Points, skip: float, enough: float, part: float) -> float:
+    """The smallest distance (m) of two points less `part` of their diameters, or `enough`."""
+    largest, pitch, widest = _enclose(points), longest_spacing(points), 0.0
+    for i in range(len(points.p)):
+        widest = max(widest, 2.0 * part * points.diameter[i])
+    apart, best = neighbours(points, skip), enough
+    for one in range(len(points.balls)):
+        other = len(points.balls) - 1  # from the far end, so that a rod that is not folded is passed in one leap
+        while other >= one:
+            d = _distance(points.balls, one, other) - points.balls[one, 3]
+            if d - points.balls[other, 3] - widest >= best:
+                other -= max(1, int((d - largest - widest - best) / (ARC * pitch)))
+                continue
+            for a in range(ARC * one, min(ARC * (one + 1), len(points.p))):
+                b = min(farthest(points, skip, a), ARC * (other + 1) - 1)
+                while b >= max(a + apart, ARC * other):
+                    d = _distance(points.p, a, b)
+                    best = min(best, d - part * (points.diameter[a] + points.diameter[b]))
+                    b -= max(1, int((d - widest - best) / pitch))
+            other -= 1
     return best
 
 
@@ -107,24 +125,43 @@ def largest_displacement(points: Points, since: Array) -> float:
 @kernel
 def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None:
     """List the pairs nearer than `radius`; counts[1] says how many did not fit."""
-    M, pitch = len(points.p), longest_spacing(points)
+    largest, pitch = _enclose(points), longest_spacing(points)
     apart = neighbours(points, skip)
     count = 0
-    for a in range(M):
-        b = farthest(points, skip, a)
-        while b >= a + apart:
-            d = _distance(points, a, b)
-            if d < radius:
-                if count < len(pairs.first):
-                    pairs.first[count] = a
-                    pairs.second[count] = b
-                count += 1
-                b -= 1
-            else:
-                b -= max(1, int((d - radius) / pitch))
+    for arc in range(len(points.balls)):
+        near = _arcs_near(points, arc, radius, largest, ARC * pitch)
+        for a in range(ARC * arc, min(ARC * (arc + 1), len(points.p))):
+            for k in range(near):
+                b = min(farthest(points, skip, a), ARC * (points.near[k] + 1) - 1)
+                while b >= max(a + apart, ARC * points.near[k]):
+                    d = _distance(points.p, a, b)
+                    if d < radius:
+                        if count < len(pairs.first):
+                            pairs.first[count] = a
+                            pairs.second[count] = b
+                        count += 1
+                        b -= 1
+                    else:
+                        b -= max(1, int((d - radius) / pitch))
     pairs.counts[0] = min(count, len(pairs.first))
     pairs.counts[1] = count - pairs.counts[0]
     dismiss(pairs.members)
     for pair in range(pairs.counts[0]):
         take_in(pairs.members, points, pairs.first[pair])
         take_in(pairs.members, points, pairs.second[pair])
+
+
+@inner
+def _arcs_near(points: Points, one: int, radius: float, largest: float, pitch: float) -> int:
+    """List the arcs from `one` on of which a point may be nearer to one of its points than `radius`, the last first.
+    `largest` radius of a ball, `pitch` of two neighbours' centres, at the most."""
+    many, other = 0, len(points.balls) - 1
+    while other >= one:
+        d = _distance(points.balls, one, other) - points.balls[one, 3]
+        if d - points.balls[other, 3] < radius:
+            points.near[many] = other
+            many += 1
+            other -= 1
+        else:
+            other -= max(1, int((d - largest - radius) / pitch))
+    return many

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import ceil, cos, inf, pi
+from math import ceil, cos, inf, pi, sqrt
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from solver.arrays import Array
 from solver.methods.space.box.fields import KAPPA
 from solver.methods.space.box.trial import total_bending
 from solver.physics.contact.law import Law
-from solver.physics.contact.points import Points, contact_points, place_points
+from solver.physics.contact.points import Points, contact_points, farthest, place_points
 from solver.physics.contact.search import (
     Pairs,
     find_pairs,
@@ -126,6 +126,18 @@ def test_a_folded_rod_is_found_out_although_the_search_marches() -> None:
     every = distances(points)
     radius = 1.1 * max(min(every.values()), 0.05)
     assert listed(found_by(points, radius)) == {pair for pair, d in every.items() if d < radius}
+
+
+@pytest.mark.parametrize("closing", [inf, 0.01])
+def test_in_a_coil_all_are_found_although_all_are_near(closing: float) -> None:
+    angle = 2.0 * pi * 5.0 * S
+    T = np.column_stack([np.cos(angle), np.sin(angle), np.full(len(S), 0.1)]) / sqrt(1.01)
+    points = points_of(T)._replace(closing=closing)
+    last = [farthest(points, SKIP, a) for a in range(len(points.p))]
+    every = {pair: d for pair, d in distances(points).items() if pair[1] <= last[pair[0]]}
+    assert listed(found_by(points, 0.03)) == {pair for pair, d in every.items() if d < 0.03} != set()
+    assert smallest_distance(points, SKIP, inf) == pytest.approx(min(every.values()), rel=1e-12)
+    assert smallest_gap(points, SKIP) == pytest.approx(min(every.values()) - 0.01, rel=1e-12)
 
 
 def test_what_does_not_fit_is_counted() -> None:

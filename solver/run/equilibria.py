@@ -79,9 +79,9 @@ class Equilibria(Run):
         return self._equations.s
 
     @property
-    def presses(self) -> bool:
-        """Whether parts of the rod press on each other."""
-        return self._equations.contact.pressing > 0
+    def pressing(self) -> int:
+        """Number of pairs of points that press on each other."""
+        return self._equations.contact.pressing
 
     @property
     def coupled(self) -> bool:

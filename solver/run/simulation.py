@@ -55,9 +55,9 @@ class Simulation(Run):
         return self._method.s
 
     @property
-    def presses(self) -> bool:
-        """Whether parts of the rod press on each other."""
-        return self._method.pressing() > 0
+    def pressing(self) -> int:
+        """Number of pairs of points that press on each other."""
+        return self._method.pressing()
 
     def warm(self) -> None:
         """Have every kernel compiled."""

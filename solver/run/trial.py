@@ -20,6 +20,8 @@ OVERHEAD = 60
 """Intervals that take as long as all else in a Newton iteration."""
 IN_CONTACT = 6.0
 """How many times more work an iteration is where strands press on each other."""
+PAIR = 2.0
+"""What each pair of points that press on each other adds: a coil's are many more than its intervals."""
 DEAR_AT_REST, PRESSED_AT_REST, COUPLED_AT_REST = 20.0, 4.0, 0.5
 """How many times more work an iteration of a static analysis is, with all that goes with it; of that how many times
 more where strands press on each other; and what the square of its intervals adds where rotations are coupled far apart.
@@ -59,14 +61,14 @@ def strides_of(tolerance: float, steps: int = 0) -> int:
     return int(max(round(STRIDES * min(tolerance / 1e-3, 1.0) ** 0.2), 1))
 
 
-def work_of_iteration(mesh: int, pressed: bool) -> float:
-    """Of a motion; `pressed`: whether strands press on each other."""
-    return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT if pressed else 1.0)
+def work_of_iteration(mesh: int, pressing: int) -> float:
+    """Of a motion; `pressing`: how many pairs of points press on each other."""
+    return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT if pressing else 1.0) + PAIR * pressing
 
 
-def work_at_rest(mesh: int, pressed: bool, coupled: bool) -> float:
+def work_at_rest(mesh: int, pressing: int, coupled: bool) -> float:
     """Of an iteration of a static analysis; `coupled`: whether it counts all rotations together."""
-    nearby = (intervals_of(mesh) + OVERHEAD) * (PRESSED_AT_REST if pressed else 1.0)
+    nearby = (intervals_of(mesh) + OVERHEAD) * (PRESSED_AT_REST if pressing else 1.0)
     return DEAR_AT_REST * nearby + (COUPLED_AT_REST * intervals_of(mesh) ** 2 if coupled else 0.0)
 
 

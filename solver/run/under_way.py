@@ -60,10 +60,10 @@ class UnderWay:
         """Take a step; give the frame where it ends, if one is due there. Raises RunFailed."""
         before = self.statistics.newton_iterations
         frame = self.run.advance()
-        presses = self.run.presses
-        self.pressed = self.pressed or presses
-        per_iteration = (work_at_rest(self.trial.mesh, presses, self.run.coupled) if isinstance(self.run, Equilibria)
-                         else work_of_iteration(self.trial.mesh, presses))  # fmt: skip
+        pressing = self.run.pressing
+        self.pressed = self.pressed or pressing > 0
+        per_iteration = (work_at_rest(self.trial.mesh, pressing, self.run.coupled) if isinstance(self.run, Equilibria)
+                         else work_of_iteration(self.trial.mesh, pressing))  # fmt: skip
         self.work += (self.statistics.newton_iterations - before) * per_iteration
         return frame
 

@@ -89,6 +89,16 @@ def test_strands_that_pass_beside_each_other_do_not_cross(height):
     assert not watch.passed(np.vstack([there, back + np.array([0.0, 0.0, height - 1.0])]))
 
 
+@pytest.mark.parametrize(("end", "crossed"), [(-2.03, False), (-6.0, True)])
+def test_a_rod_that_turns_back_within_an_interval_is_where_its_arcs_are(end, crossed):
+    """Random case [6, 2418]: the last straight interval meets the last but two, the arcs do not."""
+    bent = [[0.0, 0.0], [-8.53, 0.21], [-16.95, -1.18], [-25.44, -2.05], [-25.32, 6.48], [-24.68, end]]
+    rod, tilt = np.array([[*at, 0.0] for at in bent]), np.outer(np.linspace(-1.0, 1.0, 6), [0.0, 0.0, 1e-9])
+    watch = Crossings(42.5, 5.4)
+    assert not watch.passed(rod + tilt)
+    assert watch.passed(rod - tilt) is crossed
+
+
 def misbehave(task: Task) -> Result:
     """What a run must not do."""
     if task.at == ("spins",):

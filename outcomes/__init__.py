@@ -71,10 +71,11 @@ class Outcome(StrEnum):
     )
     ROD_STRETCHED = (
         "rod_stretched",
-        "the rod was no longer as long as it is by more than 10 %: its ends or loads pull or press it so far, or the "
-        "box method did not keep the length of an interval",
-        "keep the ends nearer to each other than 1.1 times the rod's length; where a load or the weight pulls it, give "
-        "a larger rod.axial_stiffness; to a straight rod that is to buckle, give "
+        "the rod was no longer as long as it is by more than 10 %, or, with rod.axial_stiffness, 5 times as long or a "
+        "fifth (with contact 1.5 times): its ends or loads pull or press it so far, or the box method did not keep the "
+        "length of an interval",
+        "keep the ends nearer to each other than 1.1 times the rod's length, or give it its rod.axial_stiffness, with "
+        "which it stretches; if it has one, give a larger one; to a straight rod that is to buckle, give "
         "a small load across it, which says to which side; by the box method, use more intervals, a smaller dt_max or "
         "increment_tolerance, or the method staggered or a tolerance",
         "solver",

@@ -20,7 +20,7 @@ from service.cases.size import tables_in
 from service.cases.units import units_of
 from solver import Curve, End, Scene
 from solver.kernels.rotation import matrix_of
-from solver.physics.axial import LARGEST_STRAIN, distances, has_to_stretch
+from solver.physics.axial import distances, has_to_stretch, largest_strain
 from solver.physics.elasticity import Stretch
 from solver.physics.ends import travel
 from solver.physics.loads.solids import Floor, Given
@@ -35,6 +35,8 @@ SHORTENED = 1e-4
 """Part of its length by which a straight rod may be pressed shorter."""
 SHEARED = 0.5
 """Shear strain of a rod's surface beyond that of any material but rubber."""
+RUBBER = 0.3
+"""Strain beyond that of any material but rubber."""
 BEYOND = 1.0 + 1e-6
 """Part of the rod's length up to which a table ends at the rod's end."""
 BESIDE, WITHIN = 8.0, 0.9
@@ -166,21 +168,22 @@ def _touches_itself(scene: Scene) -> Iterator[FieldError]:
 
 
 def _stretched(scene: Scene) -> Iterator[FieldError]:
-    """A rod that loads, or its weight, would stretch by more than the theory bears."""
+    """A rod that loads, or its weight, would stretch by more than a material or a run bears."""
     s = np.linspace(0.0, scene.rod.length, 11)
     stiffness = min((float(np.min(law.EA(s))) for law in scene.rod.laws if isinstance(law, Stretch)), default=np.inf)
     weight = float(np.mean(scene.rod.mass(s))) * scene.rod.length * hypot(*scene.gravity)
     strain = max(weight, *forces(scene).values()) / stiffness
-    if strain > LARGEST_STRAIN:
-        rule = (f"is so small that loads or the weight may stretch the rod by {strain:.2g} of its length, more than "
-                f"the {LARGEST_STRAIN:g} up to which a run goes on")  # fmt: skip
+    if strain > min(RUBBER, largest_strain(scene)):
+        bears = (f"more than the {largest_strain(scene):g} up to which a run goes on" if strain > largest_strain(scene)
+                 else "which only rubber bears: is it E A, in N?")  # fmt: skip
+        rule = f"is so small that loads or the weight may stretch the rod by {strain:.2g} of its length, {bears}"
         yield FieldError("/rod/axial_stiffness", stiffness, rule)
 
 
 def _pulled_apart(scene: Scene) -> Iterator[FieldError]:
     """Ends that come farther apart than the rod is long."""
     apart, length = distances(scene), scene.rod.length
-    if apart is not None and float(apart.max()) > (1.0 + LARGEST_STRAIN) * length:
+    if apart is not None and float(apart.max()) > (1.0 + largest_strain(scene)) * length:
         rule = f"come up to {apart.max():.3g} m apart, and the rod is {length:.3g} m long: it would be torn"
         yield FieldError("/ends", None, rule)
 

@@ -33,7 +33,7 @@ from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
 from solver.methods.time.radau.method import RadauMethod
 from solver.methods.time.radau.next_step import move_guess
-from solver.physics.axial import axial_compliance
+from solver.physics.axial import axial_compliance, stretch_of
 from solver.physics.contact.forces import Touch, keeps_apart
 from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
@@ -286,10 +286,10 @@ class StaggeredMethod(RadauMethod):
         self.end.follow(self._moved[1])
 
     def strain(self) -> float:
-        """The trial's largest strain; or its stretch by the compliance of its ends, in rod lengths."""
+        """The trial's largest strain, see `stretch_of`; or by the compliance of its ends, in rod lengths."""
         if len(self._strain):
             np.divide(self.stages.opening[-1, 0], self.chain.span, out=self._strain)
-            return float(max(self._strain.max(), -self._strain.min()))
+            return stretch_of(self._strain)
         return stretch_of_ends(self._handed.reference) / float(self.s[-1]) if self._ends_give else 0.0
 
     def _flowed(self, weights: Array) -> Array:

@@ -25,9 +25,24 @@ from solver.scene.scene import Scene
 TAUT = 0.999
 """Distance of the ends, in rod lengths, from which on the rod has to be able to stretch."""
 LARGEST_STRAIN = 0.1
-"""Beyond this the rod that is computed is another one."""
+"""Of a rod without a law of stretch: beyond it the rod that is computed is another one."""
+LARGEST_BY_LAW, LARGEST_IN_CONTACT = 4.0, 0.5
+"""Of a rod with one, as of rubber; and where contact holds strands apart, whose points the stretch spreads."""
 LOOKED_AT = 201
 """Points along the rod, and in time, that are looked at."""
+
+
+def largest_strain(scene: Scene) -> float:
+    """The strain up to which a run goes on; a rod may be squeezed by the same factor."""
+    if not can_stretch(scene.rod):
+        return LARGEST_STRAIN
+    return LARGEST_BY_LAW if scene.contact is None else LARGEST_IN_CONTACT
+
+
+def stretch_of(strain: Array) -> float:
+    """The largest strain, that of what is squeezed by a factor being as large as of what is stretched by it."""
+    longest, shortest = 1.0 + float(strain.max()), 1.0 + float(strain.min())
+    return max(longest, 1.0 / shortest) - 1.0 if shortest > 0.0 else inf
 
 
 def axial_compliance(scene: Scene) -> float:

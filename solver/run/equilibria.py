@@ -15,7 +15,7 @@ from solver.methods.space.segments.balances import Motion
 from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.outcome import Outcome, RunFailed
-from solver.physics.axial import LARGEST_STRAIN, axial_stiffness
+from solver.physics.axial import axial_stiffness, largest_strain
 from solver.physics.section import Beside
 from solver.run.linking import LinkingNumber
 from solver.run.run import Run
@@ -150,12 +150,12 @@ class Equilibria(Run):
         """The frame of the point that the path has reached."""
         equations, path, point = self._equations, self._path, self._path.point
         equations.look_at(point)
-        if equations.strain() > LARGEST_STRAIN:
-            detail = f"stretched by {equations.strain():.2g} of its length"
+        if equations.strain() > largest_strain(self._scene):
+            detail = f"stretched or squeezed by a factor of {1.0 + equations.strain():.3g}"
             raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, detail)
         fields = self._fields(point)
         self.remarks.turning_loads += equations.loads_turn()
-        self.remarks.stretched(equations.strain() * float(self.s[-1]))
+        self.remarks.stretched(equations.strain(), float(self.s[-1]))
         stages = equations.stages
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
         energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], stages.F[0], motion)

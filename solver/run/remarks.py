@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 
+MUCH = 0.1
+"""Strain from which on a linear law and a section that does not change are worth a word."""
+
 
 @dataclass
 class Remarks:
@@ -15,7 +18,8 @@ class Remarks:
     frames are too far apart to tell which. `deepest_overlap` (m) of strands, and the time
     `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
     it has to stretch, see `physics.axial`; `end_stretch` (m): how far both ends together were away from where
-    they are held, at the most, at a frame. `energy_lost`: energy that went nowhere, over the largest
+    they are held, at the most, at a frame. `largest_strain`: of a rod with a law of stretch, at a frame, if that is
+    more than a tenth. `energy_lost`: energy that went nowhere, over the largest
     that motion, strain and contact ever had, if that is more than a tenth. `retardation_time` (s): of the rod's
     material, with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`:
     frames of a static analysis in which forces turned with the rod.
@@ -29,13 +33,17 @@ class Remarks:
     deepest_overlap_at: float = 0.0
     axial_stiffness: float = 0.0
     end_stretch: float = 0.0
+    largest_strain: float = 0.0
     energy_lost: float = 0.0
     retardation_time: float = 0.0
     turning_loads: int = 0
 
-    def stretched(self, by: float) -> None:
-        """At a frame, by so much (m)."""
-        self.end_stretch = max(self.end_stretch, by)
+    def stretched(self, strain: float, length: float) -> None:
+        """At a frame, of a rod so long (m)."""
+        if self.axial_stiffness:
+            self.end_stretch = max(self.end_stretch, strain * length)
+        elif strain > MUCH:
+            self.largest_strain = max(self.largest_strain, strain)
 
     def attributes(self) -> dict[str, float | int]:
         """The values that are not zero, by name."""
@@ -80,6 +88,12 @@ class Remarks:
                 "The rod is held so that it has to stretch: it has the axial stiffness EA = "
                 f"{self.axial_stiffness:.3g} N. All stretch lies at its ends, which are together up to "
                 f"{self.end_stretch:.2g} m away from where they are held."
+            )
+        if self.largest_strain:
+            sentences.append(
+                f"The rod was stretched or squeezed by a factor of up to {1.0 + self.largest_strain:.3g}: its law of "
+                "stretch is linear, and its mass, its section, loads and drag are those per length of the rod without "
+                "stretch."
             )
         if self.turning_loads:
             sentences.append(

@@ -10,7 +10,7 @@ from solver.measures.frame import Frame, Statistics, complete
 from solver.methods.registry import discretized, tolerated_increment
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
-from solver.physics.axial import LARGEST_STRAIN, axial_stiffness
+from solver.physics.axial import axial_stiffness, largest_strain
 from solver.run.accounts import Accounts
 from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
@@ -45,6 +45,7 @@ class Simulation(Run):
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
         if scene.numerics.method == "staggered":
             self.remarks.axial_stiffness = axial_stiffness(scene)
+        self._largest_strain = largest_strain(scene)
         self._watch = Watch(self.remarks, scene.contact is not None)
         self._turn = self._trial_turn = pi
         """The largest rotation (rad) within an interval, of the state and of the trial."""
@@ -81,8 +82,7 @@ class Simulation(Run):
             return None
         ago = 0.0 if self._control.reached(self.t, output) else self.t - output
         frame = self._accounts.frame(output, ago)
-        if self.remarks.axial_stiffness:
-            self.remarks.stretched(self._method.strain() * float(self._scene.rod.length))
+        self.remarks.stretched(self._method.strain(), float(self._scene.rod.length))
         made, last = self._accounts.made, output == self._outputs[-1]
         detail = f"{abs(made):.2g} of all that changed hands"
         if made > LARGEST_MADE and (last or not self._goes_on):
@@ -154,8 +154,8 @@ class Simulation(Run):
             return "Newton's iteration stalled", Outcome.STEP_TOO_SMALL
         if self._control.too_coarse(increment):
             return "the motion is faster than the step", Outcome.STEP_TOO_SMALL
-        if self._method.strain() > LARGEST_STRAIN:
-            return f"stretched by {self._method.strain():.2g} of its length", Outcome.ROD_STRETCHED
+        if self._method.strain() > self._largest_strain:
+            return f"stretched or squeezed by a factor of {1.0 + self._method.strain():.3g}", Outcome.ROD_STRETCHED
         refusal = self._method.refusal()
         if refusal:
             return refusal, Outcome.ROD_CROSSED_ITSELF

@@ -14,7 +14,7 @@ from solver.methods.space.segments.chain import Residuals, Stages
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.segments.joints import total_bending
 from solver.methods.space.segments.opening import add_levers
-from solver.physics.axial import axial_compliance
+from solver.physics.axial import axial_compliance, stretch_of
 from solver.physics.elasticity import can_stretch, mean_bending
 from solver.physics.loads.registry import records_with_energy
 from solver.scene.scene import Scene
@@ -172,7 +172,7 @@ class Equations:
     def strain(self) -> float:
         """The largest strain; or how far the ends are stretched, in rod lengths; of the point evaluated last."""
         if self._stretches:
-            return float((np.abs(self.stages.opening[0, 0]) / self.chain.span).max())
+            return stretch_of(self.stages.opening[0, 0] / self.chain.span)
         forces, tangents = self.stages.F[0, [0, -1]], self.stages.R[0, [0, -1], :, 2]
         return float(self.compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
 

@@ -16,13 +16,16 @@ from service.cases import CaseError, apply_settings, load_case, parse_case
 from solver import (
     FIXED,
     Condition,
+    Contact,
     Curve,
     End,
     Frame,
     Initial,
     Numerics,
+    Outcome,
     PointLoad,
     Rod,
+    RunFailed,
     Scene,
     constant_vector,
     simulate,
@@ -61,6 +64,27 @@ def test_a_hanging_rod_lengthens_by_its_weight(analysis: str) -> None:
     assert_allclose(frame.strain, WEIGHT / EA * (1.0 - s / LENGTH), atol=1e-6 * WEIGHT / EA)
     assert_allclose(frame.f[:, 2], EA * frame.strain, atol=1e-6 * WEIGHT)
     assert frame.energy_stretching == pytest.approx(WEIGHT**2 * LENGTH / (6.0 * EA), rel=1e-2)
+
+
+@pytest.mark.parametrize("analysis", ["dynamic", "static"])
+def test_a_bungee_cord_is_several_times_as_long_and_says_so(analysis: str) -> None:
+    """Its weight makes it three times as long; the law is linear, so the hanging rod's formulas hold."""
+    run = simulate(hanging(analysis=analysis, rod=elastic(WEIGHT / 4.0)))
+    *_, frame = run
+    assert frame.r[-1, 2] == pytest.approx(3.0 * LENGTH, rel=1e-6)
+    assert_allclose(frame.strain, 4.0 * np.linspace(1.0, 0.0, 11), atol=1e-6)
+    assert run.attributes()["largest_strain"] == pytest.approx(frame.strain.max(), abs=0.3)
+    assert "by a factor of up to" in run.notes()[-1]
+
+
+@pytest.mark.parametrize(("scene", "factor"), [
+    (hanging(rod=elastic(WEIGHT / 4.5)), "5.5"),
+    (hanging(rod=elastic(WEIGHT), contact=Contact()), "2"),
+])  # fmt: skip
+def test_a_rod_that_is_stretched_too_far_ends_by_name(scene: Scene, factor: str) -> None:
+    with pytest.raises(RunFailed, match=f"by a factor of {factor}") as failure:
+        list(simulate(scene))
+    assert failure.value.outcome is Outcome.ROD_STRETCHED
 
 
 def test_a_hanging_rod_hangs_from_the_start_on() -> None:

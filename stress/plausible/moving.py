@@ -225,5 +225,29 @@ def thrown(rng: Generator) -> Part:
     return case("thrown", rod, shape, ("free", "free"), 4.0 * d.period, loads={"gravity": GRAVITY})
 
 
+def rubber(rng: Generator) -> Part:
+    """A cord that is pulled long: by a weight that falls with it, between its ends, one of which is shaken, or to be
+    plucked."""
+    d = Drawn(rng, ("rubber", "silicone"), (0.2, 20.0), (2e-3, 1e-2))
+    EA, strain, way = d.E * pi * d.D**2 / 4.0, log(rng, 0.15, 1.0), str(rng.choice(("fall", "shake", "pluck")))
+    rod = d.rod | {"axial_stiffness": EA}
+    if way == "fall":  # in its last fiftieth is what would stretch it at rest by a third of the strain
+        weight, hanging = strain / 3.0 * EA / 9.81 / (0.02 * d.L), {**rod}
+        del hanging["density"]
+        hanging["mass_per_length"] = {"s": [0.0, 0.979 * d.L, 0.98 * d.L, d.L], "interpolation": "linear",
+                                      "value": [d.mass, d.mass, weight, weight]}  # fmt: skip
+        t_end = 6.0 * pi * sqrt(strain / 3.0 * d.L / 9.81)
+        return case("rubber", hanging, straight(0, 0, -1), ("pin", "free"), t_end, 60, loads={"gravity": GRAVITY})
+    wave = 2.0 * d.L * (1.0 + strain) * sqrt(d.mass / (strain * EA))  # its first period as a string
+    end = {"preset": "pin", "frame": "lab", "x1": ramp(0.0, 4.0 * wave, strain * d.L)}
+    if way == "shake":
+        end["x2"] = harmonic(0.1 * d.L, 3.0 * wave, 14.0 * wave)
+        return case("rubber", rod, straight(1, 0, 0), ("clamp", end), 14.0 * wave, 60, loads={"gravity": GRAVITY})
+    force = {"t": [6.0 * wave, 8.0 * wave, 8.2 * wave], "value": [0.0, 0.1 * strain * EA, 0.0],
+             "interpolation": "linear"}  # fmt: skip
+    return case("rubber", rod, straight(1, 0, 0), ("pin", end), 14.0 * wave, 60,
+                loads={"damping": 0.1 / wave, "point": [{"s": 0.3 * d.L, "force": [0.0, force, 0.0]}]})  # fmt: skip
+
+
 KINDS = (towed, umbilical, mooring, deep_sea, whirled, dropped, suture, whip, resonance, released, shaft, swing, rope,
-         rope_struck, struck, string, fishing_rod, thrown)  # fmt: skip
+         rope_struck, struck, string, fishing_rod, thrown, rubber)  # fmt: skip

@@ -45,6 +45,8 @@ how many times MOST_WORK."""
 DAMPED_PART, LAST_PART, STEEPER = 0.6, 2.0, 3
 """Part of MOST_WORK that a run with artificial viscosity may take, and that the last ones may: after one that was slow,
 or of the highest grade; and by how many grades the next one has more where one was slow, rather than one."""
+NEARLY = 0.5
+"""Part of the whole run from which on one was not slow by so much."""
 SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
 BY_STEPS = 1.5
@@ -130,23 +132,25 @@ def _growth(complete: Sequence[Attempt], by: Trial) -> float | None:
     return None
 
 
-def next_trial(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals: int) -> Trial | None:
+def next_trial(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals: int,
+               t_end: float = inf) -> Trial | None:  # fmt: skip
     """What to try after some attempts; None if what there is must be, or is, enough. Nothing is tried twice.
 
-    `errors`: of each quantity.
+    `errors`: of each quantity; `t_end` (s): of the run.
     """
     tried = {(attempt.mesh, attempt.steps) for attempt in history}
-    for trial in _candidates(history, errors, most_intervals):
+    for trial in _candidates(history, errors, most_intervals, t_end):
         if trial is None or trial not in tried:
             return trial
     return None
 
 
-def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals: int) -> Iterator[Trial | None]:
+def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_intervals: int,
+                t_end: float) -> Iterator[Trial | None]:  # fmt: skip
     """What might come next, what is wanted most first."""
     complete = [attempt for attempt in history if attempt.complete]
     if not complete:
-        yield _until_one_is_complete(history, most_intervals)
+        yield _until_one_is_complete(history, most_intervals, t_end)
         return
     meshes = {attempt.mesh for attempt in complete}
     if len(meshes) == 1 and history[-1].slow and _work(history) > MOST_WORK:
@@ -239,14 +243,15 @@ def _with_grades(mesh: int, steps: int, most_intervals: int) -> list[Trial]:
     return [Trial(mesh, more) for more in range(steps, DAMPED - 1 - highest_grade(intervals_of(mesh)), -1)]
 
 
-def _more_damped(last: Attempt) -> Trial | None:
+def _more_damped(last: Attempt, t_end: float = inf) -> Trial | None:
     """After a motion that had waves which are too short, or too many; none has more viscosity than there may be."""
     if last.steps == AT_REST or not (last.slow or last.outcome in WAVES or _is_damped(last)):
         return None
     grade, highest = grade_of(last.steps), highest_grade(intervals_of(last.mesh))
     if grade == highest:
         return None
-    higher = 0 if grade is None else min(grade + (STEEPER if last.slow else 1), highest)
+    steeper = STEEPER if last.slow and last.t < NEARLY * t_end else 1
+    higher = 0 if grade is None else min(grade + steeper, highest)
     return Trial(last.mesh, DAMPED - higher)
 
 
@@ -281,12 +286,12 @@ def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Tr
     return alone[:1]
 
 
-def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int) -> Trial | None:
+def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int, t_end: float) -> Trial | None:
     last = history[-1]
     if last.slow and last.steps > LOOSEST:
         return Trial(last.mesh, max(last.steps - 2, LOOSEST))
     if last.slow or _is_damped(last):
-        return _more_damped(last)
+        return _more_damped(last, t_end)
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
     branch_ends = last.steps == AT_REST and len(failed) > 3 and (last.outcome != LOST or last.t > 0.0)

@@ -220,7 +220,7 @@ class Refined(Run):
             self._excesses = [tuple(excess) for excess in self._together.excesses(self._errors)]
             apart = max(excess.mesh for excess in self._errors) * (self._scene.numerics.tolerance or 1.0)
             self._history[-1] = tuple(self._attempts[-1]._replace(apart=apart))
-        then = next_trial(self._attempts, self._errors, self._most)
+        then = next_trial(self._attempts, self._errors, self._most, self._scene.t_end)
         if then is None:
             self._decided, self.errors_of_frames = True, self._together.errors()
             self.remarks = Remarks(*self._noticed[chosen(self._attempts).finest])  # type: ignore[arg-type]

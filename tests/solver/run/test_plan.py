@@ -20,7 +20,7 @@ from solver.run.plan import (
     to_come,
 )
 from solver.run.series import Attempt, Chosen, chosen
-from solver.run.trial import AT_REST, Trial, step_tolerance
+from solver.run.trial import AT_REST, DAMPED, Trial, step_tolerance
 
 SMALL = 0.01 * MOST_WORK
 
@@ -200,3 +200,9 @@ def test_shorter_steps_are_tried_again_on_the_first_mesh_that_shows_the_motion()
     assert next_trial(shown, [short_of_it], 2000) == Trial(3, 0)
     on_a_diagonal = [*history[:2], ran(1, 1)._replace(apart=far), ran(2, 2)._replace(apart=near)]
     assert next_trial(on_a_diagonal, [short_of_it], 2000) != Trial(2, 3)
+
+
+@pytest.mark.parametrize(("t", "grades"), [(0.2, 3), (0.6, 1)])
+def test_a_damped_run_that_was_slow_but_nearly_there_gets_a_little_more_viscosity(t: float, grades: int) -> None:
+    history = [failed(6, 0.1), slow(6, DAMPED - 1)._replace(t=t)]
+    assert next_trial(history, [Excess()], 10_000, t_end=1.0) == Trial(6, DAMPED - 1 - grades)

@@ -82,7 +82,7 @@ class OneAxisMethod(RadauMethod):
         """The state along the rod, at the nodes."""
         shown, nodes = Shown.empty(len(self.s)), self._nodes()
         show(self._hand_over(), self._shown[0], *nodes, self._offset, self._in_space, shown)
-        return Fields(**shown._asdict(), strain=np.zeros(len(self.s)))
+        return self._end_layers.complete(Fields(**shown._asdict(), strain=np.zeros(len(self.s))), self._held)
 
     def centreline(self) -> Shape:
         """The state's centreline."""

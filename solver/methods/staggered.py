@@ -193,11 +193,12 @@ class StaggeredMethod(RadauMethod):
         kappa, q, *_ = joints
         if viscous:
             resist_at_nodes(self.chain, state.omega, bend, q)
-        return Fields(
+        fields = Fields(
             v=shown[0], omega=shown[1], f=shown[2], kappa=kappa - self._offset, q=q,
             strain=state.opening[0] / self.chain.span,
             r=nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
+        return self._end_layers.complete(fields, self._held)
 
     def centreline(self) -> Shape:
         """The state's centreline."""

@@ -12,6 +12,7 @@ from solver.kernels.rotation import rotate_back
 from solver.measures.frame import Fields, Frame, Statistics, complete
 from solver.measures.topology import writhe_of_rod
 from solver.methods.space.segments.balances import Motion
+from solver.methods.space.segments.end_layers import EndLayers
 from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
 from solver.outcome import Outcome, RunFailed
@@ -65,6 +66,7 @@ class Equilibria(Run):
         self._way, self._equations, self._linking = way, Equations(self._scene), LinkingNumber()
         turning, tense = WAYS[way]
         elastic = self._equations.chain.elastic
+        self._end_layers = EndLayers.of(self._scene.rod, self.s)
         self._beside = Beside.steps(self._scene.rod, self.s, elastic.K, elastic.kappa0 - self._equations.offset)
         self._equations.hold(first_forces(self._equations) if tense else None, turning)
         self._path = Path(self._equations, MOST_STEPS if WAYS[way] is WAYS[-1] else PATIENCE)
@@ -207,11 +209,12 @@ class Equilibria(Run):
         orientations_at_nodes(point.quaternion, orientation)
         kappa, q = stages.bend[0].copy(), stages.moment[0].copy()
         bending_at_nodes(equations.chain, kappa, q, stages.left[0], stages.right[0])
-        return Fields(
+        fields = Fields(
             v=rest, omega=rest, f=rotate_back(orientation, point.F),
             kappa=self._beside.at_nodes(kappa - equations.offset, q), q=q,
             strain=stages.opening[0, 0] / equations.chain.span, r=equations.nodes(), orientation=orientation,
         )  # fmt: skip
+        return self._end_layers.complete(fields, [end.held[3:5] for end in equations.ends])
 
 
 def exercise() -> None:

@@ -14,6 +14,7 @@ from solver.kernels.handed import Handed, Reference
 from solver.methods.linear.stages import Scheme
 from solver.methods.method import NOTHING_AHEAD, Ahead
 from solver.methods.space.segments.chain import STAGES, Chain, State
+from solver.methods.space.segments.end_layers import EndLayers
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.stages import Record
 from solver.methods.status import CONVERGED
@@ -21,7 +22,7 @@ from solver.methods.time.radau import tableau
 from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Work, estimate_error, step
 from solver.methods.time.radau.next_step import Last, finish, go_on
 from solver.physics.elasticity import mean_bending
-from solver.physics.ends import DrivenEnd
+from solver.physics.ends import RATE, DrivenEnd
 from solver.physics.section import Beside
 from solver.scene.scene import Scene
 
@@ -55,6 +56,7 @@ class RadauMethod(ABC):
         self.applied = loads_on_segments(scene, section, self.s, STAGES, axis)
         self.chain = chain_of(scene.rod, section, self.applied.entrained, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
+        self._end_layers = EndLayers.of(scene.rod, self.s)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._tolerance = min(tolerance, 1.0)
         self._newton_part = NEWTON_PART * min(tolerance, 1.0) if tolerance < inf else 0.0
@@ -175,6 +177,11 @@ class RadauMethod(ABC):
         flowed = np.zeros(4)
         flowed[:3] = weights @ self._powers
         return flowed
+
+    @property
+    def _held(self) -> list[NDArray[np.bool_]]:
+        """Whether each end is held about a1 and a2."""
+        return [end.kinds[3:5] == RATE for end in (self.start, self.end)]
 
     @property
     def _borne(self) -> Array:

@@ -11,7 +11,8 @@ from typing import Any
 
 from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
-from solver.kernels.vectors import dot, minus, norm, times, vector
+from solver.kernels.vectors import dot, norm, vector
+from solver.physics.loads.surfaces import near
 
 LEAP = 0.5
 """Part of the way to an obstacle, or of its radius, that a node may come nearer in a step."""
@@ -24,18 +25,6 @@ AT_IT, TINY = 1e-4, 1e-3
 SMALLEST = 1e-300
 
 
-@inner
-def above(load: Any, k: int, r: Any) -> Any:
-    """How high (m) a place is above the surface of solid k, negative below, and the unit normal out of it there."""
-    axis, away = vector(load.axis, k), minus(r, vector(load.start, k))
-    if load.flat[k]:
-        return dot(axis, away) - load.radius[k], axis
-    part = min(max(dot(away, axis) / max(dot(axis, axis), SMALLEST), 0.0), 1.0)
-    way = minus(away, times(part, axis))
-    distance = norm(way)
-    return distance - load.radius[k], times(1.0 / max(distance, SMALLEST), way)
-
-
 @kernel
 def longest_step(load: Any, r: Array, V: Array) -> float:
     """The step (s) in which no node comes nearer to an obstacle by more than LEAP of its gap, or of the radius where
@@ -45,9 +34,9 @@ def longest_step(load: Any, r: Array, V: Array) -> float:
         if load.flat[k]:
             continue
         for i in range(len(r)):
-            height, normal = above(load, k, vector(r, i))
-            allowed = LEAP * max(height, load.radius[k])
-            fastest = max(fastest, -dot(normal, vector(V, i)) / allowed)
+            by = near(load, k, vector(r, i))
+            allowed = LEAP * max(by.height, load.radius[k])
+            fastest = max(fastest, -dot(by.n, vector(V, i)) / allowed)
     return 1.0 / fastest
 
 
@@ -60,7 +49,7 @@ def missed(load: Any, r: Array, mass: Array, dt: float) -> float:
         for i in range(len(mass)):
             low, high = inf, -inf
             for t in range(len(r)):
-                height, _ = above(load, k, (r[t, i, 0], r[t, i, 1], r[t, i, 2]))
+                height = near(load, k, (r[t, i, 0], r[t, i, 1], r[t, i, 2])).height
                 low, high = min(low, height), max(high, height)
             if low < 0.0 <= high:
                 unseen = min(STRUCK * dt**2 * load.stiffness[k] / mass[i], 1.0)
@@ -77,8 +66,8 @@ def next_blow(load: Any, r: Array, V: Array, A: Array, mass: Array, followed: fl
         fastest = max(fastest, norm(vector(V, i)))
     for k in range(len(load.radius)):
         for i in range(len(mass)):
-            height, normal = above(load, k, vector(r, i))
-            rate, bend = dot(normal, vector(V, i)), dot(normal, vector(A, i))
+            by = near(load, k, vector(r, i))
+            height, rate, bend = by.height, dot(by.n, vector(V, i)), dot(by.n, vector(A, i))
             if not abs(rate) > SHARE * fastest:
                 continue
             w = sqrt(load.stiffness[k] / mass[i])

@@ -24,9 +24,10 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inner
-from solver.kernels.vectors import add, dot, identity, minus, norm, outer, plus, times, vector
+from solver.kernels.vectors import add, dot, identity, outer, plus, times
 from solver.physics.loads import blows
 from solver.physics.loads.load import Point, Samples, Source, Tangents, as_lost
+from solver.physics.loads.surfaces import Near, near, turning
 from solver.scene.checks import require_finite, unit_vector
 from solver.scene.scene import Scene
 
@@ -150,16 +151,6 @@ class Solids(Source):
         self.next_blow(motion, mass, 1.0)
 
 
-class Near(NamedTuple):
-    """A place beside a solid: the depth d, 0 outside, the normal n, and what n turns by as the place moves: a, 0 where
-    it turns in all directions, and the `curvature` 1 / |r - c|."""
-
-    d: float
-    n: Any
-    a: Any
-    curvature: float
-
-
 def of(scene: Scene, samples: Samples) -> Source:
     """The solids of a scene."""
     solids = [load for load in scene.loads if isinstance(load, Given)]
@@ -174,26 +165,9 @@ def of(scene: Scene, samples: Samples) -> Source:
 
 
 @inner
-def near(load: Record, k: int, at: Point) -> Near:
-    """How a place lies to solid k. On an obstacle's axis, where no side is the nearest, nothing pushes."""
-    axis, away = vector(load.axis, k), minus(at.r, vector(load.start, k))
-    if load.flat[k]:
-        return Near(max(load.radius[k] - dot(axis, away), 0.0), axis, times(0.0, axis), 0.0)
-    square, along = dot(axis, axis), dot(away, axis)
-    within = 0.0 < along < square
-    part = along / square if within else (1.0 if along > 0.0 else 0.0)
-    way = minus(away, times(part, axis))
-    distance = norm(way)
-    curvature = 1.0 / distance if distance > 0.0 else 0.0
-    d = max(load.radius[k] - distance, 0.0) if distance > 0.0 else 0.0
-    return Near(d, times(curvature, way), times(1.0 / sqrt(square) if within else 0.0, axis), curvature)
-
-
-@inner
-def turning(near: Near, x: Any) -> Any:
-    """dn/dr x."""
-    across = plus(x, times(-dot(near.n, x), near.n))
-    return times(near.curvature, plus(across, times(-dot(near.a, x), near.a)))
+def depth(by: Near) -> float:
+    """d (m), 0 outside."""
+    return max(-by.height, 0.0)
 
 
 @inner
@@ -209,8 +183,8 @@ def conservative(load: Record, i: int, j: int, at: Point) -> Any:
     """The sum of k d n."""
     total = times(0.0, at.r)
     for m in range(len(load.radius)):
-        by = near(load, m, at)
-        total = plus(total, times(load.stiffness[m] * by.d, by.n))
+        by = near(load, m, at.r)
+        total = plus(total, times(load.stiffness[m] * depth(by), by.n))
     return total
 
 
@@ -219,9 +193,9 @@ def force(load: Record, i: int, j: int, at: Point) -> Any:
     """The sum of B."""
     total = conservative(load, i, j, at)
     for m in range(len(load.radius)):
-        by = near(load, m, at)
+        by = near(load, m, at.r)
         w, _ = sliding(load.slip[m], by.n, at)
-        total = plus(total, times(-load.friction[m] * load.stiffness[m] * by.d, w))
+        total = plus(total, times(-load.friction[m] * load.stiffness[m] * depth(by), w))
     return total, None
 
 
@@ -235,10 +209,11 @@ def tangents(load: Record, i: int, j: int, at: Point) -> Tangents:
     """
     K, C = identity(0.0, at.r), identity(0.0, at.r)
     for m in range(len(load.radius)):
-        by = near(load, m, at)
-        if by.d > 0.0:
+        by = near(load, m, at.r)
+        d = depth(by)
+        if d > 0.0:
             k, n, (w, speed) = load.stiffness[m], by.n, sliding(load.slip[m], by.n, at)
-            pressed, rubbed, leaving = k * by.d, load.friction[m] * k * by.d / speed, dot(by.n, at.V)
+            pressed, rubbed, leaving = k * d, load.friction[m] * k * d / speed, dot(by.n, at.V)
             turned = by.curvature * (pressed + rubbed * leaving)
             K = add(K, identity(turned, n))
             K = add(K, outer(plus(times(-k - turned, n), times(load.friction[m] * k, w)), n))
@@ -254,5 +229,5 @@ def energy(load: Record, i: int, j: int, at: Point) -> float:
     """The sum of 1/2 k d^2."""
     total = 0.0
     for m in range(len(load.radius)):
-        total += 0.5 * load.stiffness[m] * near(load, m, at).d ** 2
+        total += 0.5 * load.stiffness[m] * depth(near(load, m, at.r)) ** 2
     return total

@@ -12,6 +12,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.physics.loads import blows, solids
 from solver.physics.loads.solids import Floor, Obstacle
+from solver.physics.loads.surfaces import near
 from tests.solver.scenes import ROD
 
 G, STIFFNESS, MASS = 9.81, 400.0, np.ones(1)
@@ -32,7 +33,7 @@ def line(*r: float) -> Array:
 
 @kernel
 def height(load: solids.Record, x: float, y: float, z: float) -> float:
-    return blows.above(load, 0, (x, y, z))[0]  # type: ignore[no-any-return]
+    return near(load, 0, (x, y, z)).height  # type: ignore[no-any-return]
 
 
 @pytest.mark.parametrize("solid", [FLOOR, BAR, BALL], ids=["floor", "bar", "ball"])

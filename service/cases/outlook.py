@@ -23,7 +23,7 @@ from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.methods.space.one_axis.axis import axis_of
 from solver.physics.axial import distances, has_to_stretch
-from solver.physics.elasticity import elasticity_of, moments, principal
+from solver.physics.elasticity import can_stretch, elasticity_of, moments, principal
 from solver.physics.loads import solids
 from solver.physics.section import sample
 from solver.run.first_mesh import first_mesh
@@ -41,7 +41,7 @@ SECONDS = {
     "shaken in water": 0.5, "towed through water": 0.17, "in water": 0.25, "in space and in water": 0.25,
     "let go in water": 2.6, "let go or loaded at once": 1.8, "let go and settling": 1.4,
     "let go and settling between holds": 0.6, "let go gently": 0.2, "let go between pins": 1.4,
-    "loaded on a slide": 2.7,
+    "loaded on a slide": 2.7, "let go and stretching": 4.0,
     "snapping through": 5.0, RINGING: 0.08, "followed by the frames": 0.11,
 }  # fmt: skip
 """CPU seconds at a tolerance of 1e-3, by what moves the rod; undamped of FRAMES: what rings lasts through all of them.
@@ -130,6 +130,8 @@ def kind_of(scene: Scene) -> str:
     urged = Urged.of(scene, driven)
     heavily, held = scene.damping > HEAVILY * frequency, _is_held(scene.start) or _is_held(scene.end)
     overdamped = scene.damping > MUCH * frequency or (heavily and not driven.moved and urged.weight_across < LIGHT)
+    if can_stretch(scene.rod) and any(_lets_go(end) for end in (scene.start, scene.end)):
+        return "let go and stretching"
     if _is_still(scene, driven, urged):
         return "still"
     if _winding(scene, driven) > WINDS:
@@ -300,6 +302,11 @@ def _is_still(scene: Scene, driven: Driven, urged: Urged) -> bool:
 
 def _is_held(end: End) -> bool:
     return _is_turned(end) or any(component[0].kind != "load" for component in end.translation)
+
+
+def _lets_go(end: End) -> bool:
+    """Whether it holds its place at first, and later does not."""
+    return any(c[0].kind != "load" and c[-1].kind == "load" for c in end.translation)
 
 
 def _is_turned(end: End) -> bool:

@@ -169,7 +169,7 @@ def _touches_itself(scene: Scene) -> Iterator[FieldError]:
 
 def _stretched(scene: Scene) -> Iterator[FieldError]:
     """A rod that loads, or its weight, would stretch by more than a material or a run bears."""
-    s = np.linspace(0.0, scene.rod.length, 11)
+    s = np.linspace(0.0, scene.rod.length, 1001)
     stiffness = min((float(np.min(law.EA(s))) for law in scene.rod.laws if isinstance(law, Stretch)), default=np.inf)
     weight = float(np.mean(scene.rod.mass(s))) * scene.rod.length * hypot(*scene.gravity)
     strain = max(weight, *forces(scene).values()) / stiffness

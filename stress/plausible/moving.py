@@ -232,12 +232,14 @@ def rubber(rng: Generator) -> Part:
     EA, strain, way = d.E * pi * d.D**2 / 4.0, log(rng, 0.15, 1.0), str(rng.choice(("fall", "shake", "pluck")))
     rod = d.rod | {"axial_stiffness": EA}
     if way == "fall":  # in its last fiftieth is what would stretch it at rest by a third of the strain
-        weight, hanging = strain / 3.0 * EA / 9.81 / (0.02 * d.L), {**rod}
-        del hanging["density"]
-        hanging["mass_per_length"] = {"s": [0.0, 0.979 * d.L, 0.98 * d.L, d.L], "interpolation": "linear",
-                                      "value": [d.mass, d.mass, weight, weight]}  # fmt: skip
-        t_end = 6.0 * pi * sqrt(strain / 3.0 * d.L / 9.81)
-        return case("rubber", hanging, straight(0, 0, -1), ("pin", "free"), t_end, 60, loads={"gravity": GRAVITY})
+        weight, period = strain / 3.0 * EA / 9.81 / (0.02 * d.L), 2.0 * pi * sqrt(strain / 3.0 * d.L / 9.81)
+        parts = {"s": [0.0, 0.979 * d.L, 0.98 * d.L, d.L], "interpolation": "linear"}
+        hanging = {"length": d.L, "diameter": d.D, "youngs_modulus": d.E, "shear_modulus": d.E / 3.0,
+                   "mass_per_length": parts | {"value": [d.mass, d.mass, weight, weight]},
+                   "axial_stiffness": parts | {"value": [EA, EA, 100.0 * EA, 100.0 * EA]}}  # fmt: skip
+        let_go = {"preset": "pin", "frame": "lab", "switches": [{"at": 0.1 * period, "f1": 0.0, "f2": 0.0, "f3": 0.0}]}
+        return case("rubber", hanging, straight(0, 0, -1), ("pin", let_go), 3.0 * period, 60,
+                    loads={"gravity": GRAVITY, "damping": 0.02 / period})  # fmt: skip
     wave = 2.0 * d.L * (1.0 + strain) * sqrt(d.mass / (strain * EA))  # its first period as a string
     end = {"preset": "pin", "frame": "lab", "x1": ramp(0.0, 4.0 * wave, strain * d.L)}
     if way == "shake":

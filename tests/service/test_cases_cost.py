@@ -185,6 +185,8 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     (SEA | {"loads__gravity": ASKEW, "ends__start": moved(x1=True)}, "in space and in water"),
     (SEA | {"initial": arc(1.0)}, "let go in water"),
     ({"ends__end": "slider", "loads__gravity": LYING}, "loaded on a slide"),
+    ({"rod__axial_stiffness": 10.0, "ends__end": {"preset": "pin", "frame": "lab", "switches": [
+        {"at": 1.0, "f1": 0.0, "f2": 0.0, "f3": 0.0}]}}, "let go and stretching"),
     ({"initial": TWISTED, "ends__end": "free", "loads__damping": 1.0}, "in space and moved or let go"),
     ({"initial": TWISTED, "ends__end": "slider", "loads__damping": 1.0}, "settling in space"),
 ])  # fmt: skip

@@ -52,24 +52,25 @@ class EndLayers(NamedTuple):
         q stays: it is what the end bears in the balances of this mesh.
         """
         for (end, inner, third), EJ, about in zip(((0, 1, 2), (-1, -2, -3)), self.EJ, held, strict=False):
-            T = float(fields.f[inner, 2])
-            if T > 0.0 and about.any() and len(fields.f) > 3:
-                self._complete(fields, end, third, [sqrt(T / stiff) * self.h for stiff in EJ], EJ, about)
+            x = self.h * np.sqrt(max(float(fields.f[inner, 2]), 0.0) / EJ)
+            lacking = about & (x > RESOLVED)
+            if lacking.any() and len(fields.f) > 3:
+                _complete(fields, end, third, self.h, x.tolist(), EJ, lacking)
         return fields
 
-    def _complete(self, fields: Fields, end: int, third: int, x: list[float], EJ: Array,
-                  about: NDArray[np.bool_]) -> None:  # fmt: skip
-        if max(x) < RESOLVED:
-            return
-        Q = fields.orientation[[end, third]]
-        q = rotation_of(Q[0]).T @ (rotation_of(Q[1]) @ fields.q[third])
-        shown = [_shown(value) for value in x]
-        theta = [(fields.q[end, k] - q[k]) * self.h / (EJ[k] * (first - later)) if about[k] else 0.0
-                 for k, (first, later) in enumerate(shown)]  # fmt: skip
-        half = 0.5 * min(sqrt(theta[0] ** 2 + theta[1] ** 2), pi)
-        shape = sin(half) / half if half > 0.0 else 1.0
-        for k, (first, _) in enumerate(shown):
-            fields.kappa[end, k] += shape * theta[k] * (x[k] - first) / self.h
+
+def _complete(fields: Fields, end: int, third: int, h: float, x: list[float], EJ: Array,
+              lacking: NDArray[np.bool_]) -> None:  # fmt: skip
+    """Add what is missing at an end, about the axes that lack it; `third`: the joint after the next one."""
+    Q = fields.orientation[[end, third]]
+    q = rotation_of(Q[0]).T @ (rotation_of(Q[1]) @ fields.q[third])
+    shown = [_shown(value) for value in x]
+    theta = [(fields.q[end, k] - q[k]) * h / (EJ[k] * (first - later)) if lacking[k] else 0.0
+             for k, (first, later) in enumerate(shown)]  # fmt: skip
+    half = 0.5 * min(sqrt(theta[0] ** 2 + theta[1] ** 2), pi)
+    shape = sin(half) / half if half > 0.0 else 1.0
+    for k, (first, _) in enumerate(shown):
+        fields.kappa[end, k] += shape * theta[k] * (x[k] - first) / h
 
 
 def _shown(x: float) -> tuple[float, float]:

@@ -9,7 +9,7 @@ half of it.
 
 from __future__ import annotations
 
-from math import acos
+from math import acos, inf
 from typing import NamedTuple
 
 import numpy as np
@@ -74,19 +74,17 @@ def _enclose(points: Points) -> float:
     return largest
 
 
-@kernel
 def smallest_distance(points: Points, skip: float, enough: float) -> float:
     """The smallest distance (m) of two points more than `skip` of arc apart, or `enough` if none are nearer."""
     return float(_smallest(points, skip, enough, 0.0))
 
 
-@kernel
 def smallest_gap(points: Points, skip: float) -> float:
     """The smallest distance (m) of the surfaces at two points more than `skip` of arc apart; inf if there are none."""
-    return float(_smallest(points, skip, np.inf, 0.5))
+    return float(_smallest(points, skip, inf, 0.5))
 
 
-@inner
+@kernel
 def _smallest(points: Points, skip: float, enough: float, part: float) -> float:
     """The smallest distance (m) of two points less `part` of their diameters, or `enough`."""
     largest, pitch, widest = _enclose(points), longest_spacing(points), 0.0

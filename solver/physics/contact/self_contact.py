@@ -121,7 +121,7 @@ class SelfContact:
         points = self.touch.points
         place_points(points, r, velocity)
         gap = smallest_gap(points, self._law.skip)
-        return float(gap) if gap < inf else nan
+        return gap if gap < inf else nan
 
     def power(self) -> Array:
         """Power (stages, 2) in W stored in contact, and dissipated by it, at the times of the last evaluation."""
@@ -132,7 +132,6 @@ class SelfContact:
         points = self.touch.points
         place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
         self._search(0.0)
-        smallest_distance(self.touch.points, self._law.skip, 0.0)
         smallest_gap(self.touch.points, self._law.skip)
         approaches(self.touch.points, self.touch.pairs)
         links_meet(self.touch.points, self.touch.pairs)

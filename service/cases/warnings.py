@@ -37,6 +37,8 @@ SHEARED = 0.5
 """Shear strain of a rod's surface beyond that of any material but rubber."""
 RUBBER = 0.3
 """Strain beyond that of any material but rubber."""
+ALIKE = 2.0
+"""How many times larger or smaller an axial stiffness may be than that of a solid circle to be taken for one."""
 BEYOND = 1.0 + 1e-6
 """Part of the rod's length up to which a table ends at the rod's end."""
 BESIDE, WITHIN = 8.0, 0.9
@@ -168,12 +170,15 @@ def _touches_itself(scene: Scene) -> Iterator[FieldError]:
 
 
 def _stretched(scene: Scene) -> Iterator[FieldError]:
-    """A rod that loads, or its weight, would stretch by more than a material or a run bears."""
+    """A rod that loads, or its weight, would stretch by more than a run bears; or than any material but rubber, where
+    EA is not that of a solid circle that bends as the rod does, 16 EJ / D^2."""
     s = np.linspace(0.0, scene.rod.length, 1001)
     stiffness = min((float(np.min(law.EA(s))) for law in scene.rod.laws if isinstance(law, Stretch)), default=np.inf)
     weight = float(np.mean(scene.rod.mass(s))) * scene.rod.length * hypot(*scene.gravity)
     strain = max(weight, *forces(scene).values()) / stiffness
-    if strain > min(RUBBER, largest_strain(scene)):
+    solid = 16.0 * float(np.min([EJ(s) / scene.rod.diameter(s) ** 2 for EJ in scene.rod.stiffness[:2]]))
+    doubted = not 1.0 / ALIKE < stiffness / solid < ALIKE
+    if strain > (min(RUBBER, largest_strain(scene)) if doubted else largest_strain(scene)):
         bears = (f"more than the {largest_strain(scene):g} up to which a run goes on" if strain > largest_strain(scene)
                  else "which only rubber bears: is it E A, in N?")  # fmt: skip
         rule = f"is so small that loads or the weight may stretch the rod by {strain:.2g} of its length, {bears}"

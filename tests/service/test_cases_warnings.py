@@ -144,6 +144,15 @@ def test_a_rod_that_loads_stretch_beyond_the_theory_is_pointed_out(pull: float, 
     assert all("by 0.33 of its length" in warning.rule for warning in warnings)
 
 
+@pytest.mark.parametrize(("pull", "warned"), [(300.0, False), (500.0, True)])
+def test_rubber_whose_axial_stiffness_is_that_of_its_section_is_left_alone(pull: float, warned: bool):
+    """EA = 78.5 N: by 3.8 and by 6.4 of its length, of which a run bears 4."""
+    rod = PRESSED["rod"] | {"youngs_modulus": 1e6, "shear_modulus": 4e5, "axial_stiffness": 78.5}
+    jumper = {"preset": "pin", "frame": "lab", "f1": 0.0, "f2": 0.0, "f3": pull}
+    warnings = _warned(PRESSED | {"rod": rod, "ends": {"start": "pin", "end": jumper}})
+    assert [warning.pointer for warning in warnings] == ["/rod/axial_stiffness"] * warned
+
+
 def test_a_profile_that_goes_on_beyond_the_rod_is_told():
     table = {"s": [0.0, 500.0, 1000.0], "value": [1.0, 2.0, 1.0], "interpolation": "linear"}
     [warning] = [w for w in told({"rod.mass_per_length": table, "rod.length": 1.0}) if w.pointer.endswith("/s")]

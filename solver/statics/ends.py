@@ -85,7 +85,7 @@ class StaticEnd:
 
     `axes` (3, 3): columns along which the translation is held, lab; `held` (6,): which components are; the others are
     loaded, along the axes of the end's own frame if `follows`. Of what was asked for last: `follower` (N), the force,
-    and `moment` (N m), all (3,), that turn with the end's frame.
+    and `moment` (N m), all (3,), that turn with the end's frame; `pin` (3,), where its place is held, m.
     """
 
     def __init__(self, end: End, side: int, quaternion: Array, place: Array, units: Units, compliance: float) -> None:
@@ -98,7 +98,7 @@ class StaticEnd:
         self.follows = end.frame == "material"
         self.axes = rotation_of(quaternion) if self.follows else np.eye(3)
         self.held = np.array([c.kind != "load" for c in self._conditions])
-        self.follower, self.moment = np.zeros(3), np.zeros(3)
+        self.follower, self.moment, self.pin = np.zeros(3), np.zeros(3), place
 
     def corners(self) -> list[float]:
         """Times at which a schedule bends."""
@@ -127,7 +127,8 @@ class StaticEnd:
         across = self.axes.T @ (self._sign * (F - force)) / units.force
         if self._give:
             place = place + self._give * np.outer(R[:, 2], R[:, 2]) @ F
-        away = (self.axes.T @ (place - self._home[1]) - values[:3]) / units.length
+        self.pin = self._home[1] + self.axes @ np.where(self.held[:3], values[:3], 0.0)
+        away = self.axes.T @ (place - self.pin) / units.length
         unbalanced = self._sign * (moment - R.T @ dead[3:] - follower[3:] - loaded[3:]) / units.moment
         turned = self._turned(values[3:], quaternion)
         return (np.where(self.held[3:], turned, unbalanced) * units.moment,

@@ -7,6 +7,7 @@ dimensionless by L and EJ. Balances and their tangents are the staggered method'
 from __future__ import annotations
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from solver.arrays import Array
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, segment_tangents
@@ -202,10 +203,23 @@ class Equations:
         """The residual (N + 2, 9) and the factored tangent at a point."""
         left = self.look_at(point)
         if self.contact.pressing:
-            carried = node_moves(self.stages.R[0], self.chain.h, self.units)
-            contact = of_contact(*self.contact.stiffness(), carried, self._moves(), self._rows[0])
-            return left, CoupledSolver(self.blocks(), contact, self.units)
+            return left, CoupledSolver(self.blocks(), self._of_contact(), self.units)
         return left, Solver(self.blocks(), self.units)
+
+    def _of_contact(self) -> csr_array:
+        """What strands that press on each other add to the tangent, see `of_contact`."""
+        carried = node_moves(self.stages.R[0], self.chain.h, self.units)
+        return of_contact(*self.contact.stiffness(), carried, self._moves(), self._rows[0])
+
+    def changed_by(self, z: Array) -> Array:
+        """What a displacement z (N + 2, 9) makes of the residual (N + 2, 9), of the point that was looked at last."""
+        (D, lower, upper), z = self.blocks(), (z / self.units)[:, :, None]
+        changed = D @ z
+        changed[1:] += lower[1:] @ z[:-1]
+        changed[:-1] += upper[:-1] @ z[1:]
+        if self.contact.pressing:
+            changed += (self._of_contact() @ z.ravel()).reshape(z.shape)
+        return np.asarray(changed[:, :, 0])
 
     def moved_nodes(self, z: Array) -> Array:
         """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point evaluated last."""

@@ -17,6 +17,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.outcome import Outcome, RunFailed
 from solver.statics.equations import Equations
+from solver.statics.neutral import Neutral
 from solver.statics.point import FORCE, PSI, Point, X
 from solver.statics.stability import negative_modes
 
@@ -102,7 +103,7 @@ class Path:
         Raises RunFailed where the branch cannot be followed.
         """
         if not self._begun:
-            self.direction = self._direction(self.point, 1.0)
+            _, self.direction = self._at(self.point, 1.0)
             self.modes = negative_modes(self._equations)
             self._begun = True
             if self.direction.dq < LEAST and not self._equations.letting_go:
@@ -148,7 +149,7 @@ class Path:
                 end, kinked = self._correct(guess, None), True
             if end is not None and not self._equations.refusal():
                 cornered = lands and room == to_corner
-                direction = self._direction(end, forward if cornered or kinked else 0.0)
+                end, direction = self._at(end, forward if cornered or kinked else 0.0)
                 modes = negative_modes(self._equations)
                 kinked = kinked or (length < KINK and direction.dq * dq > 0.0)
                 smooth = cornered or kinked or direction.dot(self.direction.z, dq) > SHARPEST
@@ -218,12 +219,17 @@ class Path:
         force = max(units[6], float(np.abs(point.F).max()))
         return float(max(np.abs(z[:, PSI]).max(), np.abs(z[:, X]).max() / units[3], np.abs(z[:, FORCE]).max() / force))
 
-    def _direction(self, point: Point, forward: float = 0.0) -> Direction:
-        """The branch's direction at a point: as it was, or right behind a corner with q going `forward` (+-1)."""
+    def _at(self, point: Point, forward: float = 0.0) -> tuple[Point, Direction]:
+        """An equilibrium, turned as near to the last one as may be, and the branch's direction there: as it was, or
+        right behind a corner with q going `forward` (+-1)."""
         _, solver = self._equations.linearise(point)
+        neutral = Neutral(self._equations)
+        if len(neutral.turns):
+            point = neutral.nearest(point, self.point)
+            _, solver = self._equations.linearise(point)
         new = Direction(-solver.solve(self._equations.slope(point, forward * AHEAD)), 1.0)
         size = np.sqrt(new.dot(new.z, 1.0)) * np.sign(forward or self.direction.dot(new.z, 1.0))
-        return Direction(new.z / size, float(1.0 / size))
+        return point, Direction(new.z / size, float(1.0 / size))
 
     def _failure(self, outcome: Outcome, detail: str = "") -> RunFailed:
         q = self.point.q

@@ -198,7 +198,7 @@ class StaggeredMethod(RadauMethod):
             strain=state.opening[0] / self.chain.span,
             r=nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
-        return self._end_layers.complete(fields, self._held)
+        return self._layers.complete(fields, self._held, self._time - self._ago)
 
     def centreline(self) -> Shape:
         """The state's centreline."""

@@ -12,9 +12,9 @@ from solver.kernels.rotation import rotate_back
 from solver.measures.frame import Fields, Frame, Statistics, complete
 from solver.measures.topology import writhe_of_rod
 from solver.methods.space.segments.balances import Motion
-from solver.methods.space.segments.end_layers import EndLayers
 from solver.methods.space.segments.energies import energies_at, twist
 from solver.methods.space.segments.fields import bending_at_nodes, orientations_at_nodes
+from solver.methods.space.segments.layers import Layers
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import axial_stiffness, largest_strain
 from solver.physics.section import Beside
@@ -66,7 +66,7 @@ class Equilibria(Run):
         self._way, self._equations, self._linking = way, Equations(self._scene), LinkingNumber()
         turning, tense = WAYS[way]
         elastic = self._equations.chain.elastic
-        self._end_layers = EndLayers.of(self._scene.rod, self.s)
+        self._layers = Layers.of(self._scene, self.s)
         self._beside = Beside.steps(self._scene.rod, self.s, elastic.K, elastic.kappa0 - self._equations.offset)
         self._equations.hold(first_forces(self._equations) if tense else None, turning)
         self._path = Path(self._equations, MOST_STEPS if WAYS[way] is WAYS[-1] else PATIENCE)
@@ -214,7 +214,7 @@ class Equilibria(Run):
             kappa=self._beside.at_nodes(kappa - equations.offset, q), q=q,
             strain=stages.opening[0, 0] / equations.chain.span, r=equations.nodes(), orientation=orientation,
         )  # fmt: skip
-        return self._end_layers.complete(fields, [end.held[3:5] for end in equations.ends])
+        return self._layers.complete(fields, [end.held[3:5] for end in equations.ends], equations.time(point.q))
 
 
 def exercise() -> None:

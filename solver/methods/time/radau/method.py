@@ -14,8 +14,8 @@ from solver.kernels.handed import Handed, Reference
 from solver.methods.linear.stages import Scheme
 from solver.methods.method import NOTHING_AHEAD, Ahead
 from solver.methods.space.segments.chain import STAGES, Chain, State
-from solver.methods.space.segments.end_layers import EndLayers
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
+from solver.methods.space.segments.layers import Layers
 from solver.methods.space.stages import Record
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
@@ -56,14 +56,14 @@ class RadauMethod(ABC):
         self.applied = loads_on_segments(scene, section, self.s, STAGES, axis)
         self.chain = chain_of(scene.rod, section, self.applied.entrained, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
-        self._end_layers = EndLayers.of(scene.rod, self.s)
+        self._layers = Layers.of(scene, self.s)
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._tolerance = min(tolerance, 1.0)
         self._newton_part = NEWTON_PART * min(tolerance, 1.0) if tolerance < inf else 0.0
         self._dt_max = scene.numerics.dt_max
         # no shorter step has an error below what Newton's iteration leaves
         self._small_motion = max(scene.numerics.small_motion, TOLERANCE / tolerance)
-        self._last_dt = self._step = self._ago = 0.0
+        self._time = self._last_dt = self._step = self._ago = 0.0
         self._powers = np.zeros((STAGES, 3))
 
     def try_step(self, t: float, dt: float, consistent: bool = False) -> tuple[int, int]:
@@ -102,7 +102,7 @@ class RadauMethod(ABC):
         self._follow_ends(weights)
         finish(self._handed.reference, self.trial, self._centres, self._last)
         self.state, self.trial = self.trial, self.state
-        self._last_dt, self._step, self._ago = dt, dt, 0.0
+        self._time, self._last_dt, self._step, self._ago = t + dt, dt, dt, 0.0
         return self._flowed(weights)
 
     def look_back(self, ago: float) -> Ahead:

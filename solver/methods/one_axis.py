@@ -82,8 +82,9 @@ class OneAxisMethod(RadauMethod):
         """The state along the rod, at the nodes."""
         shown, nodes = Shown.empty(len(self.s)), self._nodes()
         show(self._hand_over(), self._shown[0], *nodes, self._offset, self._in_space, shown)
-        return self._layers.complete(Fields(**shown._asdict(), strain=np.zeros(len(self.s))), self._held,
-                                     self._time - self._ago)  # fmt: skip
+        fields = Fields(**shown._asdict(), strain=np.zeros(len(self.s)))
+        self._layers.complete(fields, self._held, self._time - self._ago)
+        return fields
 
     def centreline(self) -> Shape:
         """The state's centreline."""

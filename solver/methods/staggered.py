@@ -198,7 +198,8 @@ class StaggeredMethod(RadauMethod):
             strain=state.opening[0] / self.chain.span,
             r=nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
-        return self._layers.complete(fields, self._held, self._time - self._ago)
+        self._layers.complete(fields, self._held, self._time - self._ago)
+        return fields
 
     def centreline(self) -> Shape:
         """The state's centreline."""

@@ -156,12 +156,14 @@ class Equilibria(Run):
             detail = f"stretched or squeezed by a factor of {1.0 + equations.strain():.3g}"
             raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, detail)
         fields = self._fields(point)
+        held = [end.held[3:5] for end in equations.ends]
+        unshown = self._layers.complete(fields, held, equations.time(point.q))
         self.remarks.turning_loads += equations.loads_turn()
         self.remarks.stretched(equations.strain(), float(self.s[-1]))
         stages = equations.stages
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
         energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], stages.F[0], motion)
-        energy = energy._replace(kinetic=0.0, added_mass=0.0)
+        energy = energy._replace(bending=energy.bending + unshown, kinetic=0.0, added_mass=0.0)
         Tw, Wr = self._twist(point), self._writhe(fields)
         frame = Frame(
             t=t, **vars(fields),
@@ -209,12 +211,11 @@ class Equilibria(Run):
         orientations_at_nodes(point.quaternion, orientation)
         kappa, q = stages.bend[0].copy(), stages.moment[0].copy()
         bending_at_nodes(equations.chain, kappa, q, stages.left[0], stages.right[0])
-        fields = Fields(
+        return Fields(
             v=rest, omega=rest, f=rotate_back(orientation, point.F),
             kappa=self._beside.at_nodes(kappa - equations.offset, q), q=q,
             strain=stages.opening[0, 0] / equations.chain.span, r=equations.nodes(), orientation=orientation,
         )  # fmt: skip
-        return self._layers.complete(fields, [end.held[3:5] for end in equations.ends], equations.time(point.q))
 
 
 def exercise() -> None:

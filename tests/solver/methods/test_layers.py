@@ -3,6 +3,7 @@ interval."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import atan, cos, pi, sin, sqrt
 
@@ -47,7 +48,7 @@ def test_a_clamped_end_has_the_elastica_s_curvature_on_any_mesh(intervals: int, 
 
 
 def test_without_it_the_first_joint_tells_the_mesh(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Layers, "complete", lambda layers, fields, held, t: fields)
+    monkeypatch.setattr(Layers, "complete", lambda layers, fields, held, t: 0.0)
     assert last(pulled(0.1)).kappa[0, 1] < 0.35 * at_clamp(0.1)
 
 
@@ -73,7 +74,7 @@ def test_where_nothing_is_held_or_pulled_nothing_is_added(
     along = (FIXED, FIXED, (Condition("load", Curve.constant(pull * EJ)),))
     scene = static(start=start, end=End(along, (FREE, FREE, FREE), "lab"), gravity=(1.0, 0.0, 0.0))
     with_it = last(scene)
-    monkeypatch.setattr(Layers, "complete", lambda layers, fields, held, t: fields)
+    monkeypatch.setattr(Layers, "complete", lambda layers, fields, held, t: 0.0)
     assert_array_equal(with_it.kappa, last(scene).kappa)
 
 
@@ -116,6 +117,18 @@ def test_in_motion_a_kink_is_as_at_rest() -> None:
     assert_allclose(last(moving).kappa, still.kappa, atol=1e-3 * np.abs(still.kappa).max())
 
 
+@pytest.mark.parametrize("intervals", [16, 32, 64])
+@pytest.mark.parametrize(("scene", "exact"), [
+    (lambda intervals: pulled(0.6, intervals, around=0.5), 4.0 * EJ / THIN * sin(0.25 * 0.6) ** 2),
+    (lambda intervals: plucked(0.4337, intervals, force=0.1), 0.1**2 * EJ / (8.0 * THIN)),
+])  # fmt: skip
+def test_at_rest_the_bending_energy_is_that_of_the_layers(
+    scene: Callable[[int], Scene], exact: float, intervals: int
+) -> None:
+    """Of the elastica (4 EJ / lambda) sin^2(theta / 4), on each side."""
+    assert last(scene(intervals)).energy_bending == pytest.approx(exact, rel=0.02)
+
+
 def test_two_loads_side_by_side_bend_the_rod_as_both_do() -> None:
     both, (place, other) = plucked(0.5, 50), (0.5, 0.53)
     half = PointLoad(place * LENGTH, (both.points[0].force[0], ZERO, ZERO))
@@ -124,6 +137,15 @@ def test_two_loads_side_by_side_bend_the_rod_as_both_do() -> None:
     *_, frame = run
     exact = sum(6e-4 / (2.0 * THIN) * np.exp(-np.abs(run.s - at * LENGTH) / THIN) for at in (place, other))
     assert_allclose(np.abs(frame.kappa[:, 1]), exact, atol=0.01 * np.max(exact))
+
+
+@pytest.mark.parametrize("intervals", range(2, 20))
+def test_a_mesh_of_any_size_has_its_layers(intervals: int) -> None:
+    run = simulate(pulled(0.1, intervals))
+    *_, frame = run
+    exact = at_clamp(0.1) * np.exp(-run.s / THIN)
+    if intervals > 4:
+        assert_allclose(np.hypot(*frame.kappa[:, :2].T), exact, atol=1e-3 * exact[0])
 
 
 @pytest.mark.parametrize(("place", "layers"), [(0.1, 2), (0.2, 3), (0.5, 3), (0.85, 3), (0.95, 2)])

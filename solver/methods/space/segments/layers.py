@@ -17,14 +17,14 @@ were those of p theta and (1 - p) theta, p = (1 - rho + x^2 (1 - a)) / (2 (1 - r
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import asin, pi, sin, sqrt
+from math import asin, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.kernels.rotation import rotation_of
+from solver.kernels.rotation import rotate_back, rotation_of
 from solver.measures.frame import Fields
 from solver.physics.elasticity import Coupling, Stretch, TwistStretch, Viscosity
 from solver.physics.loads.given import points_within
@@ -35,30 +35,65 @@ LINEAR = (Coupling, Stretch, TwistStretch, Viscosity)
 """Laws with which bending stays proportional to curvature."""
 RESOLVED = 0.05
 """Of h / lambda: below it nothing is missing that rounding would not blur."""
-WIDE = 3
+WIDE = 8
 """Nodes of a layer on one side that are completed."""
+SECOND = 2
+"""Joint of an end layer that is compared with its first."""
 
 
 class Layer(NamedTuple):
-    """What may be one: `nodes` that are completed, where the tension is taken (`taut`), and EJ (2,) in N m^2 about a1
-    and a2; of a kink its load, which acts the part `a` of an interval behind the joint before it."""
+    """What may be one: `nodes` that are completed, and where they lie in it (intervals); where the tension is taken
+    (`taut`), and EJ (2,) in N m^2 about a1 and a2; of a kink its load, which acts the part `a` of an interval behind
+    the joint before it."""
 
-    nodes: list[int]
+    nodes: NDArray[np.int64]
+    at: NDArray[np.int64]
     taut: list[int]
     EJ: Array
     load: PointLoad | None
     a: float
 
+    @classmethod
+    def at_end(cls, end: int, last: int, EJ: Array) -> Layer:
+        """At the end `end` of a rod with nodes up to `last`."""
+        at = np.arange(min(WIDE, (last + 1) // 2))
+        return cls(np.abs(end - at), at, [abs(end - 1)], EJ, None, 0.0)
+
+    @classmethod
+    def kink(cls, load: PointLoad, place: float, last: int, EJ: Array) -> Layer:
+        """Where a load acts, `place` intervals from the start."""
+        i = int(place)
+        at = np.arange(max(1 - WIDE, -i), min(WIDE, last - i) + 1)
+        return cls(i + at, at, [i - 1, i + 2], EJ, load, place - i)
+
+    def part(self, angles: Array) -> Array:
+        """Half of the angle by which the rod turns in it on one side, of angles (n, 2)."""
+        return (0.5 if self.load is None else 0.25) * np.minimum(np.hypot(angles[:, 0], angles[:, 1]), pi)
+
     def shown(self, x: float) -> tuple[Array, Array]:
         """h kappa over theta at its nodes, on the mesh and in truth."""
-        rho = 1.0 / (1.0 + 0.5 * x * x + x * sqrt(1.0 + 0.25 * x * x))
-        fading = rho ** np.arange(WIDE)
+        rho = _decay(x)
         if self.load is None:
             psi = 2.0 / (x * x + 3.0 - rho)
-            return np.array([2.0 * (1.0 - psi), *(psi * (1.0 - rho) * fading[:-1])]), x * np.exp(-x * np.arange(WIDE))
-        p = (1.0 - rho + x * x * (1.0 - self.a)) / (2.0 * (1.0 - rho) + x * x)
-        away = np.abs(np.arange(1 - WIDE, WIDE + 1) - self.a)
-        return (1.0 - rho) * np.append(p * fading[::-1], (1.0 - p) * fading), 0.5 * x * np.exp(-x * away)
+            mesh = np.append(2.0 * (1.0 - psi), psi * (1.0 - rho) * rho ** self.at[:-1])
+            return mesh, x * np.exp(-x * self.at)
+        p = self._before(x, rho)
+        mesh = (1.0 - rho) * np.where(self.at <= 0, p, 1.0 - p) * rho ** np.where(self.at <= 0, -self.at, self.at - 1)
+        return mesh, 0.5 * x * np.exp(-x * np.abs(self.at - self.a))
+
+    def stored(self, x: float) -> tuple[float, float]:
+        """Its bending energy in EJ theta^2 / h, on the mesh and in truth."""
+        rho = _decay(x)
+        part = 0.5 * (1.0 - rho) / (1.0 + rho)
+        if self.load is None:
+            psi = 2.0 / (x * x + 3.0 - rho)
+            return (1.0 - psi) ** 2 + part * psi**2, 0.25 * x
+        p = self._before(x, rho)
+        return part * (p**2 + (1.0 - p) ** 2), 0.125 * x
+
+    def _before(self, x: float, rho: float) -> float:
+        """p of a kink."""
+        return (1.0 - rho + x * x * (1.0 - self.a)) / (2.0 * (1.0 - rho) + x * x)
 
 
 class Layers(NamedTuple):
@@ -72,61 +107,73 @@ class Layers(NamedTuple):
     def of(cls, scene: Scene, s: Array) -> Layers:
         """Those of a scene on nodes at `s` (n,)."""
         rod, h, last = scene.rod, float(s[1] - s[0]), len(s) - 1
-        if last < WIDE or not all(isinstance(law, LINEAR) for law in rod.laws):
+        if last <= 2 * SECOND or not all(isinstance(law, LINEAR) for law in rod.laws):
             return cls(h, [])
 
         def stiffness(place: float) -> Array:
             return np.array([float(profile(np.array([place]))[0]) for profile in rod.stiffness[:2]])
 
-        layers = [Layer([abs(end - k) for k in range(WIDE)], [abs(end - 1)], stiffness(s[end]), None, 0.0)
-                  for end in (0, last)]  # fmt: skip
-        for load in points_within(scene):
-            i, beyond = int(load.s / h), WIDE - 1
-            if load.pulls and beyond <= i < last - beyond:
-                nodes = list(range(i - beyond, i + 2 + beyond))
-                layers.append(Layer(nodes, [i - 1, i + 2], stiffness(load.s), load, load.s / h - i))
-        return cls(h, layers)
+        layers = [Layer.at_end(end, last, stiffness(float(s[end]))) for end in (0, last)]
+        return cls(h, layers + [
+            Layer.kink(load, load.s / h, last, stiffness(load.s))
+            for load in points_within(scene) if load.pulls and SECOND <= int(load.s / h) < last - SECOND
+        ])  # fmt: skip
 
-    def complete(self, fields: Fields, held: Sequence[NDArray[np.bool_]], t: float) -> Fields:
-        """Add what is missing to kappa at time t; `held`: whether each end is held about a1 and a2.
+    def complete(self, fields: Fields, held: Sequence[NDArray[np.bool_]], t: float) -> float:
+        """Add what is missing to kappa at time t; `held`: whether each end is held about a1 and a2. Returns by how much
+        the bending energy of the layers (J) is more than the mesh shows of it.
 
         q stays: it is what is in the balances of this mesh.
         """
         about, missing = [*held, *[np.ones(2, dtype=bool)] * len(self.layers)], np.zeros_like(fields.kappa)
+        energy = 0.0
         for layer, turned in zip(self.layers, about, strict=False):
             T = float(np.mean(fields.f[layer.taut, 2]))
             x = self.h * np.sqrt(max(T, 0.0) / layer.EJ)
             lacking = turned & (x > RESOLVED)
             if lacking.any():
-                shown = [layer.shown(float(value)) for value in x]
-                theta = self._angle(fields, layer, [mesh for mesh, _ in shown]) if layer.load is None else (
-                    _kink(fields, layer, layer.load, T, t))  # fmt: skip
-                lacks = np.array([true - mesh for mesh, true in shown]) / self.h
-                _add(missing, fields, layer, theta, np.where(lacking[:, None], lacks, 0.0))
+                theta = self._angle(fields, layer, x) if layer.load is None else _kink(fields, layer, layer.load, T, t)
+                if not theta.any():
+                    continue
+                turned_back = rotate_back(fields.orientation[layer.nodes], np.tile(theta, (len(layer.at), 1)))
+                angles = np.where(lacking, turned_back[:, :2], 0.0)
+                shape = _elastica(layer.part(angles))
+                for k in np.flatnonzero(lacking):
+                    mesh, true = layer.shown(float(x[k]))
+                    missing[layer.nodes, k] += shape * angles[:, k] * (true - mesh) / self.h
+                    on_mesh, stored = layer.stored(float(x[k]))
+                    stored *= float(_elastica(0.5 * layer.part(angles[:1]))[0]) ** 2
+                    energy += float(layer.EJ[k] * angles[0, k] ** 2 / self.h * (stored - on_mesh))
         fields.kappa[:] += missing
-        return fields
+        return energy
 
-    def _angle(self, fields: Fields, layer: Layer, mesh: list[Array]) -> Array:
+    def _angle(self, fields: Fields, layer: Layer, x: Array) -> Array:
         """The angle (3,), as a vector, lab, between an end and the direction in which the rod goes off there."""
-        R, beyond = (rotation_of(fields.orientation[layer.nodes[k]]) for k in (0, WIDE - 1))
-        moment = fields.q[layer.nodes[0]] - R.T @ beyond @ fields.q[layer.nodes[-1]]
-        return np.asarray(R[:, :2] @ [moment[k] * self.h / (layer.EJ[k] * (mesh[k][0] - mesh[k][-1])) for k in (0, 1)])
+        end, second = layer.nodes[[0, SECOND]]
+        R, beyond = rotation_of(fields.orientation[end]), rotation_of(fields.orientation[second])
+        moment = fields.q[end] - R.T @ beyond @ fields.q[second]
+        shown = [mesh[0] - mesh[SECOND] for mesh, _ in (layer.shown(float(value)) for value in x)]
+        return np.asarray(R[:, :2] @ (moment[:2] * self.h / (layer.EJ * shown)))
+
+
+def _decay(x: float) -> float:
+    """rho."""
+    return 1.0 / (1.0 + 0.5 * x * x + x * sqrt(1.0 + 0.25 * x * x))
+
+
+def _elastica(half: Array) -> Array:
+    """sin(x) / x (n,): by how much less an elastica bends that turns by 2x in a layer."""
+    return np.asarray(np.sinc(half / pi))
 
 
 def _kink(fields: Fields, layer: Layer, load: PointLoad, T: float, t: float) -> Array:
     """The angle (3,), as a vector, lab, by which a load kinks the rod under a tension T."""
-    along = np.sum([rotation_of(fields.orientation[i])[:, 2] for i in layer.taut], axis=0)
     force = np.array([component.value(t) for component in load.force])
+    if not force.any():
+        return force
+    along = np.sum([rotation_of(fields.orientation[i])[:, 2] for i in layer.taut], axis=0)
     if load.frame == "material":
-        force = rotation_of(fields.orientation[layer.nodes[WIDE - 1 + round(layer.a)]]) @ force
+        force = rotation_of(fields.orientation[layer.taut[0] + 1 + round(layer.a)]) @ force
     turned = np.cross(force, along) / (np.linalg.norm(along) * T)
     size = float(np.linalg.norm(turned))
     return np.asarray(turned * (2.0 * asin(min(0.5 * size, 1.0)) / size if size > 0.0 else 1.0))
-
-
-def _add(missing: Array, fields: Fields, layer: Layer, theta: Array, lacks: Array) -> None:
-    """Add to what is `missing` what the nodes of a layer of an angle theta (3,) lack of it, 1/m (2, nodes)."""
-    for i, lack in zip(layer.nodes, lacks.T, strict=True):
-        angle = (rotation_of(fields.orientation[i]).T @ theta)[:2]
-        half = (0.5 if layer.load is None else 0.25) * min(float(np.hypot(*angle)), pi)
-        missing[i, :2] += (sin(half) / half if half > 0.0 else 1.0) * angle * lack

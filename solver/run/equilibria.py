@@ -17,6 +17,7 @@ from solver.methods.space.segments.fields import bending_at_nodes, orientations_
 from solver.methods.space.segments.layers import Layers
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import axial_stiffness, largest_strain
+from solver.physics.loads.solids import deepest_within
 from solver.physics.section import Beside
 from solver.run.linking import LinkingNumber
 from solver.run.run import Run
@@ -160,6 +161,7 @@ class Equilibria(Run):
         unshown = self._layers.complete(fields, held, equations.time(point.q))
         self.remarks.turning_loads += equations.loads_turn()
         self.remarks.stretched(equations.strain(), float(self.s[-1]))
+        self.remarks.sunk(deepest_within(self._scene, self.s, fields.r), t)
         stages = equations.stages
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
         energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], stages.F[0], motion)

@@ -16,13 +16,14 @@ class Remarks:
     `end_hops`: how often a loop hopped over an end; both by Tw + Wr - Lk from frame to frame, so that two of opposite
     sign between frames cancel, and none is seen without topology; `unclear_jumps`: how often it was one of them, where
     frames are too far apart to tell which. `deepest_overlap` (m) of strands, and the time
-    `deepest_overlap_at` (s) of its frame. `axial_stiffness`: EA (N) that the rod was given because it is held so that
-    it has to stretch, see `physics.axial`; `end_stretch` (m): how far both ends together were away from where
-    they are held, at the most, at a frame. `largest_strain`: of a rod with a law of stretch, at a frame, if that is
-    more than a tenth. `energy_lost`: energy that went nowhere, over the largest
-    that motion, strain and contact ever had, if that is more than a tenth. `retardation_time` (s): of the rod's
-    material, with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`:
-    frames of a static analysis in which forces turned with the rod.
+    `deepest_overlap_at` (s) of its frame. `deepest_in_solid` (m) below the surface of a floor or an obstacle, if that
+    is more than the rod's diameter, and the time `deepest_in_solid_at` (s) of its frame. `axial_stiffness`: EA (N) that
+    the rod was given because it is held so that it has to stretch, see `physics.axial`; `end_stretch` (m): how far both
+    ends together were away from where they are held, at the most, at a frame. `largest_strain`: of a rod with a law of
+    stretch, at a frame, if that is more than a tenth. `energy_lost`: energy that went nowhere, over the largest that
+    motion, strain and contact ever had, if that is more than a tenth. `retardation_time` (s): of the rod's material,
+    with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`: frames of a
+    static analysis in which forces turned with the rod.
     """
 
     crossings: int = 0
@@ -31,6 +32,8 @@ class Remarks:
     unclear_jumps: int = 0
     deepest_overlap: float = 0.0
     deepest_overlap_at: float = 0.0
+    deepest_in_solid: float = 0.0
+    deepest_in_solid_at: float = 0.0
     axial_stiffness: float = 0.0
     end_stretch: float = 0.0
     largest_strain: float = 0.0
@@ -44,6 +47,11 @@ class Remarks:
             self.end_stretch = max(self.end_stretch, strain * length)
         elif strain > MUCH:
             self.largest_strain = max(self.largest_strain, strain)
+
+    def sunk(self, depth: float, t: float) -> None:
+        """At a frame, so deep (m) within a solid."""
+        if depth > self.deepest_in_solid:
+            self.deepest_in_solid, self.deepest_in_solid_at = depth, t
 
     def attributes(self) -> dict[str, float | int]:
         """The values that are not zero, by name."""
@@ -71,6 +79,12 @@ class Remarks:
             sentences.append(
                 f"Strands overlapped, at the most by {self.deepest_overlap:.3g} m "
                 f"at t = {self.deepest_overlap_at:.6g} s."
+            )
+        if self.deepest_in_solid:
+            sentences.append(
+                f"The rod was pressed into a floor or an obstacle by up to {self.deepest_in_solid:.3g} m, more than "
+                f"its diameter, at t = {self.deepest_in_solid_at:.6g} s: give it more stiffness; a straight rod that "
+                "is pushed into it end first bends aside by a small load across it, which says to which side."
             )
         if self.energy_lost:
             sentences.append(

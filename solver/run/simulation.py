@@ -11,6 +11,7 @@ from solver.methods.registry import discretized, tolerated_increment
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import axial_stiffness, largest_strain
+from solver.physics.loads.solids import deepest_within
 from solver.run.accounts import Accounts
 from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
@@ -83,6 +84,7 @@ class Simulation(Run):
         ago = 0.0 if self._control.reached(self.t, output) else self.t - output
         frame = self._accounts.frame(output, ago)
         self.remarks.stretched(self._method.strain(), float(self._scene.rod.length))
+        self.remarks.sunk(deepest_within(self._scene, self.s, frame.r), frame.t)
         made, last = self._accounts.made, output == self._outputs[-1]
         detail = f"{abs(made):.2g} of all that changed hands"
         if made > LARGEST_MADE and (last or not self._goes_on):

@@ -99,6 +99,16 @@ class Obstacle:
 Given = Floor | Obstacle
 
 
+def deepest_within(scene: Scene, s: Array, r: Array) -> float:
+    """How deep (m) below the surface of a solid the rod's centreline is, with nodes at `s` (n,) in places r (n, 3),
+    where that is deeper than its diameter; 0 elsewhere."""
+    depths = [load.depth(r) for load in scene.loads if isinstance(load, Given)]
+    if not depths:
+        return 0.0
+    depth = np.max(depths, axis=0)
+    return float(np.max(np.where(depth > scene.rod.diameter(s), depth, 0.0)))
+
+
 def _check(name: str, solid: Given, *positive: str) -> None:
     for field in positive:
         if not (np.isfinite(getattr(solid, field)) and getattr(solid, field) > 0.0):

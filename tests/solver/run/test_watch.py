@@ -1,4 +1,4 @@
-"""What a run says of strands that pass through each other, hop over an end, or overlap."""
+"""What a run says of strands that pass through each other, hop over an end, or overlap, and of solids."""
 
 from __future__ import annotations
 
@@ -8,15 +8,29 @@ from math import nan
 import numpy as np
 import pytest
 
-from solver import Contact, End, Frame, Initial, Numerics, Outcome, RunFailed, Simulation
+from solver import (
+    FIXED,
+    Condition,
+    Contact,
+    Curve,
+    End,
+    Frame,
+    Initial,
+    Numerics,
+    Outcome,
+    RunFailed,
+    Simulation,
+    simulate,
+)
 from solver.measures.topology import writhe
 from solver.methods.status import STALLED
+from solver.physics.loads.solids import Floor, Obstacle, deepest_within
 from solver.run.remarks import Remarks
 from solver.run.watch import Watch
 from solver.scene.scene import Scene
 from tests.solver.measures.test_passages import hooked
 from tests.solver.physics.contact.test_self_contact import looped
-from tests.solver.scenes import ROD, last
+from tests.solver.scenes import LENGTH, ROD, last
 
 PLAIN = Scene(
     rod=ROD, initial=Initial.straight(), start=End.clamp(), end=End.free(), t_end=0.01, output_interval=0.01,
@@ -112,3 +126,33 @@ def test_a_run_that_fails_between_frames_says_if_the_rod_had_passed_through_itse
     with pytest.raises(RunFailed) as failed:
         list(run)
     assert failed.value.outcome is outcome
+
+
+@pytest.mark.parametrize("analysis", ["dynamic", "static"])
+@pytest.mark.parametrize(("pushed", "sunk"), [(0.0, False), (0.3, True)])
+def test_a_rod_that_is_pushed_into_a_floor_end_first_is_told(analysis: str, pushed: float, sunk: bool) -> None:
+    """Nothing lets it bend aside; at first it stands on the floor."""
+    down = Condition("position", Curve.table([0.0, 1.0], [0.0, -pushed * LENGTH]))
+    above = End(((Condition("position", Curve.constant(0.0)),),) * 2 + ((down,),), (FIXED,) * 3, "lab")
+    scene = Scene(
+        ROD, Initial.straight(), End.free(), above, 1.0, 0.25, gravity=(0.0, 0.0, -9.81), loads=(Floor(1e5),),
+        numerics=Numerics("staggered", intervals=8), analysis=analysis, damping=10.0,
+    )  # fmt: skip
+    run = simulate(scene)
+    *_, frame = run
+    if sunk:
+        assert run.attributes()["deepest_in_solid"] == pytest.approx(-frame.r[0, 2], rel=1e-6)
+        assert run.attributes()["deepest_in_solid_at"] == 1.0
+        assert any("pressed into a floor" in note for note in run.notes())
+    else:
+        assert "deepest_in_solid" not in run.attributes()
+
+
+def test_only_what_is_deeper_than_the_diameter_counts() -> None:
+    D, s = float(ROD.diameter(0.0)), np.array([0.0, 0.5, 1.0])
+    scene = Scene(ROD, Initial.straight(), End.clamp(), End.free(), 1.0, 1.0,
+                  loads=(Floor(1.0), Obstacle((0.0, 1.0, 5.0), (0.0, 1.0, 5.0), 3.0 * D, 1.0)))  # fmt: skip
+    beside = np.array([[0.0, 1.0, 5.0 + 0.5 * D], [0.0, 0.0, -0.9 * D], [0.0, 0.0, 1.0]])
+    assert deepest_within(scene, s, beside) == pytest.approx(2.5 * D)
+    assert deepest_within(scene, s, beside + np.array([0.0, 5.0, 0.0])) == 0.0
+    assert deepest_within(replace(scene, loads=()), s, beside) == 0.0

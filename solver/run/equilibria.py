@@ -40,6 +40,9 @@ WAYS = ((True, True), (False, True), (False, False))
 with the rod, and whether the rod begins with a tension."""
 PATIENCE = 500
 """Steps after which another one is tried."""
+WIDEST_TURN = 0.9 * pi
+"""Rotation (rad) within an interval that a step must not reach: beyond pi it would be told from the other side, and a
+turn of a twisted rod be lost. No step is as long as what is left to pi and beyond."""
 FAR_BACK = 1.0
 """And by how much more than at first the shape may be held: a branch that leads farther hardly ever comes back."""
 
@@ -141,6 +144,10 @@ class Equilibria(Run):
         statistics.steps += path.steps - steps
         statistics.failed_steps += path.failed - failed
         statistics.newton_iterations += path.iterations - iterations
+        turn = float(np.linalg.norm(self._equations.stages.bend[0], axis=1).max())
+        if turn > WIDEST_TURN:
+            raise RunFailed(Outcome.MESH_TOO_COARSE, self._equations.time(path.point.q), statistics.steps,
+                            f"by {turn:.3g} rad within an interval")  # fmt: skip
         self._follow_ends(path.point)
         return reached
 

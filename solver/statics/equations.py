@@ -123,6 +123,11 @@ class Equations:
         if self.contact.present:
             self.contact.keep(self.nodes())
 
+    def turned(self, point: Point, after: Point) -> float:
+        """By how much ends are driven to turn (rad) from a point to another, at the most."""
+        t, later = self.time(point.q), self.time(after.q)
+        return max(float(np.abs((end.values(later) - end.values(t)) * end.held)[3:].max()) for end in self.ends)
+
     def refusal(self) -> str:
         """Why contact does not let the point evaluated last be trusted, after a step, or nothing."""
         return self.contact.refusal(self.bending(), self.nodes()) if self.contact.present else ""

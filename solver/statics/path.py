@@ -41,6 +41,8 @@ NO_LONGER = 0.3
 LARGEST_CORRECTION = 1.0
 MOST_STEPS = 5000
 """Steps from one frame to the next after which a branch is given up."""
+MOST_TURN = 1.0
+"""By how much (rad) an end may be driven to turn in a step: whole turns are not to be seen where it ends."""
 AT_ONCE = 200
 """Steps in which a branch that does not begin with what it is to let go will not begin with it."""
 AHEAD = 3e-6
@@ -147,6 +149,8 @@ class Path:
             end, kinked = self._correct(guess, None if lands else self.direction), False
             if end is None and length < KINK:
                 end, kinked = self._correct(guess, None), True
+            if end is not None and self._equations.turned(point, end) > MOST_TURN:
+                end = None
             if end is not None and not self._equations.refusal():
                 cornered = lands and room == to_corner
                 end, direction = self._at(end, forward if cornered or kinked else 0.0)

@@ -192,6 +192,7 @@ ONCE_WRONG = {
     "77-772": "the same at a slider whose torque changes its sign at once",
     "1-3046": "statics: q went to and fro on its way to 1, where all is let go, and 1 was how far it had gone in all",
     "1-2293": "statics: not all that held the bent start was let go: a step that had passed the end was taken",
+    "7-1912": "statics: an end that turned thrice within a millionth of the time was found where it had been",
     "1-1214": "a straight rod whose end begins to turn at once lost half of its little energy, and said nothing",
 }
 """By number in the draws of seed 1, or by seed and number; they lie beside this file: other sources make others."""

@@ -350,3 +350,30 @@ def test_a_limp_rope_that_hangs_straight_finds_its_way_into_a_current(heights: l
     tip = fsolve(top, frame.r[-1, [0, 2]])
     assert_allclose(frame.r[-1, [0, 2]], tip, atol=1e-3 * 40.0)
     assert tip[0] > 2.0
+
+
+def twisted(turned: Curve, intervals: int) -> Scene:
+    """A rod under a pull that keeps it straight."""
+    pull = (Condition("load", Curve.constant(500.0 * EJ)),)
+    end = End((FIXED, FIXED, pull), (FIXED, FIXED, (Condition("position", turned),)))
+    return static(end=end, numerics=Numerics("staggered", intervals=intervals))
+
+
+@pytest.mark.parametrize("until", [1e-3, 1e-6])
+def test_no_turn_of_an_end_is_missed_however_soon_it_is_there(until: float) -> None:
+    frame = last(twisted(Curve.table([0.0, until], [0.0, 6.0 * pi], "smoothstep"), 16))
+    assert frame.Tw == pytest.approx(3.0)
+    assert frame.Lk == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(("intervals", "wide"), [(3, True), (6, True), (7, False), (16, False)])
+def test_a_rod_is_not_twisted_by_more_than_an_interval_can_tell(intervals: int, wide: bool) -> None:
+    """By three turns: 2.7 rad in each of seven intervals."""
+    run = simulate(twisted(ramp(6.0 * pi), intervals))
+    if wide:
+        with pytest.raises(RunFailed) as failure:
+            list(run)
+        assert failure.value.outcome == Outcome.MESH_TOO_COARSE
+    else:
+        *_, frame = run
+        assert frame.Tw == pytest.approx(3.0)

@@ -216,15 +216,16 @@ class Equations:
         carried = node_moves(self.stages.R[0], self.chain.h, self.units)
         return of_contact(*self.contact.stiffness(), carried, self._moves(), self._rows[0])
 
-    def changed_by(self, z: Array) -> Array:
-        """What a displacement z (N + 2, 9) makes of the residual (N + 2, 9), of the point that was looked at last."""
-        (D, lower, upper), z = self.blocks(), (z / self.units)[:, :, None]
+    def changed_by(self, moves: Array) -> Array:
+        """What each of some displacements (k, N + 2, 9) makes of the residual (k, N + 2, 9), of the point that was
+        looked at last."""
+        (D, lower, upper), z = self.blocks(), (moves / self.units)[..., None]
         changed = D @ z
-        changed[1:] += lower[1:] @ z[:-1]
-        changed[:-1] += upper[:-1] @ z[1:]
+        changed[:, 1:] += lower[1:] @ z[:, :-1]
+        changed[:, :-1] += upper[:-1] @ z[:, 1:]
         if self.contact.pressing:
-            changed += (self._of_contact() @ z.ravel()).reshape(z.shape)
-        return np.asarray(changed[:, :, 0])
+            changed += (self._of_contact() @ z.reshape(len(z), -1).T).T.reshape(z.shape)
+        return np.asarray(changed[..., 0])
 
     def moved_nodes(self, z: Array) -> Array:
         """How far a displacement z (N + 2, 9) moves the nodes (N + 1, 3), of the point evaluated last."""

@@ -39,7 +39,7 @@ class Neutral:
         sizes, turns = np.linalg.eigh(psi @ psi.T / len(R))
         distinct = sizes > SAME * sizes[-1]
         turns = turns[:, distinct].T / np.sqrt(sizes[distinct])[:, None]
-        changes = np.stack([self._equations.changed_by(z).ravel() for z in self._moves(turns)])
+        changes = self._equations.changed_by(self._moves(turns)).reshape(len(turns), -1)
         mixed, sizes, _ = np.linalg.svd(np.sqrt(len(R)) * changes, full_matrices=False)
         return np.asarray(mixed[:, sizes < NEUTRAL * self._equations.loading()].T @ turns)
 

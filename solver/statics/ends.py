@@ -1,7 +1,7 @@
 """An end in statics: where it is held and what loads it, as functions of the schedule's time, and its equations.
 
 Equilibrium has no rates, so a condition must say where the end *is*. A rate holds it where its exact travel leads, the
-integral of the rate. Axes of a material frame that swings would make that depend on the path: such ends are refused.
+integral of the rate. A place that is given along axes which swing would depend on the path: such ends are refused.
 """
 
 from __future__ import annotations
@@ -11,13 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.rotation import relative_rotation, rotate, rotation_of, turn
+from solver.kernels.rotation import relative_rotation, rotate, rotation_of
 from solver.physics.ends import travel
 from solver.scene.ends import Condition, End
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 from solver.statics.point import FORCE, PSI, X
 from solver.statics.tangent import crossing
+from solver.statics.turning import Turning
 
 ALONG = 1e-6
 """Cosine below which a direction that is held counts as across another one."""
@@ -42,8 +43,6 @@ def check_end(end: End) -> None:
     if len(held) not in (0, 3) and (len(held) == 1 or moving):
         raise ValueError("rotation must be free about all axes, held about all, or held still about two, in a "
                          "static analysis")  # fmt: skip
-    if len(moving) > 1 and len(held) == 3:
-        raise ValueError("rotation must be driven about one axis only in a static analysis")
     if end.frame == "lab" or all(c.kind == "load" for c in shift) or all(_is_still(c) for c in shift):
         return
     alike = all(_is_still(c) for c in shift[:2]) or all(c.kind == "load" for c in shift[:2])
@@ -88,13 +87,15 @@ class StaticEnd:
     and `moment` (N m), all (3,), that turn with the end's frame; `pin` (3,), where its place is held, m.
     """
 
-    def __init__(self, end: End, side: int, quaternion: Array, place: Array, units: Units, compliance: float) -> None:
-        """`quaternion` (4,), `place` (3,): of the end before anything is applied. `compliance` (m/N): of what holds it,
-        see `physics.axial`."""
+    def __init__(self, end: End, side: int, quaternion: Array, place: Array, until: float, units: Units,
+                 compliance: float) -> None:  # fmt: skip
+        """`quaternion` (4,), `place` (3,): of the end before anything is applied. `until` (s): the schedules' end.
+        `compliance` (m/N): of what holds it, see `physics.axial`."""
         check_end(end)
         self._conditions = [component[0] for component in (*end.translation, *end.rotation)]
         self._sign = 2.0 * side - 1.0
-        self._home, self._units, self._give = (quaternion, place), units, self._sign * compliance
+        self._home, self._units, self._give = place, units, self._sign * compliance
+        self._turning = Turning(quaternion, self._conditions[3:], until)
         self.follows = end.frame == "material"
         self.axes = rotation_of(quaternion) if self.follows else np.eye(3)
         self.held = np.array([c.kind != "load" for c in self._conditions])
@@ -127,19 +128,18 @@ class StaticEnd:
         across = self.axes.T @ (self._sign * (F - force)) / units.force
         if self._give:
             place = place + self._give * np.outer(R[:, 2], R[:, 2]) @ F
-        self.pin = self._home[1] + self.axes @ np.where(self.held[:3], values[:3], 0.0)
+        self.pin = self._home + self.axes @ np.where(self.held[:3], values[:3], 0.0)
         away = self.axes.T @ (place - self.pin) / units.length
         unbalanced = self._sign * (moment - R.T @ dead[3:] - follower[3:] - loaded[3:]) / units.moment
-        turned = self._turned(values[3:], quaternion)
+        turned = self._turned(t, quaternion)
         return (np.where(self.held[3:], turned, unbalanced) * units.moment,
                 np.where(self.held[:3], away, across) * units.force)  # fmt: skip
 
-    def _turned(self, values: Array, quaternion: Array) -> Array:
-        """By how much its frame is turned away from where it is held (3,), by the rotations in `values` (3,)."""
-        there, away = np.empty(4), np.empty(3)
+    def _turned(self, t: float, quaternion: Array) -> Array:
+        """By how much its frame is turned away from where it is held at time t (3,)."""
         if not self.held[3:].any():
             return np.zeros(3)
-        turn(self._home[0], np.where(self.held[3:], values, 0.0), there)
+        there, away = self._turning.at(t), np.empty(3)
         if self.held[3:].all():
             relative_rotation(there, quaternion, away)
             return away

@@ -57,7 +57,8 @@ class Equations:
         self._rows = 1.0 / np.repeat(self._units, 3)
         self.compliance, self._stretches = 0.5 * axial_compliance(scene), can_stretch(scene.rod)
         places = self.start.base.copy(), self.tip()
-        self.ends = [StaticEnd(end, side, state.quaternion[-side].copy(), places[side], self._units, self.compliance)
+        self.ends = [StaticEnd(end, side, state.quaternion[-side].copy(), places[side], scene.t_end, self._units,
+                                self.compliance)
                      for side, end in enumerate((scene.start, scene.end))]  # fmt: skip
         self.contact = StaticContact(scene, self.s, self.nodes())
         self.contact.prepare(self.bending(), self.nodes(), np.zeros((N + 1, 3)))

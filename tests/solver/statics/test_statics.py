@@ -233,7 +233,6 @@ def test_a_branch_that_leads_back_past_the_start_ends_by_name() -> None:
 REFUSED = {
     "switches": End((FIXED, FIXED, (*FIXED, Condition("load", since=0.5))), (FIXED,) * 3),
     "held about all": End((FIXED,) * 3, (FIXED, FREE, FREE)),
-    "about one axis only": End((FIXED,) * 3, ((Condition("rate", ramp(1.0)),), (Condition("rate", ramp(1.0)),), FIXED)),
     "lab axes": End((FIXED, FIXED, FREE), (FREE,) * 3),
 }  # fmt: skip
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.measures.frame import Fields
-from solver.measures.topology import tangents_of_ends, writhe_shares
+from solver.measures.topology import NO_RAYS, tangents_of_ends, writhe_shares
 
 DIVISIONS = 8
 """How often the way is divided where a sum changes: what is smooth is by then far below a jump of 2."""
@@ -25,7 +25,7 @@ QUIET = 0.5
 
 
 class Shape(NamedTuple):
-    """A centreline: its vertices `r` (n, 3), m, and the tangents at its ends (2, 3), lab."""
+    """A centreline: its vertices `r` (n, 3), m, and the tangents at its ends (2, 3), lab; NO_RAYS of a ring."""
 
     r: Array
     tangents: Array
@@ -34,6 +34,11 @@ class Shape(NamedTuple):
 def shape_of(fields: Fields) -> Shape:
     """The centreline of a state."""
     return Shape(fields.r, tangents_of_ends(fields.orientation))
+
+
+def joined(shape: Shape) -> Shape:
+    """The centreline, closed by a straight line."""
+    return Shape(shape.r, NO_RAYS)
 
 
 class Passages(NamedTuple):
@@ -53,7 +58,7 @@ def passages(before: Shape, after: Shape) -> Passages:
 
 
 def _shares(shape: Shape) -> tuple[float, float]:
-    return writhe_shares(shape.r, shape.tangents[0], shape.tangents[1])
+    return writhe_shares(*shape)
 
 
 def _jumps(before: Shape, after: Shape, first: Array, last: Array, divisions: int) -> tuple[int, int]:

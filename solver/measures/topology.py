@@ -32,8 +32,10 @@ FLAT = 1e-10
 MEET, ALIGNED = 0.02, 0.1
 """Part of the segments beside them within which a curve's ends meet, and the angle (rad) of their tangents within which
 it is taken to go on there: a mesh closes no ring better, and the tangents of one that is given by points differ."""
-OPEN, KINKED, CLOSED = 0, 1, 2
-"""Kinds of a curve: with ends apart, with ends that meet at an angle, closed."""
+OPEN, KINKED, CLOSED, JOINED = 0, 1, 2, 3
+"""Kinds of a curve: with ends apart, with ends that meet at an angle, closed; and closed by a straight line."""
+NO_RAYS = np.empty((0, 3))
+"""Tangents of a curve that is closed by the straight line from its end to its start, instead of rays at its ends."""
 SMALL_TANGENT = 0.1
 """Below it eight terms of the arctangent's series are exact to rounding: 0.1^16 / 17 = 6e-18."""
 
@@ -55,11 +57,13 @@ def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> fl
 
 @allocating
 def _writhe(r: Array, tangents: Array) -> float:
-    """Writhe (turns) of a polygon `r` (n, 3) with unit `tangents` (2, 3) at its ends."""
+    """Writhe (turns) of a polygon `r` (n, 3) with unit `tangents` (2, 3) at its ends, or NO_RAYS."""
     if is_plane(r, tangents):
         return 0.0
-    columns = _transposed(r)
-    if kind_of(r, tangents) != OPEN:
+    columns, kind = _transposed(r), kind_of(r, tangents)
+    if kind == JOINED:
+        return -(_segment_pairs(columns, False) + _gap(r)) / pi
+    if kind != OPEN:
         return -(_segment_pairs(columns, True) + _rays(r, tangents)) / pi
     shorter, quarter = shorten(columns, vector(tangents, 0), vector(tangents, 1))
     return -(quarter + (_segment_pairs(shorter, False) + _rays(_transposed(shorter), tangents))) / pi
@@ -76,24 +80,24 @@ def _transposed(a: Array) -> Array:
     return turned
 
 
-def writhe_shares(r: Array, start_tangent: Array, end_tangent: Array) -> tuple[float, float]:
-    """The parts of `writhe` (turns) that the pairs of segments have in it, and those with a ray."""
-    tangents = np.array([start_tangent, end_tangent])
+def writhe_shares(r: Array, tangents: Array) -> tuple[float, float]:
+    """The parts of `writhe` (turns) that the pairs of segments have in it, and those with a ray, or with the line that
+    joins the ends; `tangents` (2, 3), or NO_RAYS."""
     if is_plane(r, tangents):
         return 0.0, 0.0
-    closed = kind_of(r, tangents) != OPEN
-    return -_segment_pairs(_columns(r, 2), closed) / pi, share_of_rays(r, start_tangent, end_tangent)
+    touching = kind_of(r, tangents) in (KINKED, CLOSED)
+    return -_segment_pairs(_columns(r, 2), touching) / pi, share_of_rays(r, tangents)
 
 
-def share_of_rays(r: Array, start_tangent: Array, end_tangent: Array) -> float:
-    """The part of `writhe` (turns) that the pairs with a ray have in it."""
-    tangents = np.array([_unit(start_tangent), _unit(end_tangent)])
-    return 0.0 if is_plane(r, tangents) else -float(_rays(r, tangents)) / pi
+def share_of_rays(r: Array, tangents: Array) -> float:
+    """The part of `writhe` (turns) that the pairs with a ray, or with the line that joins the ends, have in it."""
+    unit = np.array([_unit(tangent) for tangent in tangents]).reshape(-1, 3)
+    return 0.0 if is_plane(r, unit) else -float(_rays(r, unit) if len(unit) else _gap(r)) / pi
 
 
 @kernel
 def is_plane(r: Array, tangents: Array) -> bool:
-    """Whether a polygon `r` (n, 3) and the unit `tangents` (2, 3) at its ends lie in a plane but for rounding."""
+    """Whether a polygon `r` (n, 3) and the unit `tangents` (2 or 0, 3) at its ends lie in a plane but for rounding."""
     n, largest, widest, total = len(r), 0.0, 0.0, 0.0
     far, normal = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for i in range(n):
@@ -103,7 +107,7 @@ def is_plane(r: Array, tangents: Array) -> bool:
         if square > largest:
             largest, far = square, away
     size = sqrt(largest)
-    for i in range(n + 2):
+    for i in range(n + len(tangents)):
         across = vector_product(far, _beside(r, tangents, size, i))
         square = dot(across, across)
         if square > widest:
@@ -112,14 +116,17 @@ def is_plane(r: Array, tangents: Array) -> bool:
     if not length > FLAT * largest:
         return not isnan(total)  # on a line
     farthest = 0.0
-    for i in range(n + 2):
+    for i in range(n + len(tangents)):
         farthest = max(farthest, abs(dot(normal, _beside(r, tangents, size, i))))
     return bool(farthest <= FLAT * size * length and not isnan(total))
 
 
 @kernel
 def kind_of(r: Array, tangents: Array) -> int:
-    """Whether a polygon `r` (n, 3) with the unit `tangents` (2, 3) at its ends is OPEN, KINKED or CLOSED."""
+    """Whether a polygon `r` (n, 3) with the unit `tangents` (2, 3) at its ends is OPEN, KINKED or CLOSED; or JOINED, if
+    they are NO_RAYS."""
+    if len(tangents) == 0:
+        return JOINED
     beside = norm(minus(vector(r, 1), vector(r, 0))) + norm(minus(vector(r, -1), vector(r, -2)))
     if len(r) < 4 or not norm(minus(vector(r, -1), vector(r, 0))) <= 0.5 * MEET * beside:
         return OPEN
@@ -135,9 +142,10 @@ def _beside(r: Array, tangents: Array, size: float, i: int) -> Any:
     return times(size, vector(tangents, i - n))
 
 
-def writhe_of_rod(r: Array, orientation: Array) -> float:
-    """Writhe (turns) of a rod's centreline `r` (n, 3), continued along a3 of the `orientation` (n, 4) of its ends."""
-    return float(_writhe(r, tangents_of_ends(orientation)))
+def writhe_of_rod(r: Array, orientation: Array, ring: bool = False) -> float:
+    """Writhe (turns) of a rod's centreline `r` (n, 3), continued along a3 of the `orientation` (n, 4) of its ends; or
+    of a ring, closed by a straight line."""
+    return float(_writhe(r, NO_RAYS if ring else tangents_of_ends(orientation)))
 
 
 @allocating
@@ -189,6 +197,17 @@ def _rays(r: Array, tangents: Array) -> float:
     apart = 0.0 if kind == OPEN else 2.0 * norm(across)
     total = _ray(r, vector(r, -1), last, apart) - _ray(r, vector(r, 0), minus((0.0, 0.0, 0.0), first), apart)
     return total - half_area(across, last, first) if kind == OPEN else total
+
+
+@kernel
+def _gap(r: Array) -> float:
+    """Half the signed area of all segments of `r` (n, 3) with the straight line from its end to its start."""
+    start, end, total = vector(r, 0), vector(r, -1), 0.0
+    for i in range(1, len(r) - 2):
+        a, b = minus(end, vector(r, i)), minus(start, vector(r, i))
+        c, d = minus(start, vector(r, i + 1)), minus(end, vector(r, i + 1))
+        total += half_area(a, b, c) + half_area(a, c, d)
+    return total
 
 
 @inner

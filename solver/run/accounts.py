@@ -10,6 +10,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.measures.energies import Energies
 from solver.measures.frame import Frame
+from solver.measures.ring import is_ring
 from solver.measures.topology import writhe_of_rod
 from solver.methods.method import Ahead, Method
 from solver.physics.elasticity import elasticity_of, principal
@@ -47,7 +48,7 @@ class Accounts:
         bent = float(scene.rod.length * np.linalg.norm(method.fields().kappa[:, :2], axis=1).max())
         self._lost_at_rest = max(MADE_OF_NOTHING, LOST_AT_REST * (1.0 if pulled else min(bent, 1.0)) ** 2) * self._unit
         self._turnover, self._there = 0.0, 0.0
-        self._linking = LinkingNumber()
+        self._linking, self._ring = LinkingNumber(), is_ring(scene)
         self._swings = scene.topology and not (scene.start.holds_tangent() and scene.end.holds_tangent())
         """Whether the linking number changes by how the ends' tangents move."""
         self._follow_ends()
@@ -89,7 +90,7 @@ class Accounts:
         self._there = max(self._there, total - energy.potential)
         if not self._settled:
             self._settle(t, energy)
-        Wr = writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
+        Wr = writhe_of_rod(fields.r, fields.orientation, self._ring) if self._scene.topology else nan
         # the moment is the same on both sides of a step, but at the start, where the curvature is given
         kappa = method.beside.at_nodes(fields.kappa, fields.q) if t > 0.0 else fields.kappa
         named: dict[str, Any] = vars(fields) | {"kappa": kappa} | dict(zip(OF_ENERGIES, energy, strict=True))

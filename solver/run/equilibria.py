@@ -10,6 +10,7 @@ from solver.arrays import Array
 from solver.kernels.kernel import compile_apart
 from solver.kernels.rotation import rotate_back
 from solver.measures.frame import Fields, Frame, Statistics, complete
+from solver.measures.ring import is_ring
 from solver.measures.topology import writhe_of_rod
 from solver.methods.space.segments.balances import Motion
 from solver.methods.space.segments.energies import energies_at, twist
@@ -60,7 +61,8 @@ class Equilibria(Run):
         check_place(scene)
         compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
         self.remarks.axial_stiffness = axial_stiffness(scene)
-        self._watch = Watch(self.remarks, scene.contact is not None)
+        self._ring = is_ring(scene)
+        self._watch = Watch(self.remarks, scene.contact is not None, self._ring)
         self._falling: list[float] = []
         """Directions of falling energy where each of the WAYS led; inf where it led nowhere."""
         self._begin(0)
@@ -195,7 +197,9 @@ class Equilibria(Run):
         return float(twist(point.quaternion) / (2 * pi))
 
     def _writhe(self, fields: Fields) -> float:
-        return writhe_of_rod(fields.r, fields.orientation) if self._scene.topology else nan
+        if not self._scene.topology:
+            return nan
+        return writhe_of_rod(fields.r, fields.orientation, self._ring)
 
     def _linking_number(self, t: float, Tw: float, Wr: float) -> float:
         """NaN where the ends' relative rotation is not prescribed."""

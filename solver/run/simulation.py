@@ -7,6 +7,7 @@ from math import pi
 
 from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics, complete
+from solver.measures.ring import is_ring
 from solver.methods.registry import discretized, tolerated_increment
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
@@ -47,7 +48,7 @@ class Simulation(Run):
         if scene.numerics.method == "staggered":
             self.remarks.axial_stiffness = axial_stiffness(scene)
         self._largest_strain = largest_strain(scene)
-        self._watch = Watch(self.remarks, scene.contact is not None)
+        self._watch = Watch(self.remarks, scene.contact is not None, is_ring(scene))
         self._turn = self._trial_turn = pi
         """The largest rotation (rad) within an interval, of the state and of the trial."""
 

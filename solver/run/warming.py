@@ -11,7 +11,7 @@ import numpy as np
 
 from solver.kernels.kernel import compile_apart
 from solver.measures.holonomy import swept
-from solver.measures.topology import tangents_of_ends, writhe_of_rod, writhe_shares
+from solver.measures.topology import NO_RAYS, tangents_of_ends, writhe_of_rod, writhe_shares
 from solver.methods.registry import METHODS, discretized
 from solver.scene.contact import Contact
 from solver.scene.ends import End
@@ -71,6 +71,7 @@ def exercise(method: str, touching: bool, linear_solver: str = Numerics.linear_s
     fields = moving.fields()
     moving.energies(), moving.twist(), moving.smallest_gap()
     writhe_of_rod(LEAVES_ITS_PLANE, fields.orientation)
-    writhe_shares(LEAVES_ITS_PLANE, *tangents_of_ends(fields.orientation))
+    for tangents in (tangents_of_ends(fields.orientation), NO_RAYS):
+        writhe_shares(LEAVES_ITS_PLANE, tangents)
     swept(fields.orientation, fields.orientation, 0.0)
     moving.compile()

@@ -6,7 +6,7 @@ from math import isnan
 
 from solver.arrays import Array
 from solver.measures.frame import Frame
-from solver.measures.passages import QUIET, Passages, Shape, passages, shape_of
+from solver.measures.passages import QUIET, Passages, Shape, joined, passages, shape_of
 from solver.measures.topology import share_of_rays
 from solver.run.remarks import Remarks
 
@@ -23,9 +23,9 @@ class Watch:
     end, and what is left of the jumps of Tw + Wr - Lk is a crossing.
     """
 
-    def __init__(self, remarks: Remarks, holds: bool) -> None:
-        """`holds`: the scene has contact."""
-        self._remarks, self._holds = remarks, holds
+    def __init__(self, remarks: Remarks, holds: bool, ring: bool = False) -> None:
+        """`holds`: the scene has contact; `ring`: see `measures.ring`."""
+        self._remarks, self._holds, self._ring = remarks, holds, ring
         self._turns, self._share = 0.0, 0.0
         self._hops, self._hopped = 0, False
         """Over an end since the last frame, with signs; and whether there were any."""
@@ -34,7 +34,8 @@ class Watch:
 
     def follow(self, shape: Shape) -> None:
         """After each step of a rod whose strands are held apart."""
-        share = share_of_rays(shape.r, shape.tangents[0], shape.tangents[1])
+        shape = joined(shape) if self._ring else shape
+        share = share_of_rays(*shape)
         if self._last and abs(share - self._share) > QUIET:
             hops = passages(Shape(*self._last), shape).hops
             self._hops, self._hopped = self._hops + hops, self._hopped or hops != 0
@@ -47,7 +48,7 @@ class Watch:
             self._remarks.deepest_overlap, self._remarks.deepest_overlap_at = -frame.min_gap, frame.t
         if not self._holds and isnan(frame.Wr):
             return ""
-        shape, turns = shape_of(frame), frame.Tw + frame.Wr - frame.Lk
+        shape, turns = joined(shape_of(frame)) if self._ring else shape_of(frame), frame.Tw + frame.Wr - frame.Lk
         jump = turns - self._turns
         self._turns = turns
         if self._holds:

@@ -90,6 +90,11 @@ class End:
         conditions = [condition for component in self.rotation[:2] for condition in component]
         return all(condition.kind != "load" and _is_rest(condition) for condition in conditions)
 
+    def holds_place(self) -> bool:
+        """Whether it stays where it is at all times."""
+        conditions = [condition for component in self.translation for condition in component]
+        return all(condition.kind != "load" and _is_rest(condition) for condition in conditions)
+
     def keeps(self, view: View) -> bool:
         """Whether the end asks for no motion and no load but along the motion about an axis, at all times."""
         moves = view.moves

@@ -11,7 +11,20 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solver import FIXED, FREE, Condition, Curve, End, Numerics, PointLoad, Scene, simulate
+from solver import (
+    FIXED,
+    FREE,
+    Condition,
+    Curve,
+    DistributedLoad,
+    End,
+    Frame,
+    Numerics,
+    PointLoad,
+    Scene,
+    constant_vector,
+    simulate,
+)
 from solver.methods.space.segments.layers import Layers
 from solver.physics.elasticity import Softening
 from tests.solver.scenes import EJ, LENGTH, ROD, last
@@ -66,16 +79,44 @@ WAVE = pi / LENGTH * sqrt(EJ / THIN**2 / float(ROD.mass(0.0)))
 """Circular frequency of the first wave under the tension, rad/s."""
 
 
-@pytest.mark.parametrize(("start", "pull"), [(End.pin(), 1.0), (End.clamp(), -1.0)])
-def test_where_nothing_is_held_or_pulled_nothing_is_added(
-    start: End, pull: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A pin bears no moment; a rod that is pressed has no layer."""
-    along = (FIXED, FIXED, (Condition("load", Curve.constant(pull * EJ)),))
-    scene = static(start=start, end=End(along, (FREE, FREE, FREE), "lab"), gravity=(1.0, 0.0, 0.0))
-    with_it = last(scene)
-    monkeypatch.setattr(Layers, "complete", lambda layers, fields, held, t: 0.0)
-    assert_array_equal(with_it.kappa, last(scene).kappa)
+def without(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> Frame:
+    """The last frame of a scene whose layers are left as the mesh has them."""
+    with monkeypatch.context() as changed:
+        changed.setattr(Layers, "complete", lambda layers, fields, held, t: 0.0)
+        return last(scene)
+
+
+def test_where_the_rod_is_pressed_nothing_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
+    pressed = End((FIXED, FIXED, (Condition("load", Curve.constant(-EJ)),)), (FREE, FREE, FREE), "lab")
+    scene = static(start=End.clamp(), end=pressed, gravity=(0.01, 0.0, 0.0))
+    frame = last(scene)
+    assert np.abs(frame.kappa[:, 1]).max() > 1e-3
+    assert_array_equal(frame.kappa, without(scene, monkeypatch).kappa)
+
+
+def test_where_tension_falls_to_nothing_at_a_free_end_nothing_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
+    aside = (DistributedLoad(constant_vector((10.0 * EJ, 0.0, 0.0))),)
+    scene = static(start=End.pin(), end=End.free(), gravity=(0.0, 0.0, 2e4), distributed=aside,
+                   numerics=Numerics("staggered", intervals=40))  # fmt: skip
+    frame, plain = last(scene), without(scene, monkeypatch)
+    assert not np.array_equal(frame.kappa[:5], plain.kappa[:5])
+    assert_array_equal(frame.kappa[25:], plain.kappa[25:])
+
+
+@pytest.mark.parametrize("around", [0.0, 0.7])
+@pytest.mark.parametrize(
+    ("thin", "intervals"), [(0.01, 16), (0.02, 16), (0.02, 64), (0.05, 32), (0.05, 128), (0.1, 32)]
+)
+def test_at_a_pin_the_curvature_is_that_of_a_taut_beam(thin: float, intervals: int, around: float) -> None:
+    """K (1 - cosh((L / 2 - s) / lambda) / cosh(L / 2 lambda)) under a load K T, which was off by up to 4 % of K."""
+    T, K = EJ / (thin * LENGTH) ** 2, 2e-3
+    taut = End((FIXED, FIXED, (Condition("load", Curve.constant(T)),)), (FREE, FREE, FREE), "lab")
+    load = DistributedLoad(constant_vector((K * T * cos(around), K * T * sin(around), 0.0)))
+    frame = last(static(start=End.pin(), end=taut, distributed=(load,),
+                        numerics=Numerics("staggered", intervals=intervals)))  # fmt: skip
+    s = np.linspace(0.0, LENGTH, intervals + 1)
+    exact = K * (1.0 - np.cosh((0.5 * LENGTH - s) / thin) / np.cosh(0.5 * LENGTH / thin))
+    assert_allclose(np.hypot(*frame.kappa[:, :2].T), exact, atol=3e-4 * K)
 
 
 def plucked(place: float, intervals: int, force: float = 1e-3, **changes: object) -> Scene:

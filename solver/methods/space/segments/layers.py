@@ -1,4 +1,4 @@
-"""The curvature of a taut rod where it is held at an angle or kinked, and bends within less than an interval.
+"""The curvature of a taut rod at its ends and where it is kinked, which changes within less than an interval.
 
 There, as in a wire at its clamp, kappa = (theta / lambda) exp(-s / lambda), lambda = sqrt(EJ / T), by the angle theta
 between the end and the direction in which the rod goes off (of large ones, 2 sin(theta / 2) instead: the elastica). A
@@ -12,6 +12,10 @@ So theta follows from what two joints show, and then what is missing at each nod
 the layer. A force P in a point kinks the rod by theta = 2 asin(P / 2T), half of it on each side; if it acts on segment
 m, the part a of an interval behind its first joint, the layers before and behind it are on this mesh as high as if they
 were those of p theta and (1 - p) theta, p = (1 - rho + x^2 (1 - a)) / (2 (1 - rho) + x^2).
+
+At an end that may turn, a pin or a free one under tension, the moment is given, and far from there the loads bend the
+rod: kappa = K - b exp(-s / lambda), where the mesh has K - b rho^k at node k. If K is linear beside the end, and the
+moment is that of b = 2 kappa_1 - kappa_2 - kappa_0 at the nodes, over (1 - rho)^2, b (rho^k - exp(-x k)) is missing.
 """
 
 from __future__ import annotations
@@ -35,10 +39,12 @@ LINEAR = (Coupling, Stretch, TwistStretch, Viscosity)
 """Laws with which bending stays proportional to curvature."""
 RESOLVED = 0.05
 """Of h / lambda: below it nothing is missing that rounding would not blur."""
-WIDE = 8
+WIDE = 24
 """Nodes of a layer on one side that are completed."""
 SECOND = 2
 """Joint of an end layer that is compared with its first."""
+ALIKE = 0.5
+"""Tension at an end that may turn, by that at its second joint, from which on it is taken to be the same in a layer."""
 
 
 class Layer(NamedTuple):
@@ -131,6 +137,8 @@ class Layers(NamedTuple):
             T = float(np.mean(fields.f[layer.taut, 2]))
             x = self.h * np.sqrt(max(T, 0.0) / layer.EJ)
             lacking = turned & (x > RESOLVED)
+            if layer.load is None:
+                missing[layer.nodes, :2] += self._at_hinge(fields, layer, x, ~turned & (x > RESOLVED))
             if lacking.any():
                 theta = self._angle(fields, layer, x) if layer.load is None else _kink(fields, layer, layer.load, T, t)
                 if not theta.any():
@@ -146,6 +154,20 @@ class Layers(NamedTuple):
                     energy += float(layer.EJ[k] * angles[0, k] ** 2 / self.h * (stored - on_mesh))
         fields.kappa[:] += missing
         return energy
+
+    def _at_hinge(self, fields: Fields, layer: Layer, x: Array, lacking: NDArray[np.bool_]) -> Array:
+        """What is missing in kappa1 and kappa2 (nodes, 2) of a layer at an end that may turn about the `lacking` axes.
+        """
+        missing, (end, first, second) = np.zeros((len(layer.at), 2)), layer.nodes[: SECOND + 1]
+        if not lacking.any() or fields.f[end, 2] < ALIKE * fields.f[second, 2]:
+            return missing
+        R = rotation_of(fields.orientation[end])
+        near, far = (R.T @ rotation_of(fields.orientation[i]) @ fields.q[i] for i in (first, second))
+        bend = (2.0 * near - far - fields.q[end])[:2] / layer.EJ
+        for k in np.flatnonzero(lacking):
+            rho = _decay(float(x[k]))
+            missing[:, k] = bend[k] / (1.0 - rho) ** 2 * (rho**layer.at - np.exp(-x[k] * layer.at))
+        return missing
 
     def _angle(self, fields: Fields, layer: Layer, x: Array) -> Array:
         """The angle (3,), as a vector, lab, between an end and the direction in which the rod goes off there."""

@@ -105,7 +105,7 @@ def moved(preset="clamp", to=20.0, **conditions):
                                  for name, value in values.items()}  # fmt: skip
 
 
-SEA = {"fluid__density": 1000.0}
+SEA, AIR = {"fluid__density": 1000.0}, {"fluid__density": 1.2}
 def arc(angle):
     """A circular arc of 1 m, as long as the case's rod, that turns by an angle (rad)."""
     at, R = [angle * i / 200 for i in range(201)], 1.0 / angle
@@ -127,6 +127,7 @@ PINNED = {"ends__start": "pin", "ends__end": "pin", "initial": arc(1.0), "rod__k
           "loads__damping": 1.0}  # fmt: skip
 STRUCK = [{"s": 0.5, "force": [{"t": [0.0, 0.1, 0.2], "value": [0.0, 8.0 * STIFFNESS, 0.0],
                                 "interpolation": "linear"}, 0, 0]}]  # fmt: skip
+TAUT = {"loads__point": [{"s": 1.0, "force": [0, 0, 200.0 * STIFFNESS]}]}
 LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
 
 
@@ -163,7 +164,7 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"ends__end": moved(theta3=True)}, "wound up"),
     ({"ends__end": moved(theta3=True), "loads__damping": 1e3}, "overdamped and wound up"),
     ({"ends__end": moved("slider", theta3=True) | {"f3": 5.0 * STIFFNESS}}, "wound up"),
-    ({"ends__end": moved("slider", theta3=True) | {"f3": 100.0 * STIFFNESS}, "loads__damping": 1.0},
+    ({"ends__end": moved("slider", theta3=True) | {"f3": 100.0 * STIFFNESS}, "loads__damping": 5.0},
      "settling in space"),  # pulled taut
     ({"loads__gravity": LYING, "loads__damping": 3.0}, "let go and settling"),
     (PINNED | {"ends__end": "clamp", "loads__gravity": LYING, "loads__damping": 3.0},
@@ -187,6 +188,18 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"ends__end": "slider", "loads__gravity": LYING}, "loaded on a slide"),
     ({"rod__axial_stiffness": 10.0, "ends__end": {"preset": "pin", "frame": "lab", "switches": [
         {"at": 1.0, "f1": 0.0, "f2": 0.0, "f3": 0.0}]}}, "let go and stretching"),
+    ({"rod__kappa0": "initial", "initial": arc(12.0), "ends__start": moved(x1=True, x2=True, to=1.0),
+      "loads__point": [], "loads__damping": 0.1}, "a coil that is moved"),
+    ({"loads__gravity": ASKEW, "loads__damping": 8.0, "ends__start": moved(x1=True, to=1.0)},
+     "moved and settling in space"),
+    (AIR | {"ends__start": moved(x1=[0.0, 1.0, 0.0, 1.0])}, "shaken in air"),
+    (SEA | TAUT | {"ends__start": moved(x1=[0.0, 1.0, 0.0, 1.0])}, "shaken under tension"),
+    (SEA | TAUT | {"loads__gravity": ASKEW, "ends__start": moved(x1=[0.0, 1.0, 0.0, 1.0])}, "shaken under tension"),
+    ({"ends__start": moved(theta3=True, to=0.3), "loads__point": []}, "twisted to and fro"),
+    ({"ends__end": moved(x3=True, to=-0.1), "loads__damping": 1e5}, "overdamped"),
+    ({"loads__point": STRUCK, "loads__damping": 2.0}, "followed by the frames"),
+    ({"loads__point": STRUCK, "loads__damping": 2.0,
+      "ends__end": moved("pin") | {"frame": "lab", "f3": 5e3 * STIFFNESS}}, "struck"),  # as a string is faster
     ({"initial": TWISTED, "ends__end": "free", "loads__damping": 1.0}, "in space and moved or let go"),
     ({"initial": TWISTED, "ends__end": "slider", "loads__damping": 1.0}, "settling in space"),
 ])  # fmt: skip

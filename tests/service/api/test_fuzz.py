@@ -36,7 +36,7 @@ from service.jobs.job import Reached
 from service.settings import Settings
 from worker.run import run_next
 
-HERE = Path(__file__).parent
+HERE, DATABASES = Path(__file__).parent, ["sqlite", "postgresql"]
 LONG = os.environ.get("FUZZ") == "long"
 MALFORMED = 10_000 if LONG else 500
 DAY = 86400.0
@@ -64,7 +64,7 @@ class Ran(NamedTuple):
     keys: list[str | None]
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
+@pytest.fixture(params=DATABASES)
 def ran(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Ran]:
     data = tmp_path_factory.mktemp("data")
     if request.param == "sqlite":
@@ -197,6 +197,7 @@ def test_while_the_database_goes_away_and_comes_back_there_is_only_503_and_right
         schemathesis(address, ran, waiting, tmp_path, *examples(4, seconds=60, phases="examples,fuzzing"))
 
 
+@pytest.mark.parametrize("ran", DATABASES if LONG else DATABASES[:1], indirect=True)  # keys are rows like any other
 def test_schemathesis_finds_nothing_where_keys_are_required(ran, waiting, tmp_path):
     with serving(ran.settings, HOCKLE_REQUIRE_KEYS="1", HOCKLE_RATE="1000") as address:
         met = schemathesis(address, ran, waiting, tmp_path, *examples(4, 180), *OUR_KEYS, keys=ran.keys)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import chain, pairwise
 from math import hypot, pi
 from typing import Any
@@ -50,10 +51,10 @@ JERK = 1e-3
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *units_of(spec, scene), *bends_of(spec, scene), *_gravity(spec),
-            *_contact(spec, scene), *_sheared(spec, scene), *_column(spec, scene), *_obstacles(spec),
-            *_begins_inside(scene), *_friction_at_rest(spec), *_touches_itself(scene), *_stretched(scene),
-            *_pulled_apart(scene), *_tables(spec), *_frames(spec), *_idle(scene), *_held_back(scene),
-            *_too_fast(spec, scene)]  # fmt: skip
+            *_contact(spec, scene), *_sheared(spec, scene), *_column(spec, scene), *_pushed_in(spec, scene),
+            *_obstacles(spec), *_begins_inside(scene), *_friction_at_rest(spec), *_touches_itself(scene),
+            *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec), *_idle(scene),
+            *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -100,18 +101,47 @@ def _sheared(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
 
 def _column(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     """A straight rod whose ends press it, and that nothing pushes aside, stays straight for ever."""
-    if not isinstance(spec.initial, Straight) or not has_to_stretch(scene):
-        return
-    s, R = np.linspace(0.0, spec.rod.length, 11), np.zeros((3, 3))
-    _, quaternion, kappa = nodes_at_rest(scene.initial, s)
-    matrix_of(quaternion[0], R)
-    if not scene.keeps(View(2, s, quaternion, kappa, R)):
+    if not has_to_stretch(scene) or (R := _kept_straight(spec, scene)) is None:
         return
     shortest = min(_travel(scene.end, R, t) - _travel(scene.start, R, t) for t in times(scene)[::20])
     if shortest < -SHORTENED * spec.rod.length:
         rule = (f"has nothing across the rod, which is straight and whose ends come {-shortest:.3g} m nearer to each "
                 "other: it would be pressed shorter instead of buckling; a small load says to which side it is to bend")
         yield FieldError("/loads", None, rule)
+
+
+def _pushed_in(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """A straight rod that an end pushes into something solid, and that nothing pushes aside, goes in end first."""
+    R = _kept_straight(spec, replace(scene, loads=(), contact=None)) if not has_to_stretch(scene) else None
+    if R is None:
+        return
+    r, _, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, 2))
+    ways = [_travel(end, R, t) for end in (scene.start, scene.end) for t in times(scene)[::20]]
+    for where, solid in _solids(scene):
+        deepest = max(float(np.max(solid.depth(r + way * R[:, 2]))) for way in (min(ways), max(ways)))
+        if deepest - float(np.max(solid.depth(r))) > widest(scene) and deepest > widest(scene):
+            rule = (f"has the rod pushed into it, end first, by {deepest:.3g} m: nothing is across the rod, which is "
+                    "straight, so it would go in instead of bending; a small load says to which side it is to bend")
+            yield FieldError(where, None, rule)
+
+
+def _kept_straight(spec: CaseSpec, scene: Scene) -> Any:
+    """The axes (3, 3) of a straight rod that nothing pushes aside; None of another one."""
+    if not isinstance(spec.initial, Straight):
+        return None
+    s, R = np.linspace(0.0, spec.rod.length, 11), np.zeros((3, 3))
+    _, quaternion, kappa = nodes_at_rest(scene.initial, s)
+    matrix_of(quaternion[0], R)
+    return R if scene.keeps(View(2, s, quaternion, kappa, R)) else None
+
+
+def _solids(scene: Scene) -> Iterator[tuple[str, Given]]:
+    """Floor and obstacles, with their pointers."""
+    count = 0
+    for load in scene.loads:
+        if isinstance(load, Given):
+            yield "/loads/floor" if isinstance(load, Floor) else f"/loads/obstacles/{count}", load
+            count += not isinstance(load, Floor)
 
 
 def _obstacles(spec: CaseSpec) -> Iterator[FieldError]:
@@ -131,10 +161,7 @@ def _obstacles(spec: CaseSpec) -> Iterator[FieldError]:
 def _begins_inside(scene: Scene) -> Iterator[FieldError]:
     """A rod that begins so deep in something solid that it will be thrown out."""
     r, _, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, 201))
-    solids, count = [load for load in scene.loads if isinstance(load, Given)], 0
-    for solid in solids:
-        where = "/loads/floor" if isinstance(solid, Floor) else f"/loads/obstacles/{count}"
-        count += not isinstance(solid, Floor)
+    for where, solid in _solids(scene):
         deepest = float(np.max(solid.depth(r)))
         if deepest > widest(scene):
             rule = f"has the rod in it at t = 0, by {deepest:.3g} m: it would throw the rod out"

@@ -105,6 +105,26 @@ def test_one_that_something_bends_or_that_is_pulled_is_left_alone(change: dict[s
     assert _warned(PRESSED | change) == []
 
 
+def _lowered(by: float, **loads: Any) -> dict[str, Any]:
+    """A straight thread above a floor, free below, whose upper end comes down."""
+    end = {"preset": "clamp", "frame": "lab", "x3": {"t": [0, 1], "value": [0, -by], "interpolation": "smoothstep"}}
+    floor = {"stiffness": 50.0, "normal": [0, 0, 1], "height": -0.05}
+    loads = {"floor": floor, "gravity": [0, 0, -9.81], **loads}
+    return PRESSED | {"ends": {"start": "free", "end": end}, "loads": loads}
+
+
+def test_a_straight_thread_that_is_pushed_into_a_floor_end_first_is_pointed_out():
+    [warning] = _warned(_lowered(0.3))
+    assert warning.pointer == "/loads/floor" and "end first, by 0.25 m" in warning.rule
+
+
+@pytest.mark.parametrize("case", [
+    _lowered(0.05), _lowered(0.3, point=[{"s": 0.5, "force": [1e-9, 0.0, 0.0]}]), _lowered(0.3, gravity=[1, 0, -9.81]),
+])  # fmt: skip
+def test_one_that_does_not_reach_it_or_bends_aside_is_left_alone(case: dict[str, Any]):
+    assert [warning for warning in _warned(case) if warning.pointer == "/loads/floor"] == []
+
+
 @pytest.mark.parametrize(("intervals", "warned"), [(10, True), (100, False)])
 def test_an_obstacle_that_fits_between_nodes_is_named(intervals: int, warned: bool):
     balls = [{"start": [0, 0, -1], "radius": radius, "stiffness": 50.0} for radius in (0.5, 0.02)]

@@ -84,6 +84,18 @@ class DrivenEnd:
             values[:, i] = self._values_of(i, t, later, gain)
         return values
 
+    def unseen_turn(self, t: float, dt: float) -> float:
+        """The largest prescribed rotation (rad) in a step from t that the mean of the rates at its begin and its end
+        leaves out, as where an end turns from rest to rest within it."""
+        largest = 0.0
+        for i in self._moving:
+            condition = self._components[i][self._active[i]]
+            if i >= 3 and condition.kind in ("rate", "position"):
+                turned = travel(condition, t + dt) - travel(condition, t)
+                rates = _rate(condition, t + 2e-9 * dt, dt) + _rate(condition, t + dt, dt)
+                largest = max(largest, abs(turned - 0.5 * dt * rates))
+        return largest
+
     def prescribed(self, component: int, t: float) -> float | None:
         """The exact displacement (m) along, or rotation (rad) about, an axis since t = 0, if it has been prescribed all
         along; `component`: 0 to 2 of the translation, 3 to 5 of the rotation."""

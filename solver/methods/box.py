@@ -46,8 +46,9 @@ and fall with the motion, or it turns the rod; without it |Tw + Wr - Lk| of goya
 LARGEST_FEEDBACK = 0.5
 """Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 
-UNSEEN = 0.1
-"""Rotation (rad) of an end that a step leaves out, worth as much as a motion that changes altogether within it."""
+UNSEEN = 0.03
+"""Rotation (rad), or displacement in rod lengths, of an end that a step leaves out, worth as much as a motion that
+changes altogether within it."""
 DIVISIBLE = 0.1
 """Of the time that twist takes to run along an interval."""
 SMALL_MOTION = 1e-6
@@ -89,10 +90,10 @@ class BoxMethod:
         if numerics.rho_inf_space < 1.0:
             softest = principal(self.section.elastic)[:, 0]
             self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / softest)))
-        self._last_dt, self._taken_dt, self._consistent, self._unseen_turn = 0.0, 0.0, False, 0.0
+        self._last_dt, self._taken_dt, self._consistent, self._unseen = 0.0, 0.0, False, 0.0
         twisting = np.sqrt(self.section.inertia[:, 2] / principal(self.section.elastic)[:, 2])
         self._divisible = DIVISIBLE * self.h * float(twisting.mean())
-        """Step (s) that is not shortened for how an end turns within it: a jump for the mesh."""
+        """Step (s) that is not shortened for what an end does within it: a jump for the mesh."""
         self._F_rate = np.zeros((len(self.s), 3))
         self._flows = Flows.empty(len(self.s))
         self._handed = Handed.over(*self._records)
@@ -123,7 +124,8 @@ class BoxMethod:
         self.applied.check()
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
         looks = dt > self._divisible and not consistent
-        self._unseen_turn = max(end.unseen_turn(t, dt) for end in (self.start, self.end)) if looks else 0.0
+        length = float(self.s[-1])
+        self._unseen = max(end.unseen(t, dt, length) for end in (self.start, self.end)) if looks else 0.0
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> Array:
@@ -160,10 +162,10 @@ class BoxMethod:
         return rotate_back(self.state.quaternion, self.state.Y[:, V : V + 3].copy())
 
     def relative_increment(self, dt: float) -> float:
-        """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|; at the least the
-        rotation that an end is prescribed between the rates which the step sees, in UNSEEN."""
+        """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|; at the least what
+        an end is prescribed between the rates which the step sees, in UNSEEN."""
         change, motion = self._measured.acceleration, self._measured.motion
-        return max(dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1])), self._unseen_turn / UNSEEN)
+        return max(dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1])), self._unseen / UNSEEN)
 
     def strain(self) -> float:
         """The trial's largest strain of an interval."""

@@ -84,16 +84,16 @@ class DrivenEnd:
             values[:, i] = self._values_of(i, t, later, gain)
         return values
 
-    def unseen_turn(self, t: float, dt: float) -> float:
-        """The largest prescribed rotation (rad) in a step from t that the mean of the rates at its begin and its end
-        leaves out, as where an end turns from rest to rest within it."""
+    def unseen(self, t: float, dt: float, length: float) -> float:
+        """The largest prescribed rotation (rad), or displacement in rod lengths, in a step from t that the mean of the
+        rates at its begin and its end leaves out, as where an end goes from rest to rest within it."""
         largest = 0.0
         for i in self._moving:
             condition = self._components[i][self._active[i]]
-            if i >= 3 and condition.kind in ("rate", "position"):
-                turned = travel(condition, t + dt) - travel(condition, t)
+            if condition.kind in ("rate", "position"):
+                moved = travel(condition, t + dt) - travel(condition, t)
                 rates = _rate(condition, t + 2e-9 * dt, dt) + _rate(condition, t + dt, dt)
-                largest = max(largest, abs(turned - 0.5 * dt * rates))
+                largest = max(largest, abs(moved - 0.5 * dt * rates) / (length if i < 3 else 1.0))
         return largest
 
     def prescribed(self, component: int, t: float) -> float | None:

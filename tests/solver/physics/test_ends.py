@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solver import Condition, Curve, End, Initial, Scene, simulate
+from solver import Condition, Curve, End, Initial, Numerics, Scene, simulate
 from solver.physics.ends import ABOUT_A3, LOAD, LOAD_LAB, RATE, RATE_LAB, DrivenEnd
 from solver.run.step_control import CONSISTENT_STEPS
 from solver.scene.ends import FIXED, FREE
 from tests.solver.scenes import ARC, ARC_ROD, ROD, fixed_steps, last, moved_clamp, turned_clamp
 
-AT_REST = np.zeros(6)
+AT_REST, ZERO = np.zeros(6), Curve.constant(0.0)
 
 
 def along(*conditions: Condition, frame: str = "material") -> DrivenEnd:
@@ -164,3 +164,22 @@ def test_an_end_let_go_moves_and_an_end_caught_stays() -> None:
     # caught within 0.1 s; what generalized-alpha remembers of the motion halves in each of 20 more steps
     assert_allclose(x[11:], x[11], rtol=1e-3)
     assert_allclose(x[15:], x[15], atol=1e-9)
+
+
+@pytest.mark.parametrize(("within", "begin"), [(0.1, 0.25), (0.03, 0.25), (0.03, 0.3), (1e-3, 0.25)])
+def test_an_end_that_turns_from_rest_to_rest_within_a_step_takes_the_rod_along(within: float, begin: float) -> None:
+    """Both rates of a box step were nothing, and the turn came frames later, by what ends are corrected by."""
+    turn = Curve.table([begin, begin + within], [0.0, 1.0], "smoothstep")
+    scene = Scene(ROD, Initial.straight(), End.slider(), turned_clamp(Condition("position", turn)), 1.0, 0.1,
+                  damping=3.0, numerics=Numerics(method="box", intervals=10, dt_max=0.1))  # fmt: skip
+    assert max(abs(frame.Tw + frame.Wr - frame.Lk) for frame in simulate(scene)) < 2e-3
+
+
+@pytest.mark.parametrize(("way", "within"), [(0.02, 0.05), (0.02, 0.03), (0.05, 0.05), (0.05, 0.01)])
+def test_one_that_is_moved_from_rest_to_rest_within_a_step_is_where_it_has_to_be(way: float, within: float) -> None:
+    """The rod was to follow it within a step that saw none of it, and Newton's iteration stalled."""
+    moved = Curve.table([0.25, 0.25 + within], [0.0, way], "smoothstep")
+    scene = Scene(ROD, Initial.straight(), moved_clamp(moved, ZERO, ZERO), End.free(), 1.0, 0.1, damping=3.0,
+                  numerics=Numerics(method="box", intervals=20, dt_max=0.1))  # fmt: skip
+    for frame in simulate(scene):
+        assert frame.r[0, 0] == pytest.approx(moved.value(frame.t), abs=1e-3 * way)

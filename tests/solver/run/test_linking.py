@@ -63,12 +63,3 @@ def test_a_free_end_may_be_free_of_moment_and_of_nothing_else() -> None:
     assert not End.pin().holds_tangent() and not End.free().holds_tangent()
     swung = replace(End.clamp(), rotation=((Condition("position", Curve.table([0.0, 1.0], [0.0, 1.0])),), FREE, FREE))
     assert not swung.holds_tangent()
-
-
-@pytest.mark.parametrize(("within", "begin"), [(0.1, 0.25), (0.03, 0.25), (0.03, 0.3), (1e-3, 0.25)])
-def test_an_end_that_turns_from_rest_to_rest_within_a_step_takes_the_rod_along(within: float, begin: float) -> None:
-    """Both rates of a box step were nothing, and the turn came frames later, by what ends are corrected by."""
-    turn = Curve.table([begin, begin + within], [0.0, 1.0], "smoothstep")
-    scene = Scene(ROD, Initial.straight(), End.slider(), turned_clamp(Condition("position", turn)), 1.0, 0.1,
-                  numerics=Numerics(method="box", intervals=10, dt_max=0.1))  # fmt: skip
-    assert off(list(simulate(scene))) < 2e-3

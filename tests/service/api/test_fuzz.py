@@ -169,7 +169,7 @@ def schemathesis(
 
 def test_schemathesis_finds_nothing(ran, waiting, tmp_path):
     with serving(ran.settings) as address:
-        schemathesis(address, ran, waiting, tmp_path, *examples(6, seconds=900))
+        schemathesis(address, ran, waiting, tmp_path, *examples(8, seconds=900))
 
 
 @pytest.mark.parametrize("ran", ["postgresql"], indirect=True)

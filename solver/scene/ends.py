@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal
@@ -87,13 +88,11 @@ class End:
 
     def holds_tangent(self) -> bool:
         """Whether the tangent stays as it is at all times."""
-        conditions = [condition for component in self.rotation[:2] for condition in component]
-        return all(condition.kind != "load" and _is_rest(condition) for condition in conditions)
+        return _rest(self.rotation[:2])
 
     def holds_place(self) -> bool:
         """Whether it stays where it is at all times."""
-        conditions = [condition for component in self.translation for condition in component]
-        return all(condition.kind != "load" and _is_rest(condition) for condition in conditions)
+        return _rest(self.translation)
 
     def keeps(self, view: View) -> bool:
         """Whether the end asks for no motion and no load but along the motion about an axis, at all times."""
@@ -105,6 +104,11 @@ class End:
             moves = along if view.index == 2 else ~along
         asked = [*zip(self.translation, moves, strict=True), *zip(self.rotation, view.turns, strict=True)]
         return all(allowed or all(map(_is_rest, component)) for component, allowed in asked)
+
+
+def _rest(components: Iterable[Component]) -> bool:
+    """Whether components are held as they are at all times."""
+    return all(c.kind != "load" and _is_rest(c) for component in components for c in component)
 
 
 def _is_rest(condition: Condition) -> bool:

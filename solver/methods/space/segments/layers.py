@@ -14,8 +14,8 @@ m, the part a of an interval behind its first joint, the layers before and behin
 were those of p theta and (1 - p) theta, p = (1 - rho + x^2 (1 - a)) / (2 (1 - rho) + x^2).
 
 At an end that may turn, a pin or a free one under tension, the moment is given, and far from there the loads bend the
-rod: kappa = K - b exp(-s / lambda), where the mesh has K - b rho^k at node k. If K is linear beside the end, and the
-moment is that of b = 2 kappa_1 - kappa_2 - kappa_0 at the nodes, over (1 - rho)^2, b (rho^k - exp(-x k)) is missing.
+rod: kappa = K - b exp(-s / lambda), where the mesh has K - b rho^k at node k. Where K is linear beside the end, the
+first three nodes tell b = (2 kappa_1 - kappa_2 - kappa_0) / (1 - rho)^2, and b (rho^k - exp(-x k)) is missing.
 """
 
 from __future__ import annotations

@@ -47,10 +47,10 @@ LARGEST_FEEDBACK = 0.5
 """Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 
 UNSEEN = 0.03
-"""Rotation (rad), or displacement in rod lengths, of an end that a step leaves out, worth as much as a motion that
+"""Rotation (rad), or displacement in rod lengths, by which a step leaves an end behind, worth as much as a motion that
 changes altogether within it."""
-DIVISIBLE = 0.1
-"""Of the time that twist takes to run along an interval."""
+DIVISIBLE = 0.5
+"""Of the time that twist takes to run along an interval: in less the mesh cannot follow an end, which it overshoots."""
 SMALL_MOTION = 1e-6
 """In rod lengths a step: motion below it does not shorten the step."""
 
@@ -93,7 +93,7 @@ class BoxMethod:
         self._last_dt, self._taken_dt, self._consistent, self._unseen = 0.0, 0.0, False, 0.0
         twisting = np.sqrt(self.section.inertia[:, 2] / principal(self.section.elastic)[:, 2])
         self._divisible = DIVISIBLE * self.h * float(twisting.mean())
-        """Step (s) that is not shortened for what an end does within it: a jump for the mesh."""
+        """Step (s) that is not shortened for an end: what it does within it is made up for in those that follow."""
         self._F_rate = np.zeros((len(self.s), 3))
         self._flows = Flows.empty(len(self.s))
         self._handed = Handed.over(*self._records)
@@ -162,8 +162,8 @@ class BoxMethod:
         return rotate_back(self.state.quaternion, self.state.Y[:, V : V + 3].copy())
 
     def relative_increment(self, dt: float) -> float:
-        """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|; at the least what
-        an end is prescribed between the rates which the step sees, in UNSEEN."""
+        """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|; at the least by
+        what it leaves an end behind, in UNSEEN."""
         change, motion = self._measured.acceleration, self._measured.motion
         return max(dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1])), self._unseen / UNSEEN)
 

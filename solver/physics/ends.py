@@ -85,13 +85,14 @@ class DrivenEnd:
         return values
 
     def unseen(self, t: float, dt: float, length: float) -> float:
-        """The largest prescribed rotation (rad), or displacement in rod lengths, in a step from t that the mean of the
-        rates at its begin and its end leaves out, as where an end goes from rest to rest within it."""
+        """The largest prescribed rotation (rad), or displacement in rod lengths, by which the end is behind after a step
+        from t by the mean of the rates at its begin and its end, as where it goes from rest to rest within it, or did
+        so within a step that was not shortened for that."""
         largest = 0.0
         for i in self._moving:
             condition = self._components[i][self._active[i]]
             if condition.kind in ("rate", "position"):
-                moved = travel(condition, t + dt) - travel(condition, t)
+                moved = self._behind(i, condition, t + dt)
                 rates = _rate(condition, t + 2e-9 * dt, dt) + _rate(condition, t + dt, dt)
                 largest = max(largest, abs(moved - 0.5 * dt * rates) / (length if i < 3 else 1.0))
         return largest
@@ -132,8 +133,12 @@ class DrivenEnd:
         if condition.kind == "stop":
             speed, since, within = self._stopping_from[i], condition.since, condition.within
             return [speed * (1.0 - _smoothstep((t + dt - since) / within)) for dt in later]
-        behind = travel(condition, t) - float(self.travel[i] - self._travel_at_switch[i])
+        behind = self._behind(i, condition, t)
         return [_rate(condition, t + dt, dt) + gain * behind for dt in later]
+
+    def _behind(self, i: int, condition: Condition, t: float) -> float:
+        """How far a prescribed component of the end, as it is now, is from where it must be at t (m or rad)."""
+        return travel(condition, t) - float(self.travel[i] - self._travel_at_switch[i])
 
 
 def _rate(condition: Condition, t: float, dt: float) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain, pairwise
-from math import hypot, pi
+from math import hypot, log, pi
 from typing import Any
 
 import numpy as np
@@ -16,11 +16,13 @@ from service.cases.errors import FieldError
 from service.cases.extents import forces, largest, times, widest
 from service.cases.initial import Straight
 from service.cases.outlook import GREENHILL
+from service.cases.pressed import growth
 from service.cases.quantities import ProfileTable, ScheduleTable
 from service.cases.size import tables_in
 from service.cases.units import units_of
 from solver import Curve, End, Scene
 from solver.kernels.rotation import matrix_of
+from solver.measures.buckling import MUCH
 from solver.physics.axial import distances, has_to_stretch, largest_strain
 from solver.physics.elasticity import Stretch
 from solver.physics.ends import travel
@@ -51,10 +53,10 @@ JERK = 1e-3
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *units_of(spec, scene), *bends_of(spec, scene), *_gravity(spec),
-            *_contact(spec, scene), *_sheared(spec, scene), *_column(spec, scene), *_pushed_in(spec, scene),
-            *_obstacles(spec), *_begins_inside(scene), *_friction_at_rest(spec), *_touches_itself(scene),
-            *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec), *_idle(scene),
-            *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
+            *_contact(spec, scene), *_sheared(spec, scene), *_column(spec, scene), *_pressed(spec, scene),
+            *_pushed_in(spec, scene), *_obstacles(spec), *_begins_inside(scene), *_friction_at_rest(spec),
+            *_touches_itself(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec),
+            *_idle(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -107,6 +109,17 @@ def _column(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     if shortest < -SHORTENED * spec.rod.length:
         rule = (f"has nothing across the rod, which is straight and whose ends come {-shortest:.3g} m nearer to each "
                 "other: it would be pressed shorter instead of buckling; a small load says to which side it is to bend")
+        yield FieldError("/loads", None, rule)
+
+
+def _pressed(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """A straight rod that is pressed, or wrung, beyond what it bears, and that nothing pushes aside."""
+    if scene.at_rest or has_to_stretch(scene) or (R := _kept_straight(spec, scene)) is None:
+        return
+    if (grown := growth(scene, R[:, 2])) > MUCH:
+        rule = ("has nothing across the rod, which is straight and pressed, or wrung, beyond what it bears: a push "
+                f"aside would grow by a factor of 1e{grown / log(10.0):.0f}, but there is none; a small load says to "
+                "which side it is to bend")
         yield FieldError("/loads", None, rule)
 
 

@@ -1,6 +1,6 @@
-"""How fast a push aside grows on a straight rod that is pressed, or wrung: what a run that stays straight does not show.
+"""How fast a push aside grows on a straight rod that is pressed or wrung: what a run that stays straight does not show.
 
-With small rotations w (2,) of the sections across the rod, in the lab, at a state with the tension f3 and the torque q3,
+With small rotations w (2,) of the sections across the rod, in the lab, at a state with a tension f3 and a torque q3,
 the Lagrangian's second variation is
 
     1/2 int w'.(D w') + f3 |w|^2 - q3 (w x w')_3 ds,   D = EJ1 a1 a1 + EJ2 a2 a2,
@@ -19,14 +19,13 @@ import numpy as np
 from scipy.linalg import eigh, null_space
 
 from solver.arrays import Array
-from solver.measures.frame import Frame
-from solver.scene.ends import Component, End
+from solver.scene.ends import Component
 from solver.scene.scene import Scene
 
 INTERVALS = 32
 """Into which the rod is divided."""
-STRAIGHT = 1e-6
-"""Curvature, in 1/L, up to which a rod is straight."""
+MUCH = 10.0
+"""Logarithm of a growth, 2e4, from which on no rod is straight enough to stay so."""
 HARMLESS = 1.0
 """Compression in EJ/L^2, and torque in EJ/L, that no ends let a rod buckle by."""
 
@@ -34,22 +33,21 @@ HARMLESS = 1.0
 def can_buckle(scene: Scene) -> bool:
     """Whether what grows on a straight rod follows from its second variation: nothing turns with it, and nothing that
     is not looked at, as a floor, holds it."""
-    turning = any(load.frame == "material" for load in (*scene.points, *scene.distributed))
-    turning = turning or any(end.frame == "material" and not _held(end.rotation[:2]) and _pushes(end.translation)
-                             for end in (scene.start, scene.end))  # fmt: skip
-    return not (turning or scene.loads)
+    frames = {load.frame for load in scene.points} | {load.frame for load in scene.distributed}
+    turning = any(end.frame == "material" and not _held(end.rotation[:2]) and _pushes(end.translation)
+                  for end in (scene.start, scene.end))  # fmt: skip
+    return not (turning or "material" in frames or scene.loads)
 
 
-def growth_rate(scene: Scene, s: Array, frame: Frame) -> float:
-    """The rate (1/s) at which a push aside grows at a frame, whose nodes are at `s` (n,); 0 if the rod is bent."""
+def growth_rate(scene: Scene, s: Array, tension: Array, torque: Array, twist: Array) -> float:
+    """The rate (1/s) at which a push aside grows on a straight rod, 0 if none does: by f3 (N), q3 (N m) and kappa3
+    (rad/m) at arclengths `s` (n,), all (n,)."""
     length, at = float(scene.rod.length), np.linspace(0.0, scene.rod.length, INTERVALS + 1)
-    if float(np.abs(frame.kappa[:, :2]).max()) * length > STRAIGHT:
-        return 0.0
     EJ = np.stack([profile(at) + 0.0 * at for profile in scene.rod.stiffness[:2]], axis=1)
-    tension, torque, twist = (np.interp(at, s, row) for row in (frame.f[:, 2], frame.q[:, 2], frame.kappa[:, 2]))
+    tension, torque, twist = (np.interp(at, s, row) for row in (tension, torque, twist))
     if max(-tension.min() * length**2, np.abs(torque).max() * length) < HARMLESS * float(EJ.min()):
         return 0.0
-    ways = _ways(scene, length)
+    ways = _ways(scene, length, wrung=bool(torque.any()))
     K, M = _second_variation(EJ, tension, torque, twist, length), _mass(scene, at)
     lowest = eigh(ways.T @ K @ ways, ways.T @ M @ ways, eigvals_only=True, subset_by_index=[0, 0])[0]
     c = float(scene.damping)
@@ -93,14 +91,15 @@ def _mass(scene: Scene, at: Array) -> Array:
     return M
 
 
-def _ways(scene: Scene, length: float) -> Array:
-    """Columns: the motions that the ends leave. One that holds something of the place is taken to hold it across."""
+def _ways(scene: Scene, length: float, wrung: bool) -> Array:
+    """Columns: the motions that the ends leave. One that holds something of the place is taken to hold it across; and
+    of a rod that is `wrung` the tangents are taken to be held, with which a torque would turn."""
     n, h = INTERVALS + 1, length / INTERVALS
     rows = []
     for end, node in ((scene.start, 0), (scene.end, n - 1)):
         turned, moved = np.zeros(n + 1), np.append(_sums(n, h)[node], 1.0)
         turned[node] = 1.0
-        rows += [turned] * _held(end.rotation[:2]) + [moved] * _held(end.translation)
+        rows += [turned] * (wrung or _held(end.rotation[:2])) + [moved] * _held(end.translation)
     free = null_space(np.array(rows)) if rows else np.eye(n + 1)
     ways = np.zeros((2 * n + 2, 2 * free.shape[1]))
     for i, columns in enumerate((slice(None, free.shape[1]), slice(free.shape[1], None))):

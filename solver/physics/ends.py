@@ -85,9 +85,9 @@ class DrivenEnd:
         return values
 
     def unseen(self, t: float, dt: float, length: float) -> float:
-        """The largest prescribed rotation (rad), or displacement in rod lengths, by which the end is behind after a step
-        from t by the mean of the rates at its begin and its end, as where it goes from rest to rest within it, or did
-        so within a step that was not shortened for that."""
+        """The largest prescribed rotation (rad), or displacement in rod lengths, by which a step from t at the mean of
+        its rates at begin and end leaves the end behind, as where it goes from rest to rest within it, or was behind.
+        """
         largest = 0.0
         for i in self._moving:
             condition = self._components[i][self._active[i]]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
+from math import log
 
 MUCH = 0.1
 """Strain from which on a linear law and a section that does not change are worth a word."""
@@ -23,7 +24,8 @@ class Remarks:
     stretch, at a frame, if that is more than a tenth. `energy_lost`: energy that went nowhere, over the largest that
     motion, strain and contact ever had, if that is more than a tenth. `retardation_time` (s): of the rod's material,
     with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`: frames of a
-    static analysis in which forces turned with the rod.
+    static analysis in which forces turned with the rod. `growth_aside`: the logarithm of the factor by which a push
+    across a rod that stayed straight would have grown, if that is much, see `measures.buckling`.
     """
 
     crossings: int = 0
@@ -40,6 +42,7 @@ class Remarks:
     energy_lost: float = 0.0
     retardation_time: float = 0.0
     turning_loads: int = 0
+    growth_aside: float = 0.0
 
     def stretched(self, strain: float, length: float) -> None:
         """At a frame, of a rod so long (m)."""
@@ -108,6 +111,12 @@ class Remarks:
                 f"The rod was stretched or squeezed by a factor of up to {1.0 + self.largest_strain:.3g}: its law of "
                 "stretch is linear, and its mass, its section, loads and drag are those per length of the rod without "
                 "stretch."
+            )
+        if self.growth_aside:
+            sentences.append(
+                "The rod stayed straight, pressed or wrung beyond what it bears, because nothing pushes it aside: the "
+                f"smallest push would have grown by a factor of 1e{self.growth_aside / log(10.0):.0f}. Give it a small "
+                "load across it, which says to which side it is to bend."
             )
         if self.turning_loads:
             sentences.append(

@@ -14,6 +14,7 @@ from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import axial_stiffness, largest_strain
 from solver.physics.loads.solids import deepest_within
 from solver.run.accounts import Accounts
+from solver.run.aside import Aside
 from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
 from solver.run.warming import load
@@ -49,6 +50,7 @@ class Simulation(Run):
             self.remarks.axial_stiffness = axial_stiffness(scene)
         self._largest_strain = largest_strain(scene)
         self._watch = Watch(self.remarks, scene.contact is not None, is_ring(scene))
+        self._aside = Aside(self.remarks, scene)
         self._turn = self._trial_turn = pi
         """The largest rotation (rad) within an interval, of the state and of the trial."""
 
@@ -86,6 +88,7 @@ class Simulation(Run):
         frame = self._accounts.frame(output, ago)
         self.remarks.stretched(self._method.strain(), float(self._scene.rod.length))
         self.remarks.sunk(deepest_within(self._scene, self.s, frame.r), frame.t)
+        self._aside.see(self.s, frame)
         made, last = self._accounts.made, output == self._outputs[-1]
         detail = f"{abs(made):.2g} of all that changed hands"
         if made > LARGEST_MADE and (last or not self._goes_on):

@@ -60,7 +60,8 @@ def test_a_rod_that_buckles_by_twist_needs_contact(turns: float, end: str, warne
     """Of EJ = 1.25 GJ a straight clamped rod buckles at 8.987 * 1.25 / 2 pi = 1.79 turns."""
     twist = {"t": [0.0, 1.0], "value": [0.0, turns * 6.2832], "interpolation": "linear"}
     turning = {"ends.start": {"preset": "clamp", "theta3": twist}, "ends.end": end, "loads.point": []}
-    assert [warning.pointer for warning in told({**turning, "t_end": 2.0})] == ["/contact"] * warned
+    pointers = [warning.pointer for warning in told({**turning, "t_end": 2.0})]
+    assert pointers == ["/contact", "/loads"] * warned  # and nothing says to which side it is to buckle
 
 
 
@@ -103,6 +104,31 @@ def test_a_straight_rod_that_is_pressed_and_that_nothing_bends_is_pointed_out():
 ])  # fmt: skip
 def test_one_that_something_bends_or_that_is_pulled_is_left_alone(change: dict[str, Any]):
     assert _warned(PRESSED | change) == []
+
+
+LIMP = {"rod": PRESSED["rod"] | {"youngs_modulus": 1e7, "shear_modulus": 4e6}, "t_end": 5.0,
+        "output": {"interval": 0.5}}  # fmt: skip
+TWISTED = {"ends": {"start": "clamp", "end": {"preset": "slider", "theta3": {"t": [0, 1], "value": [0, 15.0],
+                                                                        "interpolation": "smoothstep"}}}}  # fmt: skip
+
+
+@pytest.mark.parametrize(("change", "warned"), [
+    ({"ends": {"start": "clamp", "end": "free"}, "loads": {"gravity": [0, 0, -9.81]}}, True),
+    ({"ends": {"start": "free", "end": "clamp"}, "loads": {"gravity": [0, 0, -9.81]}}, False),
+    ({"ends": {"start": "free", "end": "clamp"}, "loads": {"gravity": [0, 0, 9.81]}}, True),
+    ({"ends": {"start": "clamp", "end": "free"}, "loads": {"gravity": [1e-9, 0, -9.81]}}, False),
+    ({"ends": {"start": "clamp", "end": "free"}, "loads": {"point": [{"s": 1.0, "force": [0, 0, -1.0]}]}}, True),
+    ({"ends": {"start": "clamp", "end": "free"}, "loads": {"point": [{"s": 1.0, "force": [0, 0, 1.0]}]}}, False),
+    ({"ends": {"start": {"preset": "slider", "f3": -5.0}, "end": "clamp"}}, True),
+    ({"ends": {"start": {"preset": "slider", "f3": -0.05}, "end": "clamp"}}, False),
+    ({"ends": {"start": "clamp", "end": "free"},
+      "loads": {"distributed": [{"force": [0, 0, -2.0]}]}}, True),
+    (TWISTED, True), (TWISTED | {"analysis": "static"}, False),
+])  # fmt: skip
+def test_a_straight_rod_that_its_loads_press_or_wring_beyond_what_it_bears_is_pointed_out(change: dict[str, Any],
+                                                                                          warned: bool):  # fmt: skip
+    rules = [warning.rule for warning in _warned(PRESSED | LIMP | change) if warning.pointer == "/loads"]
+    assert [("aside would grow" in rule) for rule in rules] == [True] * warned
 
 
 def _lowered(by: float, **loads: Any) -> dict[str, Any]:

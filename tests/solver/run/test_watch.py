@@ -1,4 +1,4 @@
-"""What a run says of strands that pass through each other, hop over an end, or overlap, and of solids."""
+"""What a run says of strands that pass through each other, hop over an end, or overlap, of solids, and of buckling."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from solver import (
     Initial,
     Numerics,
     Outcome,
+    PointLoad,
     RunFailed,
     Simulation,
     simulate,
@@ -156,3 +157,23 @@ def test_only_what_is_deeper_than_the_diameter_counts() -> None:
     assert deepest_within(scene, s, beside) == pytest.approx(2.5 * D)
     assert deepest_within(scene, s, beside + np.array([0.0, 5.0, 0.0])) == 0.0
     assert deepest_within(replace(scene, loads=()), s, beside) == 0.0
+
+
+def pressed(force: float, seed: float, numerics: Numerics) -> Scene:
+    """A straight cantilever with a force (EJ/L^2) on its free end, along it, and as `seed` says across it."""
+    EJ, mass = float(ROD.stiffness[0](0.0)), float(ROD.mass(0.0))
+    unit, time = EJ / LENGTH**2, LENGTH**2 * np.sqrt(mass / EJ)
+    load = PointLoad(LENGTH, tuple(map(Curve.constant, (seed * unit, 0.0, -force * unit))))  # type: ignore[arg-type]
+    return Scene(ROD, Initial.straight(), End.clamp(), End.free(), 4.0 * time, 0.25 * time, points=(load,),
+                 damping=1.0 / time, numerics=numerics)  # fmt: skip
+
+
+@pytest.mark.parametrize("numerics", [Numerics("staggered", tolerance=1e-3), Numerics(intervals=10, dt_max=0.05)])
+@pytest.mark.parametrize(("force", "seed", "told"), [(20.0, 0.0, True), (2.0, 0.0, False), (20.0, 1e-3, False)])
+def test_a_rod_that_stays_straight_because_nothing_pushes_it_aside_is_told(force: float, seed: float, told: bool,
+                                                                           numerics: Numerics) -> None:  # fmt: skip
+    run = simulate(pressed(force, seed, numerics))
+    *_, frame = run
+    assert (np.abs(frame.kappa[:, :2]).max() * LENGTH > 1.0) == (seed > 0.0)
+    assert ("growth_aside" in run.attributes()) == told
+    assert any("stayed straight" in note for note in run.notes()) == told

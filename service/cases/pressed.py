@@ -1,0 +1,73 @@
+"""How much a push aside would grow on a rod that stays straight, by what presses or wrings it as if it were at rest."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from solver import Scene
+from solver.measures.buckling import can_buckle, growth_rate
+from solver.physics.ends import travel
+from solver.physics.section import sample
+from solver.scene.ends import Component, End
+
+TIMES, PLACES = 21, 65
+"""At which it is looked at."""
+
+
+def growth(scene: Scene, axis: Any) -> float:
+    """The logarithm of the factor by which it would grow until t_end, of a rod along the lab's `axis` (3,)."""
+    if not can_buckle(scene):
+        return 0.0
+    s, times = np.linspace(0.0, scene.rod.length, PLACES), np.linspace(0.0, scene.t_end, TIMES)
+    torsion, rates = scene.rod.stiffness[2](s) + 0.0 * s, []
+    for t in times:
+        torque = _torque(scene, axis, s, torsion, t)
+        rates.append(growth_rate(scene, s, _tension(scene, axis, s, t), torque, torque / torsion))
+    return float(np.trapezoid(rates, times))
+
+
+def _tension(scene: Scene, axis: Any, s: Any, t: float) -> Any:
+    """f3 (N) at `s`; 0 where neither end gives way along the rod."""
+    section, fluid = sample(scene.rod, s), scene.fluid
+    mass = section.mass - (fluid.density * section.area if fluid else 0.0)
+    pull = mass * float(np.dot(scene.gravity, axis))
+    for load in scene.distributed:
+        pull = pull + load.schedule.value(t) * sum(a * part(s) for a, part in zip(axis, load.force, strict=True))
+    points = [(load.s, float(np.dot([curve.value(t) for curve in load.force], axis))) for load in scene.points]
+    ends = [_given(_components(end, axis), t) for end in (scene.start, scene.end)]
+    return _carried(s, pull, points, ends)
+
+
+def _torque(scene: Scene, axis: Any, s: Any, torsion: Any, t: float) -> Any:
+    """q3 (N m) at `s`."""
+    ends = [_given([(1.0, end.rotation[2])], t) for end in (scene.start, scene.end)]
+    if ends == [None, None]:
+        turned = [travel(end.rotation[2][0], t) for end in (scene.start, scene.end)]
+        return np.full(len(s), (turned[1] - turned[0]) / float(np.trapezoid(1.0 / torsion, s)))
+    points = [(load.s, float(np.dot([curve.value(t) for curve in load.moment], axis))) for load in scene.points]
+    return _carried(s, 0.0 * s, points, ends)
+
+
+def _carried(s: Any, spread: Any, points: list[tuple[float, float]], ends: list[float | None]) -> Any:
+    """What the rod carries along itself at `s`: all that is given on that side of it where an end gives way."""
+    before = np.append(0.0, np.cumsum(0.5 * np.diff(s) * (spread[1:] + spread[:-1])))
+    before = before + sum((value * (s > place) for place, value in points), 0.0 * s)
+    start, end = ends
+    if end is not None:
+        return end + before[-1] + sum(value for place, value in points if place >= s[-1]) - before
+    return start - before if start is not None else 0.0 * s
+
+
+def _components(end: End, axis: Any) -> list[tuple[float, Component]]:
+    """Those of an end's translation that are along the rod, with how much."""
+    parts = axis if end.frame == "lab" else (0.0, 0.0, 1.0)
+    return [(float(part), component) for part, component in zip(parts, end.translation, strict=True) if part]
+
+
+def _given(parts: list[tuple[float, Component]], t: float) -> float | None:
+    """The load that is given at an end; None if it does not give way at first."""
+    if any(component[0].kind != "load" for _, component in parts):
+        return None
+    return sum(part * component[0].curve.value(t) for part, component in parts)

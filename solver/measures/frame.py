@@ -43,7 +43,7 @@ class Frame(Fields):
 
     Works and dissipation are accumulated from t = 0;
     `energy_balance` = (sum of energies) - (its value at t = 0) - work_ends - work_loads + dissipation; where a step
-    passes the frame, that at the step's end.
+    passes the frame, that at the step's end; and without what the mesh does not show of the energy of bending.
     `Wr`, `Lk` are NaN if not asked for. `min_gap`: of points more than the contact's skip of arc apart (NaN without
     contact, and while the total curvature proves that none are within its cutoff).
 

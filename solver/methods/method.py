@@ -97,6 +97,10 @@ class Method(Protocol):
     def fields(self) -> Fields:
         """The state along the rod."""
 
+    @property
+    def unshown(self) -> float:
+        """By how much (J) the bending energy of what `fields` showed last is more than that of the mesh: in layers."""
+
     def centreline(self) -> Shape:
         """The state's centreline, as it is until the next step."""
 

@@ -32,6 +32,8 @@ from solver.scene.scene import MOST_AT_REST, Scene
 OUTCOMES = tuple(Outcome)
 MOST_ROWS = 1_000_000
 """Nodes times frames that are kept of a run."""
+ALMOST = 0.999
+"""The most that is done before the first frame comes: what the last attempt has shown is still to be put together."""
 
 
 class Refined(Run):
@@ -80,7 +82,7 @@ class Refined(Run):
         spent = sum(attempt.work for attempt in attempts)
         rest = to_come(attempts, self._errors, self._under_way.trial)
         whole = spent + current / max(part, 0.01) + rest
-        self._progress = max(self._progress, (spent + current) / max(whole, 1.0))
+        self._progress = max(self._progress, min((spent + current) / max(whole, 1.0), ALMOST))
         return self._progress
 
     @property

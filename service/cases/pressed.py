@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from solver import Scene
-from solver.measures.buckling import can_buckle, growth_rate
+from solver.measures.buckling import STRAIGHT, Across, Push
 from solver.physics.ends import travel
 from solver.physics.section import sample
 from solver.scene.ends import Component, End
@@ -18,14 +18,15 @@ TIMES, PLACES = 21, 65
 
 def growth(scene: Scene, axis: Any) -> float:
     """The logarithm of the factor by which it would grow until t_end, of a rod along the lab's `axis` (3,)."""
-    if not can_buckle(scene):
+    across = Across.of(scene)
+    if across is None or across.p != STRAIGHT:
         return 0.0
-    s, times = np.linspace(0.0, scene.rod.length, PLACES), np.linspace(0.0, scene.t_end, TIMES)
-    torsion, rates = scene.rod.stiffness[2](s) + 0.0 * s, []
-    for t in times:
+    s, (dt, *_) = np.linspace(0.0, scene.rod.length, PLACES), np.diff(np.linspace(0.0, scene.t_end, TIMES))
+    torsion, push = scene.rod.stiffness[2](s) + 0.0 * s, Push.small(across.many, scene.t_end, scene.damping)
+    for t in dt * np.arange(1, TIMES):
         torque = _torque(scene, axis, s, torsion, t)
-        rates.append(growth_rate(scene, s, _tension(scene, axis, s, t), torque, torque / torsion))
-    return float(np.trapezoid(rates, times))
+        push.go_on(dt, across.straight(s, torque / torsion, torque, _tension(scene, axis, s, t)))
+    return push.grown
 
 
 def _tension(scene: Scene, axis: Any, s: Any, t: float) -> Any:

@@ -1,121 +1,233 @@
-"""How fast a push aside grows on a straight rod that is pressed or wrung: what a run that stays straight does not show.
+"""How a push aside grows on a rod that stays straight, or in its plane: what its own motion does not show.
 
-With small rotations w (2,) of the sections across the rod, in the lab, at a state with a tension f3 and a torque q3,
-the Lagrangian's second variation is
+With small rotations psi of the sections at a state with curvature kappa, moment q and force f, all material, the bend
+changes by delta = psi' + kappa x psi, and the Lagrangian's second variation is
 
-    1/2 int w'.(D w') + f3 |w|^2 - q3 (w x w')_3 ds,   D = EJ1 a1 a1 + EJ2 a2 a2,
+    1/2 int delta.(K delta) - q.(psi x delta) + f3 |psi|^2 - psi3 (f.psi) ds.
 
-and the rod moves across by u' = (w_2, -w_1), so that the kinetic energy is that of m |u_t|^2 / 2: a quadratic
-eigenvalue problem, lambda < 0 for what grows. Loads are held as they are. With q3 = 0 it is Euler's column or, with
-f3 linear in s, Greenhill's; with f3 = 0 Greenhill's shaft (Timoshenko & Gere, Theory of Elastic Stability, 2.).
+A state that turns about its principal axis p alone, a3 where it is straight, has kappa, q along a_p, and psi across it
+is by itself: across the straight rod it is two bends, out of the plane a bend and a twist. The rod moves aside by
+u' = R (psi x e3), whose inertia is that of its mass. Loads are held as they are. So one has Euler's column, Greenhill's
+mast and shaft, and Prandtl's beam (Timoshenko & Gere, Theory of Elastic Stability).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import sqrt
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh, null_space
+from numpy.linalg import LinAlgError, cholesky, eigh
+from scipy.linalg import null_space, solve_triangular
 
 from solver.arrays import Array
+from solver.kernels.rotation import rotate_back
+from solver.measures.frame import Fields
 from solver.scene.ends import Component
+from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
+from solver.scene.view import View
 
-INTERVALS = 32
+INTERVALS = 48
 """Into which the rod is divided."""
-MUCH = 10.0
-"""Logarithm of a growth, 2e4, from which on no rod is straight enough to stay so."""
-HARMLESS = 1.0
-"""Compression in EJ/L^2, and torque in EJ/L, that no ends let a rod buckle by."""
+MUCH = 20.0
+"""Logarithm of a growth, 5e8, from which on no rod is straight, or plane, enough to stay so."""
+STRAIGHT = 2
+"""The axis of a rod that stays so."""
 
 
-def can_buckle(scene: Scene) -> bool:
-    """Whether what grows on a straight rod follows from its second variation: nothing turns with it, and nothing that
-    is not looked at, as a floor, holds it."""
+def axis_kept(scene: Scene) -> int | None:
+    """The principal axis about which alone the rod ever turns; None if there is none, or if what grows does not follow
+    from the second variation: where a load turns with the rod, or something that is not looked at, as a floor, holds
+    it."""
     frames = {load.frame for load in scene.points} | {load.frame for load in scene.distributed}
     turning = any(end.frame == "material" and not _held(end.rotation[:2]) and _pushes(end.translation)
                   for end in (scene.start, scene.end))  # fmt: skip
-    return not (turning or "material" in frames or scene.loads)
+    if turning or "material" in frames or scene.loads:
+        return None
+    s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
+    _, quaternion, kappa = nodes_at_rest(scene.initial, s)
+    alone, R = replace(scene, contact=None), rotations_of(quaternion[:1])[0]
+    return next((p for p in (STRAIGHT, 0, 1) if alone.keeps(View(p, s, quaternion, kappa, R))), None)
 
 
-def growth_rate(scene: Scene, s: Array, tension: Array, torque: Array, twist: Array) -> float:
-    """The rate (1/s) at which a push aside grows on a straight rod, 0 if none does: by f3 (N), q3 (N m) and kappa3
-    (rad/m) at arclengths `s` (n,), all (n,)."""
-    length, at = float(scene.rod.length), np.linspace(0.0, scene.rod.length, INTERVALS + 1)
-    EJ = np.stack([profile(at) + 0.0 * at for profile in scene.rod.stiffness[:2]], axis=1)
-    tension, torque, twist = (np.interp(at, s, row) for row in (tension, torque, twist))
-    if max(-tension.min() * length**2, np.abs(torque).max() * length) < HARMLESS * float(EJ.min()):
-        return 0.0
-    ways = _ways(scene, length, wrung=bool(torque.any()))
-    K, M = _second_variation(EJ, tension, torque, twist, length), _mass(scene, at)
-    lowest = eigh(ways.T @ K @ ways, ways.T @ M @ ways, eigvals_only=True, subset_by_index=[0, 0])[0]
-    c = float(scene.damping)
-    return max(sqrt(0.25 * c * c - min(float(lowest), 0.0)) - 0.5 * c, 0.0)
+@dataclass(frozen=True)
+class Across:
+    """The small motions across the axis `p` that a rod keeps to, in terms of `unknowns` (m, r) that make motions of
+    mass 1 of each.
+
+    What they are made of is psi (n, 2) at the nodes `at` (n,), along the two axes that follow p, of a straight rod
+    those in the lab; and the places aside of the start. `K` (n - 1, 2): the stiffness about these axes.
+    """
+
+    p: int
+    at: Array
+    K: Array
+    unknowns: Array
+
+    @classmethod
+    def of(cls, scene: Scene) -> Across | None:
+        """Those of a scene; None where it keeps to no axis, see `axis_kept`."""
+        p = axis_kept(scene)
+        if p is None:
+            return None
+        at = np.linspace(0.0, float(scene.rod.length), INTERVALS + 1)
+        middles = 0.5 * (at[1:] + at[:-1])
+        K = np.stack([scene.rod.stiffness[i](middles) + 0.0 * middles for i in _axes(p)], axis=1)
+        M, ends = _mass(scene, p, at), _ends(scene, p, at)
+        ways = null_space(ends) if len(ends) else np.eye(len(M))
+        return cls(p, at, K, solve_triangular(cholesky(ways.T @ M @ ways), ways.T, lower=True).T)
+
+    @property
+    def many(self) -> int:
+        """How many there are, r."""
+        return int(self.unknowns.shape[1])
+
+    def stiffness(self, s: Array, state: Fields) -> Array:
+        """(r, r), in 1/s^2, at a state whose nodes are at arclengths `s` (n,)."""
+        if self.p == STRAIGHT:
+            return self.straight(s, *(rows[:, 2] for rows in (state.kappa, state.q, state.f)))
+        axes, R = _axes(self.p), rotations_of(state.orientation)
+        plane = R[0][:, axes]
+        tangent, force = R[:, :, 2] @ plane, (R @ state.f[:, :, None])[:, :, 0] @ plane
+        angle = np.interp(self.at, s, np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0])))
+        chord = np.diff([np.interp(self.at, s, row) for row in (state.r @ plane).T]).T
+        middle = np.arctan2(chord[:, 1], chord[:, 0])
+        # in the frame of each chord, which has the tangent's place among the axes
+        t = np.array([float(axis == 2) for axis in axes])
+        upright = _turned(0.5 * np.pi * t[1] - middle)
+        f = (upright @ self._means(s, force)[:, :, None])[:, :, 0]
+        # where bends are shorter than an interval it is a string
+        bears = (f @ t * self.at[1] ** 2 < self.K.min(axis=1)).astype(float)
+        f = np.linalg.norm(chord, axis=1)[:, None] * np.where(t > 0.0, f, bears[:, None] * f)
+        across = t[:, None] * f[:, None, :]
+        pulled = (f @ t)[:, None, None] * np.eye(2) - 0.5 * (across + across.transpose(0, 2, 1))
+        moment = bears * self._means(s, state.q[:, [self.p]])[:, 0]
+        return self._assembled(angle[:-1] - middle, angle[1:] - middle, moment, pulled)
+
+    def straight(self, s: Array, twist: Array, torque: Array, tension: Array) -> Array:
+        """Of a straight rod, likewise, by kappa3, q3 and f3 (n,)."""
+        h, (twist, torque, tension) = float(self.at[1]), self._means(s, np.column_stack([twist, torque, tension])).T
+        middle = h * (0.5 * twist - np.cumsum(twist))
+        return self._assembled(middle, middle, torque, h * tension[:, None, None] * np.eye(2))
+
+    def _means(self, s: Array, values: Array) -> Array:
+        """The means over the intervals of `at` of values (n, k) at `s`."""
+        steps = 0.5 * np.diff(s)[:, None] * (values[1:] + values[:-1])
+        sums = np.vstack([np.zeros(values.shape[1]), np.cumsum(steps, axis=0)])
+        return np.asarray(np.diff([np.interp(self.at, s, row) for row in sums.T]).T / self.at[1])
+
+    def _assembled(self, before: Array, after: Array, moment: Array, pulled: Array) -> Array:
+        """By the angles (n - 1,) that bring what an interval's nodes have to its own frame, the moment about p in it
+        (n - 1,), and what the force does to the mean of both nodes (n - 1, 2, 2)."""
+        h, left, right = float(self.at[1]), _turned(before), _turned(after)
+        rise, mean = np.concatenate([-left, right], axis=2) / h, 0.5 * np.concatenate([left, right], axis=2)
+        blocks = h * rise.transpose(0, 2, 1) @ (self.K[:, :, None] * rise) + mean.transpose(0, 2, 1) @ pulled @ mean
+        product = left.transpose(0, 2, 1) @ np.array([[0.0, 1.0], [-1.0, 0.0]]) @ right
+        wrung = 0.5 * moment[:, None, None] * product
+        blocks[:, :2, 2:] -= wrung
+        blocks[:, 2:, :2] -= wrung.transpose(0, 2, 1)
+        K, rows = np.zeros((len(self.unknowns),) * 2), 2 * np.arange(len(blocks))[:, None] + np.arange(4)
+        np.add.at(K, (rows[:, :, None], rows[:, None, :]), blocks)
+        return np.asarray(self.unknowns.T @ K @ self.unknowns)
 
 
-def _second_variation(EJ: Array, tension: Array, torque: Array, twist: Array, length: float) -> Array:
-    """Of w_1 at the nodes, then w_2, and of the start's place, which costs nothing: (2 n + 2, 2 n + 2)."""
-    n, h = len(tension), length / (len(tension) - 1)
-    phi = np.append(0.0, np.cumsum(0.5 * h * (twist[1:] + twist[:-1])))
-    phi, EJ, torque = (0.5 * (row[1:] + row[:-1]) for row in (phi, EJ, torque))
-    rise, K = np.diff(np.eye(n), axis=0) / h, np.zeros((2 * n + 2, 2 * n + 2))
-    a1, a2 = np.stack([np.cos(phi), np.sin(phi)]), np.stack([-np.sin(phi), np.cos(phi)])
-    for i in range(2):
-        for k in range(2):
-            D = EJ[:, 0] * a1[i] * a1[k] + EJ[:, 1] * a2[i] * a2[k]
-            K[i * n : i * n + n, k * n : k * n + n] = h * rise.T @ (D[:, None] * rise)
-    held = tension * _weights(n, h)
-    K[:n, :n] += np.diag(held)
-    K[n : 2 * n, n : 2 * n] += np.diag(held)
-    j = np.arange(n - 1)
-    for sign, one, other in ((1.0, j, j + 1), (-1.0, j + 1, j)):  # (w x w')_3 of an interval is (w_j x w_j+1)_3 / h
-        K[one, n + other] -= 0.5 * sign * torque
-        K[n + other, one] -= 0.5 * sign * torque
-    return K
+class Push:
+    """A small push aside, and how it grows: `grown`, the logarithm of the factor. Where nothing grows, it stays."""
+
+    def __init__(self, aside: Array, t_end: float, damping: float) -> None:
+        """`aside` (r,), in the unknowns of `Across`, until `t_end` (s) with a `damping` (1/s)."""
+        self.grown = 0.0
+        self._slow, self._damping = 1.0 / t_end, damping
+        self._aside, self._speed = aside, np.zeros_like(aside)
+
+    @classmethod
+    def small(cls, many: int, t_end: float, damping: float) -> Push:
+        """One of no particular shape."""
+        return cls(np.random.default_rng(0).standard_normal(many), t_end, damping)
+
+    def go_on(self, dt: float, stiffness: Array) -> None:
+        """For a time dt (s) with a `stiffness` (r, r)."""
+        try:
+            cholesky(stiffness + self._slow**2 * np.eye(len(stiffness)))
+            self._speed[:] = 0.0
+            return
+        except LinAlgError:  # something grows
+            squares, modes = eigh(stiffness)
+        c = 0.5 * self._damping
+        rate = np.sqrt(c * c - squares.astype(complex))
+        rate[rate == 0.0] = self._slow
+        fastest = float(rate.real.max())
+        rising, falling = np.exp((rate - fastest) * dt), np.exp((-rate - fastest) * dt)
+        even, odd = 0.5 * (rising + falling), 0.5 * (rising - falling) / rate
+        aside, speed = modes.T @ self._aside, modes.T @ self._speed
+        then = (even * aside + odd * (speed + c * aside)).real
+        moved = (even * speed - odd * (squares * aside + c * speed)).real
+        size = float(np.linalg.norm(then))
+        self.grown += (fastest - c) * dt + float(np.log(size / np.linalg.norm(self._aside)))
+        self._aside[:], self._speed[:] = modes @ then / size, modes @ moved / size
 
 
-def _mass(scene: Scene, at: Array) -> Array:
-    """Of the same: that of the places across, and of intervals that turn as sticks."""
-    n, h, rod = len(at), float(at[1]), scene.rod
-    across = rod.mass(at) + 0.0 * at
+def _turned(angles: Array) -> Array:
+    """The rotations (n, 2, 2) by angles (n,)."""
+    c, s = np.cos(angles), np.sin(angles)
+    return np.stack([np.stack([c, -s], axis=1), np.stack([s, c], axis=1)], axis=1)
+
+
+def rotations_of(quaternions: Array) -> Array:
+    """The rotation matrices (n, 3, 3) of unit quaternions (n, 4)."""
+    rows = [rotate_back(quaternions, np.tile(axis, (len(quaternions), 1))) for axis in np.eye(3)]
+    return np.stack(rows, axis=1)
+
+
+def _weights(at: Array) -> Array:
+    """Of a sum over nodes (n,), m."""
+    weights = np.full(len(at), at[1])
+    weights[[0, -1]] *= 0.5
+    return weights
+
+
+def _axes(p: int) -> list[int]:
+    return [(p + 1) % 3, (p + 2) % 3]
+
+
+def _moved(p: int, at: Array) -> Array:
+    """The places aside (k, n, m), by what `Across` describes: u' = R (psi x e3)."""
+    n, h = len(at), float(at[1])
+    by = {STRAIGHT: [(1, 1.0), (0, -1.0)], 0: [(0, 1.0)], 1: [(1, -1.0)]}[p]
+    moved = np.zeros((len(by), n, 2 * n + len(by)))
+    for k, (i, sign) in enumerate(by):
+        moved[k, 1:, i : 2 * n : 2] = sign * 0.5 * h * np.cumsum(np.eye(n)[1:] + np.eye(n)[:-1], axis=0)
+        moved[k, :, 2 * n + k] = 1.0
+    return moved
+
+
+def _mass(scene: Scene, p: int, at: Array) -> Array:
+    """(m, m): of the places aside, and of intervals that turn as sticks, or about themselves."""
+    rod, weights = scene.rod, _weights(at)
+    borne = rod.mass(at) + 0.0 * at
     if scene.fluid:
-        across = across + scene.fluid.density * scene.fluid.added_mass * 0.25 * np.pi * rod.diameter(at) ** 2
-    weights = across * _weights(n, h)
-    moved = np.hstack([_sums(n, h), np.ones((n, 1))])
-    each = moved.T @ (weights[:, None] * moved)
-    each[:n, :n] += np.diag(weights * h**2 / 12.0)
-    M, order = np.zeros((2 * n + 2, 2 * n + 2)), [np.r_[0:n, 2 * n], np.r_[n : 2 * n, 2 * n + 1]]
-    for rows in order:
-        M[np.ix_(rows, rows)] = each
+        borne = borne + scene.fluid.density * scene.fluid.added_mass * 0.25 * np.pi * rod.diameter(at) ** 2
+    moved = _moved(p, at)
+    M = np.asarray(sum(each.T @ ((weights * borne)[:, None] * each) for each in moved))
+    for i, axis in enumerate(_axes(p)):
+        nodes = 2 * np.arange(len(at)) + i
+        M[nodes, nodes] += weights * (borne * at[1] ** 2 / 12.0 if axis != 2 else rod.inertia[2](at))
     return M
 
 
-def _ways(scene: Scene, length: float, wrung: bool) -> Array:
-    """Columns: the motions that the ends leave. One that holds something of the place is taken to hold it across; and
-    of a rod that is `wrung` the tangents are taken to be held, with which a torque would turn."""
-    n, h = INTERVALS + 1, length / INTERVALS
-    rows = []
-    for end, node in ((scene.start, 0), (scene.end, n - 1)):
-        turned, moved = np.zeros(n + 1), np.append(_sums(n, h)[node], 1.0)
-        turned[node] = 1.0
-        rows += [turned] * (wrung or _held(end.rotation[:2])) + [moved] * _held(end.translation)
-    free = null_space(np.array(rows)) if rows else np.eye(n + 1)
-    ways = np.zeros((2 * n + 2, 2 * free.shape[1]))
-    for i, columns in enumerate((slice(None, free.shape[1]), slice(free.shape[1], None))):
-        ways[i * n : i * n + n, columns], ways[2 * n + i, columns] = free[:n], free[n]
-    return ways
-
-
-def _sums(n: int, h: float) -> Array:
-    """The integral up to each node of what is given at the nodes (n, n)."""
-    return np.cumsum(np.vstack([np.zeros(n), 0.5 * h * (np.eye(n)[1:] + np.eye(n)[:-1])]), axis=0)
-
-
-def _weights(n: int, h: float) -> Array:
-    weights = np.full(n, h)
-    weights[[0, -1]] *= 0.5
-    return weights
+def _ends(scene: Scene, p: int, at: Array) -> Array:
+    """The conditions (k, m) of the ends. One that holds something of the place is taken to hold it across; one that
+    twists a straight rod to hold its tangent, with which the torque would turn."""
+    moved, rows = _moved(p, at), []
+    for end, node in ((scene.start, 0), (scene.end, len(at) - 1)):
+        bends, twist = _held(end.rotation[:2]), _held(end.rotation[2:])
+        bends = bends or (p == STRAIGHT and (twist or _pushes(end.rotation[2:])))
+        rows += list(moved[:, node]) if _held(end.translation) else []
+        for i, axis in enumerate(_axes(p)):
+            if twist if axis == 2 else bends:
+                rows.append(np.eye(moved.shape[2])[2 * node + i])
+    return np.array(rows)
 
 
 def _held(components: Iterable[Component]) -> bool:

@@ -1,34 +1,28 @@
-"""What is seen of a rod that stays straight only because nothing pushes it aside."""
+"""What is seen of a rod that stays straight, or in its plane, only because nothing pushes it aside."""
 
 from __future__ import annotations
 
-import numpy as np
-
 from solver.arrays import Array
-from solver.measures.buckling import MUCH, can_buckle, growth_rate
+from solver.measures.buckling import MUCH, Across, Push
 from solver.measures.frame import Frame
-from solver.run.remarks import Remarks
 from solver.scene.scene import Scene
 
-STRAIGHT = 1e-6
-"""Curvature, in 1/L, up to which a rod is straight."""
+LOOKS = 25
+"""How often it is looked at, at the most."""
 
 
 class Aside:
-    """Enters in `remarks` how much a push aside would have grown at the frames so far."""
+    """How much a push aside would have grown at the frames so far. (A static analysis counts its modes instead.)"""
 
-    def __init__(self, remarks: Remarks, scene: Scene) -> None:
-        self._remarks, self._scene, self._asked = remarks, scene, can_buckle(scene)
-        self._t, self._rate, self._grown = 0.0, 0.0, 0.0
+    def __init__(self, scene: Scene) -> None:
+        self._across, self._t = None if scene.at_rest else Across.of(scene), 0.0
+        many = 0 if self._across is None else self._across.many
+        self._push = Push.small(many, scene.t_end, scene.damping)
+        self._pause = (1.0 - 1e-9) * float(scene.t_end) / LOOKS
 
-    def see(self, s: Array, frame: Frame) -> None:
-        """The next frame, whose nodes are at `s` (n,)."""
-        if not self._asked:
-            return
-        bent = float(np.abs(frame.kappa[:, :2]).max()) * float(self._scene.rod.length) > STRAIGHT
-        along = frame.f[:, 2], frame.q[:, 2], frame.kappa[:, 2]
-        rate = 0.0 if bent else growth_rate(self._scene, s, *along)
-        self._grown += 0.5 * (self._rate + rate) * (frame.t - self._t)
-        self._t, self._rate = frame.t, rate
-        if self._grown > MUCH:
-            self._remarks.growth_aside = self._grown
+    def see(self, s: Array, frame: Frame) -> float:
+        """The next frame, whose nodes are at `s` (n,). The logarithm of the growth until then, 0 if it is not much."""
+        if self._across is not None and frame.t - self._t >= self._pause:
+            self._push.go_on(frame.t - self._t, self._across.stiffness(s, frame))
+            self._t = frame.t
+        return self._push.grown if self._push.grown > MUCH else 0.0

@@ -25,7 +25,7 @@ class Remarks:
     motion, strain and contact ever had, if that is more than a tenth. `retardation_time` (s): of the rod's material,
     with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`: frames of a
     static analysis in which forces turned with the rod. `growth_aside`: the logarithm of the factor by which a push
-    across a rod that stayed straight would have grown, if that is much, see `measures.buckling`.
+    across a rod that stays straight, or in its plane, would have grown, if that is much, see `measures.buckling`.
     """
 
     crossings: int = 0
@@ -114,9 +114,9 @@ class Remarks:
             )
         if self.growth_aside:
             sentences.append(
-                "The rod stayed straight, pressed or wrung beyond what it bears, because nothing pushes it aside: the "
-                f"smallest push would have grown by a factor of 1e{self.growth_aside / log(10.0):.0f}. Give it a small "
-                "load across it, which says to which side it is to bend."
+                "The rod stays straight, or in its plane, because nothing pushes it aside: pressed, bent or wrung as "
+                f"it is, the smallest push would have grown by a factor of 1e{self.growth_aside / log(10.0):.0f}. Give "
+                "it a small load across, which says to which side it is to go."
             )
         if self.turning_loads:
             sentences.append(

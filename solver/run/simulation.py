@@ -32,8 +32,9 @@ class Simulation(Run):
     """Motion, by steps in time."""
 
     def __init__(self, scene: Scene, statistics: Statistics | None = None, goes_on: bool = False) -> None:
-        """`goes_on`: energy that went nowhere is a remark, and does not end the run by `energy_lost`; energy that came
-        from nowhere ends it at its last frame only, if it is much then."""
+        """`goes_on`: it is an attempt at a tolerance. Energy that went nowhere is a remark, and does not end the run by
+        `energy_lost`; energy that came from nowhere ends it at its last frame only, if it is much then; and nobody asks
+        what would grow aside."""
         super().__init__(scene, statistics)
         self._goes_on = goes_on
         self._method = discretized(scene)
@@ -50,7 +51,7 @@ class Simulation(Run):
             self.remarks.axial_stiffness = axial_stiffness(scene)
         self._largest_strain = largest_strain(scene)
         self._watch = Watch(self.remarks, scene.contact is not None, is_ring(scene))
-        self._aside = Aside(self.remarks, scene)
+        self._aside = None if goes_on else Aside(scene)
         self._turn = self._trial_turn = pi
         """The largest rotation (rad) within an interval, of the state and of the trial."""
 
@@ -76,7 +77,7 @@ class Simulation(Run):
         self._watch.see(frame)
         # forces are no part of what is given at t = 0, they follow from it
         frame = replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
-        return complete(frame, self.s, self._scene)
+        return self._given(frame)
 
     def _next_frame(self, output: float) -> Frame | None:
         if not self._control.reached(output, self.t):
@@ -88,7 +89,6 @@ class Simulation(Run):
         frame = self._accounts.frame(output, ago)
         self.remarks.stretched(self._method.strain(), float(self._scene.rod.length))
         self.remarks.sunk(deepest_within(self._scene, self.s, frame.r), frame.t)
-        self._aside.see(self.s, frame)
         made, last = self._accounts.made, output == self._outputs[-1]
         detail = f"{abs(made):.2g} of all that changed hands"
         if made > LARGEST_MADE and (last or not self._goes_on):
@@ -101,6 +101,12 @@ class Simulation(Run):
         crossed = self._watch.see(frame)
         if crossed:
             raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, crossed)
+        return self._given(frame)
+
+    def _given(self, frame: Frame) -> Frame:
+        """A frame as it is handed out."""
+        if self._aside is not None:
+            self.remarks.growth_aside = self._aside.see(self.s, frame)
         return complete(frame, self.s, self._scene)
 
     def _begin(self) -> float:

@@ -60,8 +60,7 @@ def test_a_rod_that_buckles_by_twist_needs_contact(turns: float, end: str, warne
     """Of EJ = 1.25 GJ a straight clamped rod buckles at 8.987 * 1.25 / 2 pi = 1.79 turns."""
     twist = {"t": [0.0, 1.0], "value": [0.0, turns * 6.2832], "interpolation": "linear"}
     turning = {"ends.start": {"preset": "clamp", "theta3": twist}, "ends.end": end, "loads.point": []}
-    pointers = [warning.pointer for warning in told({**turning, "t_end": 2.0})]
-    assert pointers == ["/contact", "/loads"] * warned  # and nothing says to which side it is to buckle
+    assert [warning.pointer for warning in told({**turning, "t_end": 2.0})] == ["/contact"] * warned
 
 
 

@@ -1,4 +1,4 @@
-"""What lets a straight rod buckle, against textbooks."""
+"""What lets a rod buckle out of the line, or the plane, to which its own motion keeps, against textbooks."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from solver import Condition, Curve, End, Initial, PointLoad, Rod, Scene
-from solver.measures.buckling import can_buckle, growth_rate
+from solver import Condition, Curve, End, Initial, PointLoad, Rod, Scene, constant_vector
+from solver.arrays import Array
+from solver.measures.buckling import STRAIGHT, Across, Push, axis_kept
+from solver.measures.frame import Fields
 from solver.physics.loads.solids import Floor
 from solver.scene.ends import FIXED, FREE
-from tests.solver.scenes import LENGTH, ROD
+from solver.scene.layout import nodes_at_rest
+from tests.solver.scenes import ARC, ARC_ROD, LENGTH, ROD
 
-EJ, MASS = float(ROD.stiffness[0](0.0)), float(ROD.mass(0.0))
+EJ, GJ, MASS = (float(profile(0.0)) for profile in (ROD.stiffness[0], ROD.stiffness[2], ROD.mass))
 S = np.linspace(0.0, LENGTH, 101)
 CLAMP, PIN, FREE_END, SLIDER = End.clamp(), End.pin(), End.free(), End.slider()
 
@@ -25,9 +28,24 @@ def scene_of(start: End, end: End, rod: Rod = ROD, **more: object) -> Scene:
     return Scene(rod, Initial.straight(), start, end, 1.0, 0.1, **more)  # type: ignore[arg-type]
 
 
-def critical(grows: Callable[[float], float], low: float, high: float) -> float:
+def state_of(initial: Initial, kappa: Array, q: Array, f: Array) -> Fields:
+    """A rod at rest in its initial shape, on 100 intervals, with what it bears (n, 3)."""
+    r, orientation, _ = nodes_at_rest(initial, S)
+    none = np.zeros_like(r)
+    return Fields(v=none, omega=none, f=f, kappa=kappa, q=q, r=r, orientation=orientation, strain=none[:, 0])
+
+
+def lowest(scene: Scene, kappa: float = 0.0, q: Array | float = 0.0, f: Array | float = 0.0) -> float:
+    """The lowest stiffness across a straight rod that bears a twist, a torque and a tension."""
+    across = Across.of(scene)
+    assert across is not None and across.p == STRAIGHT
+    along = [np.column_stack([0.0 * S, 0.0 * S, row + 0.0 * S]) for row in (kappa, q, f)]
+    return float(np.linalg.eigvalsh(across.stiffness(S, state_of(Initial.straight(), *along)))[0])
+
+
+def critical(stiffness: Callable[[float], float], low: float, high: float) -> float:
     """From where on something grows."""
-    return float(brentq(lambda load: 1.0 if grows(load) > 1e-4 else -1.0, low, high, xtol=1e-4 * high))
+    return float(brentq(lambda load: 1.0 if stiffness(load) < -1e-5 else -1.0, low, high, xtol=1e-5 * high))
 
 
 @pytest.mark.parametrize(("ends", "expected"), [
@@ -35,18 +53,16 @@ def critical(grows: Callable[[float], float], low: float, high: float) -> float:
     ((FREE_END, CLAMP), pi**2 / 4),
 ])  # fmt: skip
 def test_a_column_buckles_by_eulers_load(ends: tuple[End, End], expected: float) -> None:
-    def rate(load: float) -> float:
-        return growth_rate(scene_of(*ends), S, np.full(101, -load * EJ / LENGTH**2), 0.0 * S, 0.0 * S)
-
-    assert critical(rate, 1.0, 60.0) == pytest.approx(expected, rel=5e-3)
+    scene = scene_of(*ends)
+    found = critical(lambda load: lowest(scene, f=-load * EJ / LENGTH**2), 1.0, 60.0)
+    assert found == pytest.approx(expected, rel=4e-3)
 
 
 def test_a_mast_buckles_by_its_weight() -> None:
     """Greenhill's 7.837 EJ/L^3 per length."""
-    def rate(load: float) -> float:
-        return growth_rate(scene_of(CLAMP, FREE_END), S, -load * EJ / LENGTH**3 * (LENGTH - S), 0.0 * S, 0.0 * S)
-
-    assert critical(rate, 1.0, 20.0) == pytest.approx(7.837, rel=5e-3)
+    scene = scene_of(CLAMP, FREE_END)
+    found = critical(lambda load: lowest(scene, f=-load * EJ / LENGTH**3 * (LENGTH - S)), 1.0, 20.0)
+    assert found == pytest.approx(7.837, rel=2e-3)
 
 
 def _torque(tension: float) -> float:
@@ -66,37 +82,74 @@ def _torque(tension: float) -> float:
 @pytest.mark.parametrize("tension", [0.01, 20.0])
 def test_a_wrung_rod_buckles_by_greenhills_torque(twist: float, tension: float) -> None:
     """However its section turns along it; between clamps, without tension, M L/EJ = 8.987."""
-    def rate(torque: float) -> float:
-        along = tension * EJ / LENGTH**2 + 0.0 * S, torque * EJ / LENGTH + 0.0 * S, twist + 0.0 * S
-        return growth_rate(scene_of(CLAMP, SLIDER), S, *along)
-
+    scene = scene_of(CLAMP, SLIDER)
     assert _torque(0.01) == pytest.approx(8.987, rel=1e-3)
-    assert critical(rate, 1.0, 40.0) == pytest.approx(_torque(tension), rel=1e-2)
+    found = critical(lambda torque: lowest(scene, twist, torque * EJ / LENGTH, tension * EJ / LENGTH**2), 1.0, 40.0)
+    assert found == pytest.approx(_torque(tension), rel=5e-3)
 
 
 def test_a_tape_buckles_about_its_softer_axis() -> None:
     tape = replace(ROD, stiffness=(Curve.constant(9.0 * EJ), *ROD.stiffness[1:]))
+    scene = scene_of(CLAMP, FREE_END, tape)
+    found = critical(lambda load: lowest(scene, f=-load * EJ / LENGTH**2), 1.0, 20.0)
+    assert found == pytest.approx(pi**2 / 4, rel=2e-3)
 
-    def rate(load: float) -> float:
-        return growth_rate(scene_of(CLAMP, FREE_END, tape), S, np.full(101, -load * EJ / LENGTH**2), 0.0 * S, 0.0 * S)
 
-    assert critical(rate, 1.0, 20.0) == pytest.approx(pi**2 / 4, rel=5e-3)
+@pytest.mark.parametrize("p", [0, 1])
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_ruler_on_edge_tips_over_by_prandtls_load(p: int, sign: float) -> None:
+    """4.013 sqrt(EJ GJ) / L^2 on its free end, where it does not bend in its plane."""
+    stiffness = [Curve.constant(EJ), Curve.constant(EJ), ROD.stiffness[2]]
+    stiffness[p] = Curve.constant(1e4 * EJ)
+    across_the_end = PointLoad(LENGTH, constant_vector(tuple(np.eye(3)[1 - p])))  # type: ignore[arg-type]
+    scene = scene_of(CLAMP, FREE_END, replace(ROD, stiffness=tuple(stiffness)), points=(across_the_end,))
+    across = Across.of(scene)
+    assert across is not None and across.p == p
+
+    def falls(load: float) -> float:
+        q, f = np.zeros((101, 3)), np.zeros((101, 3))
+        f[:, 1 - p], q[:, p] = load, sign * load * (LENGTH - S)
+        state = state_of(Initial.straight(), 0.0 * q, q, f)
+        return float(np.linalg.eigvalsh(across.stiffness(S, state))[0])
+
+    unit = sqrt(EJ * GJ) / LENGTH**2
+    assert critical(falls, unit, 10.0 * unit) == pytest.approx(4.013 * unit, rel=2e-3)
+
+
+def test_an_arc_at_rest_falls_nowhere() -> None:
+    """Without stress, however it is bent."""
+    across = Across.of(Scene(ARC_ROD, ARC, CLAMP, FREE_END, 1.0, 0.1))
+    assert across is not None and across.p != STRAIGHT
+    none = np.zeros((101, 3))
+    assert np.linalg.eigvalsh(across.stiffness(S, state_of(ARC, none, none, none)))[0] > 0.0
 
 
 @pytest.mark.parametrize(("damping", "expected"), [(0.0, 1.0), (1.5, 0.5)])
-def test_what_grows_does_so_as_in_the_mode_of_a_column(damping: float, expected: float) -> None:
+@pytest.mark.parametrize("steps", [1, 40])
+def test_a_push_grows_as_the_mode_of_a_column(damping: float, expected: float, steps: int) -> None:
     """Between pins under twice Euler's load by pi^2 sqrt(EJ / m) / L^2, in which the damping is given."""
     unit = pi**2 * sqrt(EJ / MASS) / LENGTH**2
-    scene = scene_of(PIN, PIN, damping=damping * unit)
-    rate = growth_rate(scene, S, np.full(101, -2.0 * pi**2 * EJ / LENGTH**2), 0.0 * S, 0.0 * S)
-    assert rate == pytest.approx(expected * unit, rel=1e-2)
+    across = Across.of(scene_of(PIN, PIN))
+    assert across is not None
+    K = across.straight(S, 0.0 * S, 0.0 * S, -2.0 * pi**2 * EJ / LENGTH**2 + 0.0 * S)
+    push = Push.small(across.many, 100.0 / unit, damping * unit)
+    grown = []
+    for t in (50.0, 50.0):
+        for _ in range(steps):
+            push.go_on(t / unit / steps, K)
+        grown.append(push.grown)
+    assert grown[1] - grown[0] == pytest.approx(50.0 * expected, rel=5e-3)
+    push.go_on(1.0, across.straight(S, 0.0 * S, 0.0 * S, 0.0 * S))
+    assert push.grown == grown[1]
 
 
 def test_it_is_not_asked_where_loads_turn_or_something_else_holds_the_rod() -> None:
     push = Condition("load", Curve.constant(-1.0))
     following, guided = End((FREE, FREE, (push,)), (FREE,) * 3), End((FIXED, FIXED, (push,)), (FIXED,) * 3)
-    assert can_buckle(scene_of(CLAMP, FREE_END)) and can_buckle(scene_of(CLAMP, guided))
-    assert can_buckle(scene_of(CLAMP, replace(following, frame="lab")))
-    assert not can_buckle(scene_of(CLAMP, following))
-    assert not can_buckle(scene_of(CLAMP, FREE_END, loads=(Floor(1.0),)))
-    assert not can_buckle(scene_of(CLAMP, FREE_END, points=(PointLoad(0.5 * LENGTH, frame="material"),)))
+    for end in (FREE_END, guided, replace(following, frame="lab")):
+        assert axis_kept(scene_of(CLAMP, end)) == STRAIGHT
+    assert axis_kept(scene_of(CLAMP, FREE_END, gravity=(0.0, 1.0, 0.0))) == 0
+    assert axis_kept(scene_of(CLAMP, FREE_END, gravity=(1.0, 1.0, 0.0))) is None
+    assert axis_kept(scene_of(CLAMP, following)) is None
+    assert axis_kept(scene_of(CLAMP, FREE_END, loads=(Floor(1.0),))) is None
+    assert axis_kept(scene_of(CLAMP, FREE_END, points=(PointLoad(0.5 * LENGTH, frame="material"),))) is None

@@ -27,6 +27,7 @@ from solver.physics.axial import distances, has_to_stretch, largest_strain
 from solver.physics.elasticity import Stretch
 from solver.physics.ends import travel
 from solver.physics.loads.solids import Floor, Given
+from solver.physics.unpushed import push_for
 from solver.scene.layout import nodes_at_rest
 from solver.scene.view import View
 
@@ -34,8 +35,6 @@ WIDEST, THICKEST = 3.0, 0.2
 """Diameter in m, as of the largest pipes, and in rod lengths, beyond which the theory of thin rods says little."""
 GRAVITY = (1.0, 30.0)
 """m/s²: less than on the moon, more than on Jupiter."""
-SHORTENED = 1e-4
-"""Part of its length by which a straight rod may be pressed shorter."""
 SHEARED = 0.5
 """Shear strain of a rod's surface beyond that of any material but rubber."""
 RUBBER = 0.3
@@ -53,7 +52,7 @@ JERK = 1e-3
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *units_of(spec, scene), *bends_of(spec, scene), *_gravity(spec),
-            *_contact(spec, scene), *_sheared(spec, scene), *_column(spec, scene), *_pressed(spec, scene),
+            *_contact(spec, scene), *_sheared(spec, scene), *_column(scene), *_pressed(spec, scene),
             *_pushed_in(spec, scene), *_obstacles(spec), *_begins_inside(scene), *_friction_at_rest(spec),
             *_touches_itself(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec),
             *_idle(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
@@ -101,14 +100,13 @@ def _sheared(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
         yield FieldError("/ends", None, rule)
 
 
-def _column(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
-    """A straight rod whose ends press it, and that nothing pushes aside, stays straight for ever."""
-    if not has_to_stretch(scene) or (R := _kept_straight(spec, scene)) is None:
-        return
-    shortest = min(_travel(scene.end, R, t) - _travel(scene.start, R, t) for t in times(scene)[::20])
-    if shortest < -SHORTENED * spec.rod.length:
-        rule = (f"has nothing across the rod, which is straight and whose ends come {-shortest:.3g} m nearer to each "
-                "other: it would be pressed shorter instead of buckling; a small load says to which side it is to bend")
+def _column(scene: Scene) -> Iterator[FieldError]:
+    """A straight rod whose ends press it, and that nothing pushes aside."""
+    apart = distances(scene)
+    if push_for(scene) is not None and apart is not None:
+        rule = (f"has nothing across the rod, which is straight and whose ends come {apart[0] - apart.min():.3g} m "
+                "nearer to each other: it is given a small push aside, so that it buckles; a small load says to which "
+                "side it is to bend")  # fmt: skip
         yield FieldError("/loads", None, rule)
 
 

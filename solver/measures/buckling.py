@@ -47,7 +47,8 @@ def axis_kept(scene: Scene) -> int | None:
         return None
     s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
     _, quaternion, kappa = nodes_at_rest(scene.initial, s)
-    alone, R = replace(scene, contact=None), rotations_of(quaternion[:1])[0]
+    across = tuple(law for law in scene.rod.laws if not getattr(law, "along", False))
+    alone, R = replace(scene, contact=None, rod=replace(scene.rod, laws=across)), rotations_of(quaternion[:1])[0]
     return next((p for p in (STRAIGHT, 0, 1) if alone.keeps(View(p, s, quaternion, kappa, R))), None)
 
 

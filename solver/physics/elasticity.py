@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from math import sqrt
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numba
 import numpy as np
@@ -47,6 +47,8 @@ class Stretch:
     """Stretch by the tension, eps = N / EA: the axial stiffness EA (N) along s. The section stays as it is."""
 
     EA: Profile
+    along: ClassVar[bool] = True
+    """A rod that stays straight, or in a plane, does so with it too."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,8 @@ class TwistStretch:
     """
 
     g: Profile
+    along: ClassVar[bool] = True
+    """See `Stretch`."""
 
 
 @dataclass(frozen=True)

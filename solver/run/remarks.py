@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from math import log
 
 MUCH = 0.1
 """Strain from which on a linear law and a section that does not change are worth a word."""
@@ -26,6 +25,7 @@ class Remarks:
     with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`: frames of a
     static analysis in which forces turned with the rod. `growth_aside`: the logarithm of the factor by which a push
     across a rod that stays straight, or in its plane, would have grown, if that is much, see `measures.buckling`.
+    `push_aside` (N/m): the load that it was given all along so that it buckles, see `physics.unpushed`.
     """
 
     crossings: int = 0
@@ -43,6 +43,7 @@ class Remarks:
     retardation_time: float = 0.0
     turning_loads: int = 0
     growth_aside: float = 0.0
+    push_aside: float = 0.0
 
     def stretched(self, strain: float, length: float) -> None:
         """At a frame, of a rod so long (m)."""
@@ -112,11 +113,17 @@ class Remarks:
                 "stretch is linear, and its mass, its section, loads and drag are those per length of the rod without "
                 "stretch."
             )
+        if self.push_aside:
+            sentences.append(
+                "The rod is straight, its ends press it, and nothing says to which side it buckles: it was given a "
+                f"push aside of {self.push_aside:.3g} N/m, which bends it by 1e-4 of its length at the most. A load "
+                "across it takes the place of that."
+            )
         if self.growth_aside:
             sentences.append(
                 "The rod stays straight, or in its plane, because nothing pushes it aside: pressed, bent or wrung as "
-                f"it is, the smallest push would have grown by a factor of 1e{self.growth_aside / log(10.0):.0f}. Give "
-                "it a small load across, which says to which side it is to go."
+                "it is, even the smallest push would have grown large. Give it a small load across, which says to "
+                "which side it is to go."
             )
         if self.turning_loads:
             sentences.append(

@@ -19,6 +19,7 @@ from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
 from solver.run.warming import load
 from solver.run.watch import Watch
+from solver.scene.loads import Push
 from solver.scene.scene import Scene
 
 FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
@@ -49,6 +50,7 @@ class Simulation(Run):
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
         if scene.numerics.method == "staggered":
             self.remarks.axial_stiffness = axial_stiffness(scene)
+        self.remarks.push_aside = sum(load.size for load in scene.distributed if isinstance(load, Push))
         self._largest_strain = largest_strain(scene)
         self._watch = Watch(self.remarks, scene.contact is not None, is_ring(scene))
         self._aside = None if goes_on else Aside(scene)

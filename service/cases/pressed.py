@@ -22,7 +22,7 @@ def growth(scene: Scene, axis: Any) -> float:
     if across is None or across.p != STRAIGHT:
         return 0.0
     s, (dt, *_) = np.linspace(0.0, scene.rod.length, PLACES), np.diff(np.linspace(0.0, scene.t_end, TIMES))
-    torsion, push = scene.rod.stiffness[2](s) + 0.0 * s, Push.small(across.many, scene.t_end, scene.damping)
+    torsion, push = scene.rod.stiffness[2](s) + 0.0 * s, Push(across, scene.damping)
     for t in dt * np.arange(1, TIMES):
         torque = _torque(scene, axis, s, torsion, t)
         push.go_on(dt, across.straight(s, torque / torsion, torque, _tension(scene, axis, s, t)))

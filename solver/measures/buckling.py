@@ -32,6 +32,9 @@ INTERVALS = 48
 """Into which the rod is divided."""
 MUCH = 20.0
 """Logarithm of a growth, 5e8, from which on no rod is straight, or plane, enough to stay so."""
+SLOW = 1.5
+"""Rate, in sqrt(EJ / m) / L^2, that the error of so few intervals may make of a motion which nothing hinders, as where
+a bow turns about its pins: what grows more slowly does not count."""
 STRAIGHT = 2
 """The axis of a rod that stays so."""
 
@@ -58,13 +61,15 @@ class Across:
     mass 1 of each.
 
     What they are made of is psi (n, 2) at the nodes `at` (n,), along the two axes that follow p, of a straight rod
-    those in the lab; and the places aside of the start. `K` (n - 1, 2): the stiffness about these axes.
+    those in the lab; and the places aside of the start. `K` (n - 1, 2): the stiffness about these axes. `slow` (1/s):
+    the rate up to which nothing grows, see SLOW.
     """
 
     p: int
     at: Array
     K: Array
     unknowns: Array
+    slow: float
 
     @classmethod
     def of(cls, scene: Scene) -> Across | None:
@@ -77,7 +82,9 @@ class Across:
         K = np.stack([scene.rod.stiffness[i](middles) + 0.0 * middles for i in _axes(p)], axis=1)
         M, ends = _mass(scene, p, at), _ends(scene, p, at)
         ways = null_space(ends) if len(ends) else np.eye(len(M))
-        return cls(p, at, K, solve_triangular(cholesky(ways.T @ M @ ways), ways.T, lower=True).T)
+        EJ = min(float(np.min(profile(at))) for profile in scene.rod.stiffness[:2])
+        slow = SLOW * np.sqrt(EJ / float(np.mean(scene.rod.mass(at)))) / float(at[-1]) ** 2
+        return cls(p, at, K, solve_triangular(cholesky(ways.T @ M @ ways), ways.T, lower=True).T, float(slow))
 
     @property
     def many(self) -> int:
@@ -134,27 +141,29 @@ class Across:
 
 
 class Push:
-    """A small push aside, and how it grows: `grown`, the logarithm of the factor. Where nothing grows, it stays."""
+    """A small push aside, and how it grows: `grown`, the logarithm of the factor.
 
-    def __init__(self, aside: Array, t_end: float, damping: float) -> None:
-        """`aside` (r,), in the unknowns of `Across`, until `t_end` (s) with a `damping` (1/s)."""
+    It goes on between two looks that both let something grow, and else stays: what is seen once may not have lasted.
+    """
+
+    def __init__(self, across: Across | None, damping: float) -> None:
+        """Of no particular shape, `across` a rod with a `damping` (1/s); None: nowhere."""
         self.grown = 0.0
-        self._slow, self._damping = 1.0 / t_end, damping
-        self._aside, self._speed = aside, np.zeros_like(aside)
-
-    @classmethod
-    def small(cls, many: int, t_end: float, damping: float) -> Push:
-        """One of no particular shape."""
-        return cls(np.random.default_rng(0).standard_normal(many), t_end, damping)
+        self._slow, self._damping = (across.slow, damping) if across else (0.0, damping)
+        self._aside = np.random.default_rng(0).standard_normal(across.many if across else 0)
+        self._speed, self._grows = np.zeros_like(self._aside), False
 
     def go_on(self, dt: float, stiffness: Array) -> None:
-        """For a time dt (s) with a `stiffness` (r, r)."""
+        """For a time dt (s) that ends with a `stiffness` (r, r)."""
         try:
             cholesky(stiffness + self._slow**2 * np.eye(len(stiffness)))
-            self._speed[:] = 0.0
+            self._speed[:], self._grows = 0.0, False
             return
         except LinAlgError:  # something grows
-            squares, modes = eigh(stiffness)
+            grew, self._grows = self._grows, True
+        if not grew:
+            return
+        squares, modes = eigh(stiffness)
         c = 0.5 * self._damping
         rate = np.sqrt(c * c - squares.astype(complex))
         rate[rate == 0.0] = self._slow

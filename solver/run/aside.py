@@ -16,8 +16,7 @@ class Aside:
 
     def __init__(self, scene: Scene) -> None:
         self._across, self._t = None if scene.at_rest else Across.of(scene), 0.0
-        many = 0 if self._across is None else self._across.many
-        self._push = Push.small(many, scene.t_end, scene.damping)
+        self._push = Push(self._across, scene.damping)
         self._pause = (1.0 - 1e-9) * float(scene.t_end) / LOOKS
 
     def see(self, s: Array, frame: Frame) -> float:

@@ -107,7 +107,7 @@ def test_one_that_something_bends_or_that_is_pulled_is_left_alone(change: dict[s
 
 LIMP = {"rod": PRESSED["rod"] | {"youngs_modulus": 1e7, "shear_modulus": 4e6}, "t_end": 5.0,
         "output": {"interval": 0.5}}  # fmt: skip
-TWISTED = {"ends": {"start": "clamp", "end": {"preset": "slider", "theta3": {"t": [0, 1], "value": [0, 15.0],
+TWISTED = {"ends": {"start": "clamp", "end": {"preset": "slider", "theta3": {"t": [0, 1], "value": [0, 25.0],
                                                                         "interpolation": "smoothstep"}}}}  # fmt: skip
 
 

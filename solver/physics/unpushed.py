@@ -7,7 +7,8 @@ that between clamps, about its softer axis. See docs/decisions/0038.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 
@@ -17,11 +18,21 @@ from solver.physics.axial import axial_stiffness, distances, has_to_stretch
 from solver.physics.elasticity import Stretch
 from solver.scene.curve import constant_vector
 from solver.scene.layout import nodes_at_rest
-from solver.scene.loads import Push
+from solver.scene.loads import DistributedLoad
 from solver.scene.scene import Scene
 
 SMALL = 1e-2
 """In EJ/L^3."""
+
+
+@dataclass(frozen=True)
+class Push(DistributedLoad):
+    """A load that nobody gave, the same all along the rod."""
+
+    @property
+    def size(self) -> float:
+        """Of its force, N/m."""
+        return hypot(*(float(component(np.zeros(1))[0]) for component in self.force))
 
 
 def push_for(scene: Scene) -> Push | None:

@@ -13,13 +13,12 @@ from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import axial_stiffness, largest_strain
 from solver.physics.loads.solids import deepest_within
+from solver.physics.unpushed import Push
 from solver.run.accounts import Accounts
-from solver.run.aside import Aside
 from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
 from solver.run.warming import load
 from solver.run.watch import Watch
-from solver.scene.loads import Push
 from solver.scene.scene import Scene
 
 FATAL = (Outcome.SHOOTING_LOST_DIGITS, Outcome.SINGULAR_SYSTEM)
@@ -33,9 +32,8 @@ class Simulation(Run):
     """Motion, by steps in time."""
 
     def __init__(self, scene: Scene, statistics: Statistics | None = None, goes_on: bool = False) -> None:
-        """`goes_on`: it is an attempt at a tolerance. Energy that went nowhere is a remark, and does not end the run by
-        `energy_lost`; energy that came from nowhere ends it at its last frame only, if it is much then; and nobody asks
-        what would grow aside."""
+        """`goes_on`: energy that went nowhere is a remark, and does not end the run by `energy_lost`; energy that came
+        from nowhere ends it at its last frame only, if it is much then."""
         super().__init__(scene, statistics)
         self._goes_on = goes_on
         self._method = discretized(scene)
@@ -53,7 +51,6 @@ class Simulation(Run):
         self.remarks.push_aside = sum(load.size for load in scene.distributed if isinstance(load, Push))
         self._largest_strain = largest_strain(scene)
         self._watch = Watch(self.remarks, scene.contact is not None, is_ring(scene))
-        self._aside = None if goes_on else Aside(scene)
         self._turn = self._trial_turn = pi
         """The largest rotation (rad) within an interval, of the state and of the trial."""
 
@@ -79,7 +76,7 @@ class Simulation(Run):
         self._watch.see(frame)
         # forces are no part of what is given at t = 0, they follow from it
         frame = replace(frame, f=self._method.fields().f, contacts=self._method.pressing())
-        return self._given(frame)
+        return complete(frame, self.s, self._scene)
 
     def _next_frame(self, output: float) -> Frame | None:
         if not self._control.reached(output, self.t):
@@ -103,12 +100,6 @@ class Simulation(Run):
         crossed = self._watch.see(frame)
         if crossed:
             raise RunFailed(Outcome.ROD_CROSSED_ITSELF, self.t, self.statistics.steps, crossed)
-        return self._given(frame)
-
-    def _given(self, frame: Frame) -> Frame:
-        """A frame as it is handed out."""
-        if self._aside is not None:
-            self.remarks.growth_aside = self._aside.see(self.s, frame)
         return complete(frame, self.s, self._scene)
 
     def _begin(self) -> float:

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import hypot
 from typing import Literal
-
-import numpy as np
 
 from solver.scene.curve import Curve, Vector, constant_vector
 from solver.scene.rod import Profiles
@@ -29,16 +26,6 @@ class DistributedLoad:
         """Whether force and moment act along the motion about an axis."""
         force, moment = view.along(self.force), view.along(self.moment)
         return view.moved_by(force, self.frame) and view.turned_by(moment, self.frame)
-
-
-@dataclass(frozen=True)
-class Push(DistributedLoad):
-    """One that nobody gave, the same all along the rod: see `physics.unpushed`."""
-
-    @property
-    def size(self) -> float:
-        """Of its force, N/m."""
-        return hypot(*(float(component(np.zeros(1))[0]) for component in self.force))
 
 
 @dataclass(frozen=True)

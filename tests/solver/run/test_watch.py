@@ -168,7 +168,7 @@ def pressed(force: float, seed: float, numerics: Numerics) -> Scene:
                  damping=1.0 / time, numerics=numerics)  # fmt: skip
 
 
-@pytest.mark.parametrize("numerics", [Numerics("staggered", tolerance=1e-3), Numerics(intervals=10, dt_max=0.05)])
+@pytest.mark.parametrize("numerics", [Numerics("staggered", tolerance=1e-3)])
 @pytest.mark.parametrize(("force", "seed", "told"), [(20.0, 0.0, True), (2.0, 0.0, False), (20.0, 1e-3, False)])
 def test_a_rod_that_stays_straight_because_nothing_pushes_it_aside_is_told(force: float, seed: float, told: bool,
                                                                            numerics: Numerics) -> None:  # fmt: skip
@@ -187,7 +187,7 @@ def test_an_arc_between_pins_that_is_pushed_through_in_its_plane_is_told(aside: 
     force = Curve.table([0.0, time], [0.0, push]), Curve.constant(aside * push), Curve.constant(0.0)
     run = simulate(Scene(
         ARC_ROD, ARC, End.pin(), End.pin(), 4.0 * time, 0.125 * time, damping=2.0 / time,
-        points=(PointLoad(0.5 * LENGTH, force),), numerics=Numerics("staggered", intervals=20),
+        points=(PointLoad(0.5 * LENGTH, force),), numerics=Numerics("staggered", tolerance=1e-2),
     ))  # fmt: skip
     farthest = max(float(np.abs(frame.r[:, 1]).max()) for frame in run)
     assert (farthest > 0.1 * LENGTH) == (aside > 0.0)

@@ -16,9 +16,9 @@ from service.cases.errors import FieldError
 from service.cases.extents import forces, largest, times, widest
 from service.cases.initial import Straight
 from service.cases.outlook import GREENHILL
-from service.cases.pressed import growth
 from service.cases.quantities import ProfileTable, ScheduleTable
 from service.cases.size import tables_in
+from service.cases.stability import growth
 from service.cases.units import units_of
 from solver import Curve, End, Scene
 from solver.kernels.rotation import matrix_of
@@ -27,7 +27,7 @@ from solver.physics.axial import distances, has_to_stretch, largest_strain
 from solver.physics.elasticity import Stretch
 from solver.physics.ends import travel
 from solver.physics.loads.solids import Floor, Given
-from solver.physics.unpushed import push_for
+from solver.physics.seed import seed_of
 from solver.scene.layout import nodes_at_rest
 from solver.scene.view import View
 
@@ -52,7 +52,7 @@ JERK = 1e-3
 def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a user should look at again: where, the value and the rule. Nothing is refused for it."""
     return [*_thickness(spec, scene), *units_of(spec, scene), *bends_of(spec, scene), *_gravity(spec),
-            *_contact(spec, scene), *_sheared(spec, scene), *_column(scene), *_pressed(spec, scene),
+            *_contact(spec, scene), *_sheared(spec, scene), *_column(scene), *_unstable(spec, scene),
             *_pushed_in(spec, scene), *_obstacles(spec), *_begins_inside(scene), *_friction_at_rest(spec),
             *_touches_itself(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec),
             *_idle(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
@@ -101,28 +101,28 @@ def _sheared(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
 
 
 def _column(scene: Scene) -> Iterator[FieldError]:
-    """A straight rod whose ends press it, and that nothing pushes aside."""
+    """A straight rod that its ends shorten beyond its critical load, with no load across it."""
     apart = distances(scene)
-    if push_for(scene) is not None and apart is not None:
+    if seed_of(scene) is not None and apart is not None:
         rule = (f"has nothing across the rod, which is straight and whose ends come {apart[0] - apart.min():.3g} m "
-                "nearer to each other: it is given a small push aside, so that it buckles; a small load says to which "
-                "side it is to bend")  # fmt: skip
+                "nearer to each other: a small load is added across it, so that it buckles; one of your own says to "
+                "which side")  # fmt: skip
         yield FieldError("/loads", None, rule)
 
 
-def _pressed(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
-    """A straight rod that is pressed, or wrung, beyond what it bears, and that nothing pushes aside."""
+def _unstable(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """A straight rod that is loaded beyond its critical load or torque, with no load across it."""
     if scene.at_rest or has_to_stretch(scene) or (R := _kept_straight(spec, scene)) is None:
         return
-    if (grown := growth(scene, R[:, 2])) > MUCH:
-        rule = ("has nothing across the rod, which is straight and pressed, or wrung, beyond what it bears: a push "
-                f"aside would grow by a factor of 1e{grown / log(10.0):.0f}, but there is none; a small load says to "
-                "which side it is to bend")
+    if (grows := growth(scene, R[:, 2])) > MUCH:
+        rule = ("has nothing across the rod, which is straight and pressed, or twisted, beyond its critical load: a "
+                f"small disturbance would grow by a factor of 1e{grows / log(10.0):.0f}, but there is none; add a "
+                "small load across it, which says to which side it buckles")
         yield FieldError("/loads", None, rule)
 
 
 def _pushed_in(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
-    """A straight rod that an end pushes into something solid, and that nothing pushes aside, goes in end first."""
+    """A straight rod that an end pushes into something solid, with no load across it, goes in end first."""
     R = _kept_straight(spec, replace(scene, loads=(), contact=None)) if not has_to_stretch(scene) else None
     if R is None:
         return
@@ -132,12 +132,12 @@ def _pushed_in(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
         deepest = max(float(np.max(solid.depth(r + way * R[:, 2]))) for way in (min(ways), max(ways)))
         if deepest - float(np.max(solid.depth(r))) > widest(scene) and deepest > widest(scene):
             rule = (f"has the rod pushed into it, end first, by {deepest:.3g} m: nothing is across the rod, which is "
-                    "straight, so it would go in instead of bending; a small load says to which side it is to bend")
+                    "straight, so it goes in instead of bending; add a small load across it, which says to which side")
             yield FieldError(where, None, rule)
 
 
 def _kept_straight(spec: CaseSpec, scene: Scene) -> Any:
-    """The axes (3, 3) of a straight rod that nothing pushes aside; None of another one."""
+    """The axes (3, 3) of a straight rod with no load across it; None of another one."""
     if not isinstance(spec.initial, Straight):
         return None
     s, R = np.linspace(0.0, spec.rod.length, 11), np.zeros((3, 3))

@@ -1,14 +1,14 @@
-"""How a push aside grows on a rod that stays straight, or in its plane: what its own motion does not show.
+"""Stability of a rod that stays straight, or in its plane: how a small disturbance across it grows.
 
 With small rotations psi of the sections at a state with curvature kappa, moment q and force f, all material, the bend
 changes by delta = psi' + kappa x psi, and the Lagrangian's second variation is
 
     1/2 int delta.(K delta) - q.(psi x delta) + f3 |psi|^2 - psi3 (f.psi) ds.
 
-A state that turns about its principal axis p alone, a3 where it is straight, has kappa, q along a_p, and psi across it
-is by itself: across the straight rod it is two bends, out of the plane a bend and a twist. The rod moves aside by
-u' = R (psi x e3), whose inertia is that of its mass. Loads are held as they are. So one has Euler's column, Greenhill's
-mast and shaft, and Prandtl's beam (Timoshenko & Gere, Theory of Elastic Stability).
+In a state that turns about its principal axis p alone, a3 where it is straight, kappa and q are along a_p, and psi
+across it decouples: of the straight rod it is two bends, of the plane one a bend and a twist. The displacement across
+is u' = R (psi x e3), and has the inertia of the rod's mass. Loads are dead loads. So one has Euler's column,
+Greenhill's mast and shaft, and Prandtl's beam (Timoshenko & Gere, Theory of Elastic Stability).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from numpy.linalg import LinAlgError, cholesky, eigh
 from scipy.linalg import null_space, solve_triangular
 
 from solver.arrays import Array
-from solver.kernels.rotation import rotate_back
+from solver.kernels.rotation import rotate, rotation_of
 from solver.measures.frame import Fields
 from solver.scene.ends import Component
 from solver.scene.layout import nodes_at_rest
@@ -31,10 +31,10 @@ from solver.scene.view import View
 INTERVALS = 48
 """Into which the rod is divided."""
 MUCH = 20.0
-"""Logarithm of a growth, 5e8, from which on no rod is straight, or plane, enough to stay so."""
+"""Logarithm of the growth, by 5e8, beyond which no rod is straight, or plane, enough to stay so."""
 SLOW = 1.5
-"""Rate, in sqrt(EJ / m) / L^2, that the error of so few intervals may make of a motion which nothing hinders, as where
-a bow turns about its pins: what grows more slowly does not count."""
+"""Rate, in sqrt(EJ / m) / L^2, that the error of so few intervals may give to a neutral mode, as where a bow turns
+about its pins: what grows more slowly does not count."""
 STRAIGHT = 2
 """The axis of a rod that stays so."""
 
@@ -51,29 +51,29 @@ def axis_kept(scene: Scene) -> int | None:
     s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
     _, quaternion, kappa = nodes_at_rest(scene.initial, s)
     across = tuple(law for law in scene.rod.laws if not getattr(law, "along", False))
-    alone, R = replace(scene, contact=None, rod=replace(scene.rod, laws=across)), rotations_of(quaternion[:1])[0]
+    alone, R = replace(scene, contact=None, rod=replace(scene.rod, laws=across)), rotation_of(quaternion[0])
     return next((p for p in (STRAIGHT, 0, 1) if alone.keeps(View(p, s, quaternion, kappa, R))), None)
 
 
 @dataclass(frozen=True)
-class Across:
-    """The small motions across the axis `p` that a rod keeps to, in terms of `unknowns` (m, r) that make motions of
-    mass 1 of each.
+class Transverse:
+    """Small motions across the axis `p` that a rod keeps to.
 
-    What they are made of is psi (n, 2) at the nodes `at` (n,), along the two axes that follow p, of a straight rod
-    those in the lab; and the places aside of the start. `K` (n - 1, 2): the stiffness about these axes. `slow` (1/s):
-    the rate up to which nothing grows, see SLOW.
+    Their components (m) are psi (n, 2) at the nodes `at` (n,), about the two axes that follow p, those at the start
+    where the rod is straight; then the displacements across of the start, in rod lengths. The columns of `basis`
+    (m, r) obey the ends and have mass 1. `K` (n - 1, 2): the stiffness about these axes. `slow` (1/s): the rate up to
+    which nothing grows, see SLOW.
     """
 
     p: int
     at: Array
     K: Array
-    unknowns: Array
+    basis: Array
     slow: float
 
     @classmethod
-    def of(cls, scene: Scene) -> Across | None:
-        """Those of a scene; None where it keeps to no axis, see `axis_kept`."""
+    def of(cls, scene: Scene) -> Transverse | None:
+        """Of a scene; None where it keeps to no axis, see `axis_kept`."""
         p = axis_kept(scene)
         if p is None:
             return None
@@ -81,23 +81,19 @@ class Across:
         middles = 0.5 * (at[1:] + at[:-1])
         K = np.stack([scene.rod.stiffness[i](middles) + 0.0 * middles for i in _axes(p)], axis=1)
         M, ends = _mass(scene, p, at), _ends(scene, p, at)
-        ways = null_space(ends) if len(ends) else np.eye(len(M))
+        free = null_space(ends) if len(ends) else np.eye(len(M))
         EJ = min(float(np.min(profile(at))) for profile in scene.rod.stiffness[:2])
         slow = SLOW * np.sqrt(EJ / float(np.mean(scene.rod.mass(at)))) / float(at[-1]) ** 2
-        return cls(p, at, K, solve_triangular(cholesky(ways.T @ M @ ways), ways.T, lower=True).T, float(slow))
-
-    @property
-    def many(self) -> int:
-        """How many there are, r."""
-        return int(self.unknowns.shape[1])
+        return cls(p, at, K, solve_triangular(cholesky(free.T @ M @ free), free.T, lower=True).T, float(slow))
 
     def stiffness(self, s: Array, state: Fields) -> Array:
         """(r, r), in 1/s^2, at a state whose nodes are at arclengths `s` (n,)."""
         if self.p == STRAIGHT:
             return self.straight(s, *(rows[:, 2] for rows in (state.kappa, state.q, state.f)))
-        axes, R = _axes(self.p), rotations_of(state.orientation)
-        plane = R[0][:, axes]
-        tangent, force = R[:, :, 2] @ plane, (R @ state.f[:, :, None])[:, :, 0] @ plane
+        axes = _axes(self.p)
+        plane = rotation_of(state.orientation[0])[:, axes]
+        e3 = np.tile([0.0, 0.0, 1.0], (len(s), 1))
+        tangent, force = (rotate(state.orientation, vectors) @ plane for vectors in (e3, state.f))
         angle = np.interp(self.at, s, np.unwrap(np.arctan2(tangent[:, 1], tangent[:, 0])))
         chord = np.diff([np.interp(self.at, s, row) for row in (state.r @ plane).T]).T
         middle = np.arctan2(chord[:, 1], chord[:, 0])
@@ -135,33 +131,30 @@ class Across:
         wrung = 0.5 * moment[:, None, None] * product
         blocks[:, :2, 2:] -= wrung
         blocks[:, 2:, :2] -= wrung.transpose(0, 2, 1)
-        K, rows = np.zeros((len(self.unknowns),) * 2), 2 * np.arange(len(blocks))[:, None] + np.arange(4)
+        K, rows = np.zeros((len(self.basis),) * 2), 2 * np.arange(len(blocks))[:, None] + np.arange(4)
         np.add.at(K, (rows[:, :, None], rows[:, None, :]), blocks)
-        return np.asarray(self.unknowns.T @ K @ self.unknowns)
+        return np.asarray(self.basis.T @ K @ self.basis)
 
 
-class Push:
-    """A small push aside, and how it grows: `grown`, the logarithm of the factor.
+class Disturbance:
+    """A small motion across a rod, at random at first. `growth`: the logarithm of the factor by which it has grown.
 
-    It goes on between two looks that both let something grow, and else stays: what is seen once may not have lasted.
+    It grows between two times at both of which the rod is unstable, and else stays: what is seen once may not last.
     """
 
-    def __init__(self, across: Across | None, damping: float) -> None:
-        """Of no particular shape, `across` a rod with a `damping` (1/s); None: nowhere."""
-        self.grown = 0.0
-        self._slow, self._damping = (across.slow, damping) if across else (0.0, damping)
-        self._aside = np.random.default_rng(0).standard_normal(across.many if across else 0)
-        self._speed, self._grows = np.zeros_like(self._aside), False
+    def __init__(self, transverse: Transverse | None, damping: float) -> None:
+        """`damping` in 1/s; None: nothing grows."""
+        self.growth = 0.0
+        self._slow, self._damping = (transverse.slow, damping) if transverse else (0.0, damping)
+        self._place = np.random.default_rng(0).standard_normal(transverse.basis.shape[1] if transverse else 0)
+        self._speed, self._grew = np.zeros_like(self._place), False
 
     def go_on(self, dt: float, stiffness: Array) -> None:
         """For a time dt (s) that ends with a `stiffness` (r, r)."""
-        try:
-            cholesky(stiffness + self._slow**2 * np.eye(len(stiffness)))
-            self._speed[:], self._grows = 0.0, False
-            return
-        except LinAlgError:  # something grows
-            grew, self._grows = self._grows, True
-        if not grew:
+        grew, self._grew = self._grew, self._grows(stiffness)
+        if not self._grew:
+            self._speed[:] = 0.0
+        if not (grew and self._grew):
             return
         squares, modes = eigh(stiffness)
         c = 0.5 * self._damping
@@ -170,24 +163,25 @@ class Push:
         fastest = float(rate.real.max())
         rising, falling = np.exp((rate - fastest) * dt), np.exp((-rate - fastest) * dt)
         even, odd = 0.5 * (rising + falling), 0.5 * (rising - falling) / rate
-        aside, speed = modes.T @ self._aside, modes.T @ self._speed
-        then = (even * aside + odd * (speed + c * aside)).real
-        moved = (even * speed - odd * (squares * aside + c * speed)).real
+        place, speed = modes.T @ self._place, modes.T @ self._speed
+        then = (even * place + odd * (speed + c * place)).real
+        moved = (even * speed - odd * (squares * place + c * speed)).real
         size = float(np.linalg.norm(then))
-        self.grown += (fastest - c) * dt + float(np.log(size / np.linalg.norm(self._aside)))
-        self._aside[:], self._speed[:] = modes @ then / size, modes @ moved / size
+        self.growth += (fastest - c) * dt + float(np.log(size / np.linalg.norm(self._place)))
+        self._place[:], self._speed[:] = modes @ then / size, modes @ moved / size
+
+    def _grows(self, stiffness: Array) -> bool:
+        try:
+            cholesky(stiffness + self._slow**2 * np.eye(len(stiffness)))
+        except LinAlgError:
+            return True
+        return False
 
 
 def _turned(angles: Array) -> Array:
     """The rotations (n, 2, 2) by angles (n,)."""
     c, s = np.cos(angles), np.sin(angles)
     return np.stack([np.stack([c, -s], axis=1), np.stack([s, c], axis=1)], axis=1)
-
-
-def rotations_of(quaternions: Array) -> Array:
-    """The rotation matrices (n, 3, 3) of unit quaternions (n, 4)."""
-    rows = [rotate_back(quaternions, np.tile(axis, (len(quaternions), 1))) for axis in np.eye(3)]
-    return np.stack(rows, axis=1)
 
 
 def _weights(at: Array) -> Array:
@@ -202,18 +196,18 @@ def _axes(p: int) -> list[int]:
 
 
 def _moved(p: int, at: Array) -> Array:
-    """The places aside (k, n, m), by what `Across` describes: u' = R (psi x e3)."""
+    """The displacements across (k, n, m) by the components that `Transverse` describes: u' = R (psi x e3)."""
     n, h = len(at), float(at[1])
     by = {STRAIGHT: [(1, 1.0), (0, -1.0)], 0: [(0, 1.0)], 1: [(1, -1.0)]}[p]
     moved = np.zeros((len(by), n, 2 * n + len(by)))
     for k, (i, sign) in enumerate(by):
         moved[k, 1:, i : 2 * n : 2] = sign * 0.5 * h * np.cumsum(np.eye(n)[1:] + np.eye(n)[:-1], axis=0)
-        moved[k, :, 2 * n + k] = 1.0
+        moved[k, :, 2 * n + k] = float(at[-1])
     return moved
 
 
 def _mass(scene: Scene, p: int, at: Array) -> Array:
-    """(m, m): of the places aside, and of intervals that turn as sticks, or about themselves."""
+    """(m, m): of the displacements across, and of intervals that turn as sticks, or about themselves."""
     rod, weights = scene.rod, _weights(at)
     borne = rod.mass(at) + 0.0 * at
     if scene.fluid:
@@ -227,8 +221,8 @@ def _mass(scene: Scene, p: int, at: Array) -> Array:
 
 
 def _ends(scene: Scene, p: int, at: Array) -> Array:
-    """The conditions (k, m) of the ends. One that holds something of the place is taken to hold it across; one that
-    twists a straight rod to hold its tangent, with which the torque would turn."""
+    """The conditions (k, m) of the ends. One that holds any component of its place is taken to hold it across; one
+    that twists a straight rod to hold its tangent, with which the torque would turn."""
     moved, rows = _moved(p, at), []
     for end, node in ((scene.start, 0), (scene.end, len(at) - 1)):
         bends, twist = _held(end.rotation[:2]), _held(end.rotation[2:])

@@ -62,7 +62,7 @@ class BoxMethod:
     increment_tolerance = 0.1
     easy_iterations = 4
     touches = True
-    unshown = 0.0
+    unresolved_bending = 0.0
 
     def __init__(self, scene: Scene) -> None:
         numerics = scene.numerics

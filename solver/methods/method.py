@@ -98,7 +98,7 @@ class Method(Protocol):
         """The state along the rod."""
 
     @property
-    def unshown(self) -> float:
+    def unresolved_bending(self) -> float:
         """By how much (J) the bending energy of what `fields` showed last is more than that of the mesh: in layers."""
 
     def centreline(self) -> Shape:

@@ -83,7 +83,7 @@ class OneAxisMethod(RadauMethod):
         shown, nodes = Shown.empty(len(self.s)), self._nodes()
         show(self._hand_over(), self._shown[0], *nodes, self._offset, self._in_space, shown)
         fields = Fields(**shown._asdict(), strain=np.zeros(len(self.s)))
-        self.unshown = self._layers.complete(fields, self._held, self._time - self._ago)
+        self.unresolved_bending = self._layers.complete(fields, self._held, self._time - self._ago)
         return fields
 
     def centreline(self) -> Shape:

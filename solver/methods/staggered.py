@@ -198,7 +198,7 @@ class StaggeredMethod(RadauMethod):
             strain=state.opening[0] / self.chain.span,
             r=nodes[0].copy(), orientation=orientation,
         )  # fmt: skip
-        self.unshown = self._layers.complete(fields, self._held, self._time - self._ago)
+        self.unresolved_bending = self._layers.complete(fields, self._held, self._time - self._ago)
         return fields
 
     def centreline(self) -> Shape:

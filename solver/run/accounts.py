@@ -93,7 +93,7 @@ class Accounts:
         Wr = writhe_of_rod(fields.r, fields.orientation, self._ring) if self._scene.topology else nan
         # the moment is the same on both sides of a step, but at the start, where the curvature is given
         kappa = method.beside.at_nodes(fields.kappa, fields.q) if t > 0.0 else fields.kappa
-        shown = energy._replace(bending=energy.bending + method.unshown)
+        shown = energy._replace(bending=energy.bending + method.unresolved_bending)
         named: dict[str, Any] = vars(fields) | {"kappa": kappa} | dict(zip(OF_ENERGIES, shown, strict=True))
         return Frame(
             t=t, **named, energy_contact=contact,

@@ -167,14 +167,14 @@ class Equilibria(Run):
             raise RunFailed(Outcome.ROD_STRETCHED, equations.time(point.q), self.statistics.steps, detail)
         fields = self._fields(point)
         held = [end.held[3:5] for end in equations.ends]
-        unshown = self._layers.complete(fields, held, equations.time(point.q))
+        unresolved_bending = self._layers.complete(fields, held, equations.time(point.q))
         self.remarks.turning_loads += equations.loads_turn()
         self.remarks.stretched(equations.strain(), float(self.s[-1]))
         self.remarks.sunk(deepest_within(self._scene, self.s, fields.r), t)
         stages = equations.stages
         motion = Motion(stages.r[0], stages.V[0], stages.A[0], stages.R[0], stages.omega[0])
         energy = energies_at(equations.chain, equations.loads, 0, stages.bend[0], stages.F[0], motion)
-        energy = energy._replace(bending=energy.bending + unshown, kinetic=0.0, added_mass=0.0)
+        energy = energy._replace(bending=energy.bending + unresolved_bending, kinetic=0.0, added_mass=0.0)
         Tw, Wr = self._twist(point), self._writhe(fields)
         frame = Frame(
             t=t, **vars(fields),

@@ -18,13 +18,13 @@ from solver.measures.frame import Frame
 from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
 from solver.run.artificial_viscosity import with_viscosity
-from solver.run.aside import Aside
 from solver.run.first_mesh import first_intervals, first_mesh
 from solver.run.plan import Excess, allowance, next_trial, to_come
 from solver.run.recording import row_of
 from solver.run.remarks import Remarks
 from solver.run.run import Run
 from solver.run.series import Attempt, chosen
+from solver.run.stability import Stability
 from solver.run.together import Piece, Together
 from solver.run.trial import AT_REST, FIRST_INTERVALS, Trial, grade_of, longest_step, step_tolerance, strides_of
 from solver.run.under_way import UnderWay
@@ -57,7 +57,7 @@ class Refined(Run):
         self.errors_of_frames = np.zeros((0, len(QUANTITIES)))
         """Of `QUANTITIES`, relative, once the frames come; see `accuracy`."""
         self._piece = Piece()
-        self._aside = Aside(scene)
+        self._stability = Stability(scene)
         self._before = replace(self.statistics)
         """What the attempts before that under way have cost."""
         steps = AT_REST if scene.at_rest else 0
@@ -178,7 +178,7 @@ class Refined(Run):
         if not self._piece.holds(self._frames):
             self._piece = self._together.piece(self._frames)
         frame = self._piece.frames[self._frames - self._piece.first]
-        self.remarks.growth_aside = self._aside.see(self.s, frame)
+        self.remarks.disturbance_growth = self._stability.growth_until(self.s, frame)
         self.t = frame.t
         return frame
 

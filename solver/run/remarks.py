@@ -23,9 +23,9 @@ class Remarks:
     stretch, at a frame, if that is more than a tenth. `energy_lost`: energy that went nowhere, over the largest that
     motion, strain and contact ever had, if that is more than a tenth. `retardation_time` (s): of the rod's material,
     with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`: frames of a
-    static analysis in which forces turned with the rod. `growth_aside`: the logarithm of the factor by which a push
-    across a rod that stays straight, or in its plane, would have grown, if that is much, see `measures.buckling`.
-    `push_aside` (N/m): the load that it was given all along so that it buckles, see `physics.unpushed`.
+    static analysis in which forces turned with the rod. `disturbance_growth`: the logarithm of the factor by which a
+    small disturbance across a straight or a plane rod would have grown, if that is much, see `measures.buckling`.
+    `buckling_seed` (N/m): the load across it that the run added so that it buckles, see `physics.seed`.
     """
 
     crossings: int = 0
@@ -42,8 +42,8 @@ class Remarks:
     energy_lost: float = 0.0
     retardation_time: float = 0.0
     turning_loads: int = 0
-    growth_aside: float = 0.0
-    push_aside: float = 0.0
+    disturbance_growth: float = 0.0
+    buckling_seed: float = 0.0
 
     def stretched(self, strain: float, length: float) -> None:
         """At a frame, of a rod so long (m)."""
@@ -113,17 +113,17 @@ class Remarks:
                 "stretch is linear, and its mass, its section, loads and drag are those per length of the rod without "
                 "stretch."
             )
-        if self.push_aside:
+        if self.buckling_seed:
             sentences.append(
-                "The rod is straight, its ends press it, and nothing says to which side it buckles: it was given a "
-                f"push aside of {self.push_aside:.3g} N/m, which bends it by 1e-4 of its length at the most. A load "
-                "across it takes the place of that."
+                "The rod is straight, its ends press it beyond its critical load, and nothing says to which side it "
+                f"buckles: a load of {self.buckling_seed:.3g} N/m was added across it, which alone bends it by 1e-4 of "
+                "its length at the most. A load across it of your own replaces this one."
             )
-        if self.growth_aside:
+        if self.disturbance_growth:
             sentences.append(
-                "The rod stays straight, or in its plane, because nothing pushes it aside: pressed, bent or wrung as "
-                "it is, even the smallest push would have grown large. Give it a small load across, which says to "
-                "which side it is to go."
+                "The rod stays straight, or in its plane, beyond its critical load, because nothing in the case "
+                "disturbs it: even the smallest disturbance would have grown large. Add a small load across it, which "
+                "says to which side it buckles."
             )
         if self.turning_loads:
             sentences.append(

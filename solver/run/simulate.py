@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solver.physics.unpushed import pushed
+from solver.physics.seed import seeded
 from solver.run.equilibria import Equilibria
 from solver.run.refined import Refined
 from solver.run.run import Run
@@ -13,7 +13,7 @@ from solver.scene.scene import Scene
 
 def simulate(scene: Scene) -> Run:
     """The run of a scene: iterate over it for its frames, from t = 0 to t_end."""
-    scene = pushed(scene)
+    scene = seeded(scene)
     if scene.numerics.tolerance is not None:
         return Refined(scene)
     kind = Equilibria if scene.at_rest else Simulation

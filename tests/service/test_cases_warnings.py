@@ -127,7 +127,7 @@ TWISTED = {"ends": {"start": "clamp", "end": {"preset": "slider", "theta3": {"t"
 def test_a_straight_rod_that_its_loads_press_or_wring_beyond_what_it_bears_is_pointed_out(change: dict[str, Any],
                                                                                           warned: bool):  # fmt: skip
     rules = [warning.rule for warning in _warned(PRESSED | LIMP | change) if warning.pointer == "/loads"]
-    assert [("aside would grow" in rule) for rule in rules] == [True] * warned
+    assert [("disturbance would grow" in rule) for rule in rules] == [True] * warned
 
 
 def _lowered(by: float, **loads: Any) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from solver import Condition, Curve, End, Initial, PointLoad, Rod, Scene, constant_vector
 from solver.arrays import Array
-from solver.measures.buckling import STRAIGHT, Across, Push, axis_kept
+from solver.measures.buckling import STRAIGHT, Disturbance, Transverse, axis_kept
 from solver.measures.frame import Fields
 from solver.physics.loads.solids import Floor
 from solver.scene.ends import FIXED, FREE
@@ -37,10 +37,10 @@ def state_of(initial: Initial, kappa: Array, q: Array, f: Array) -> Fields:
 
 def lowest(scene: Scene, kappa: float = 0.0, q: Array | float = 0.0, f: Array | float = 0.0) -> float:
     """The lowest stiffness across a straight rod that bears a twist, a torque and a tension."""
-    across = Across.of(scene)
-    assert across is not None and across.p == STRAIGHT
+    transverse = Transverse.of(scene)
+    assert transverse is not None and transverse.p == STRAIGHT
     along = [np.column_stack([0.0 * S, 0.0 * S, row + 0.0 * S]) for row in (kappa, q, f)]
-    return float(np.linalg.eigvalsh(across.stiffness(S, state_of(Initial.straight(), *along)))[0])
+    return float(np.linalg.eigvalsh(transverse.stiffness(S, state_of(Initial.straight(), *along)))[0])
 
 
 def critical(stiffness: Callable[[float], float], low: float, high: float) -> float:
@@ -103,14 +103,14 @@ def test_a_ruler_on_edge_tips_over_by_prandtls_load(p: int, sign: float) -> None
     stiffness[p] = Curve.constant(1e4 * EJ)
     across_the_end = PointLoad(LENGTH, constant_vector(tuple(np.eye(3)[1 - p])))  # type: ignore[arg-type]
     scene = scene_of(CLAMP, FREE_END, replace(ROD, stiffness=tuple(stiffness)), points=(across_the_end,))
-    across = Across.of(scene)
-    assert across is not None and across.p == p
+    transverse = Transverse.of(scene)
+    assert transverse is not None and transverse.p == p
 
     def falls(load: float) -> float:
         q, f = np.zeros((101, 3)), np.zeros((101, 3))
         f[:, 1 - p], q[:, p] = load, sign * load * (LENGTH - S)
         state = state_of(Initial.straight(), 0.0 * q, q, f)
-        return float(np.linalg.eigvalsh(across.stiffness(S, state))[0])
+        return float(np.linalg.eigvalsh(transverse.stiffness(S, state))[0])
 
     unit = sqrt(EJ * GJ) / LENGTH**2
     assert critical(falls, unit, 10.0 * unit) == pytest.approx(4.013 * unit, rel=2e-3)
@@ -118,29 +118,29 @@ def test_a_ruler_on_edge_tips_over_by_prandtls_load(p: int, sign: float) -> None
 
 def test_an_arc_at_rest_falls_nowhere() -> None:
     """Without stress, however it is bent."""
-    across = Across.of(Scene(ARC_ROD, ARC, CLAMP, FREE_END, 1.0, 0.1))
-    assert across is not None and across.p != STRAIGHT
+    transverse = Transverse.of(Scene(ARC_ROD, ARC, CLAMP, FREE_END, 1.0, 0.1))
+    assert transverse is not None and transverse.p != STRAIGHT
     none = np.zeros((101, 3))
-    assert np.linalg.eigvalsh(across.stiffness(S, state_of(ARC, none, none, none)))[0] > 0.0
+    assert np.linalg.eigvalsh(transverse.stiffness(S, state_of(ARC, none, none, none)))[0] > 0.0
 
 
 @pytest.mark.parametrize(("damping", "expected"), [(0.0, 1.0), (1.5, 0.5)])
 @pytest.mark.parametrize("steps", [4, 40])
-def test_a_push_grows_as_the_mode_of_a_column(damping: float, expected: float, steps: int) -> None:
+def test_a_disturbance_grows_as_the_mode_of_a_column(damping: float, expected: float, steps: int) -> None:
     """Between pins under twice Euler's load by pi^2 sqrt(EJ / m) / L^2, in which the damping is given."""
     unit = pi**2 * sqrt(EJ / MASS) / LENGTH**2
-    across = Across.of(scene_of(PIN, PIN))
-    assert across is not None
-    K = across.straight(S, 0.0 * S, 0.0 * S, -2.0 * pi**2 * EJ / LENGTH**2 + 0.0 * S)
-    push = Push(across, damping * unit)
-    grown = []
+    transverse = Transverse.of(scene_of(PIN, PIN))
+    assert transverse is not None
+    K = transverse.straight(S, 0.0 * S, 0.0 * S, -2.0 * pi**2 * EJ / LENGTH**2 + 0.0 * S)
+    disturbance = Disturbance(transverse, damping * unit)
+    growth = []
     for t in (50.0, 50.0):
         for _ in range(steps):
-            push.go_on(t / unit / steps, K)
-        grown.append(push.grown)
-    assert grown[1] - grown[0] == pytest.approx(50.0 * expected, rel=5e-3)
-    push.go_on(1.0, across.straight(S, 0.0 * S, 0.0 * S, 0.0 * S))
-    assert push.grown == grown[1]
+            disturbance.go_on(t / unit / steps, K)
+        growth.append(disturbance.growth)
+    assert growth[1] - growth[0] == pytest.approx(50.0 * expected, rel=5e-3)
+    disturbance.go_on(1.0, transverse.straight(S, 0.0 * S, 0.0 * S, 0.0 * S))
+    assert disturbance.growth == growth[1]
 
 
 def test_it_is_not_asked_where_loads_turn_or_something_else_holds_the_rod() -> None:

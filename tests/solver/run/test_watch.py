@@ -18,7 +18,6 @@ from solver import (
     Initial,
     Numerics,
     Outcome,
-    PointLoad,
     RunFailed,
     Simulation,
     simulate,
@@ -31,7 +30,7 @@ from solver.run.watch import Watch
 from solver.scene.scene import Scene
 from tests.solver.measures.test_passages import hooked
 from tests.solver.physics.contact.test_self_contact import looped
-from tests.solver.scenes import ARC, ARC_ROD, LENGTH, ROD, last
+from tests.solver.scenes import LENGTH, ROD, last
 
 PLAIN = Scene(
     rod=ROD, initial=Initial.straight(), start=End.clamp(), end=End.free(), t_end=0.01, output_interval=0.01,
@@ -157,38 +156,3 @@ def test_only_what_is_deeper_than_the_diameter_counts() -> None:
     assert deepest_within(scene, s, beside) == pytest.approx(2.5 * D)
     assert deepest_within(scene, s, beside + np.array([0.0, 5.0, 0.0])) == 0.0
     assert deepest_within(replace(scene, loads=()), s, beside) == 0.0
-
-
-def pressed(force: float, seed: float, numerics: Numerics) -> Scene:
-    """A straight cantilever with a force (EJ/L^2) on its free end, along it, and as `seed` says across it."""
-    EJ, mass = float(ROD.stiffness[0](0.0)), float(ROD.mass(0.0))
-    unit, time = EJ / LENGTH**2, LENGTH**2 * np.sqrt(mass / EJ)
-    load = PointLoad(LENGTH, tuple(map(Curve.constant, (seed * unit, 0.0, -force * unit))))  # type: ignore[arg-type]
-    return Scene(ROD, Initial.straight(), End.clamp(), End.free(), 4.0 * time, 0.25 * time, points=(load,),
-                 damping=1.0 / time, numerics=numerics)  # fmt: skip
-
-
-@pytest.mark.parametrize("numerics", [Numerics("staggered", tolerance=1e-3)])
-@pytest.mark.parametrize(("force", "seed", "told"), [(20.0, 0.0, True), (2.0, 0.0, False), (20.0, 1e-3, False)])
-def test_a_rod_that_stays_straight_because_nothing_pushes_it_aside_is_told(force: float, seed: float, told: bool,
-                                                                           numerics: Numerics) -> None:  # fmt: skip
-    run = simulate(pressed(force, seed, numerics))
-    *_, frame = run
-    assert (np.abs(frame.kappa[:, :2]).max() * LENGTH > 1.0) == (seed > 0.0)
-    assert ("growth_aside" in run.attributes()) == told
-    assert any("stays straight" in note for note in run.notes()) == told
-
-
-@pytest.mark.parametrize(("aside", "told"), [(0.0, True), (1e-3, False)])
-def test_an_arc_between_pins_that_is_pushed_through_in_its_plane_is_told(aside: float, told: bool) -> None:
-    """It would rather turn about the line between the pins."""
-    EJ, mass = float(ROD.stiffness[0](0.0)), float(ROD.mass(0.0))
-    time, push = LENGTH**2 * np.sqrt(mass / EJ), 30.0 * EJ / LENGTH**2
-    force = Curve.table([0.0, time], [0.0, push]), Curve.constant(aside * push), Curve.constant(0.0)
-    run = simulate(Scene(
-        ARC_ROD, ARC, End.pin(), End.pin(), 4.0 * time, 0.125 * time, damping=2.0 / time,
-        points=(PointLoad(0.5 * LENGTH, force),), numerics=Numerics("staggered", tolerance=1e-2),
-    ))  # fmt: skip
-    farthest = max(float(np.abs(frame.r[:, 1]).max()) for frame in run)
-    assert (farthest > 0.1 * LENGTH) == (aside > 0.0)
-    assert ("growth_aside" in run.attributes()) == told

@@ -57,7 +57,7 @@ class RadauMethod(ABC):
         self.chain = chain_of(scene.rod, section, self.applied.entrained, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self._layers = Layers.of(scene, self.s)
-        self.unshown = 0.0
+        self.unresolved_bending = 0.0
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._tolerance = min(tolerance, 1.0)
         self._newton_part = NEWTON_PART * min(tolerance, 1.0) if tolerance < inf else 0.0

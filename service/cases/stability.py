@@ -1,4 +1,4 @@
-"""How much a push aside would grow on a rod that stays straight, by what presses or wrings it as if it were at rest."""
+"""How much a small disturbance of a straight rod would grow, by what presses or twists it as if it were at rest."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from solver import Scene
-from solver.measures.buckling import STRAIGHT, Across, Push
+from solver.measures.buckling import STRAIGHT, Disturbance, Transverse
 from solver.physics.ends import travel
 from solver.physics.section import sample
 from solver.scene.ends import Component, End
@@ -18,15 +18,15 @@ TIMES, PLACES = 21, 65
 
 def growth(scene: Scene, axis: Any) -> float:
     """The logarithm of the factor by which it would grow until t_end, of a rod along the lab's `axis` (3,)."""
-    across = Across.of(scene)
-    if across is None or across.p != STRAIGHT:
+    transverse = Transverse.of(scene)
+    if transverse is None or transverse.p != STRAIGHT:
         return 0.0
     s, (dt, *_) = np.linspace(0.0, scene.rod.length, PLACES), np.diff(np.linspace(0.0, scene.t_end, TIMES))
-    torsion, push = scene.rod.stiffness[2](s) + 0.0 * s, Push(across, scene.damping)
+    torsion, disturbance = scene.rod.stiffness[2](s) + 0.0 * s, Disturbance(transverse, scene.damping)
     for t in dt * np.arange(1, TIMES):
         torque = _torque(scene, axis, s, torsion, t)
-        push.go_on(dt, across.straight(s, torque / torsion, torque, _tension(scene, axis, s, t)))
-    return push.grown
+        disturbance.go_on(dt, transverse.straight(s, torque / torsion, torque, _tension(scene, axis, s, t)))
+    return disturbance.growth
 
 
 def _tension(scene: Scene, axis: Any, s: Any, t: float) -> Any:

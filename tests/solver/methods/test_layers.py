@@ -19,6 +19,7 @@ from solver import (
     DistributedLoad,
     End,
     Frame,
+    Initial,
     Numerics,
     PointLoad,
     Scene,
@@ -162,9 +163,10 @@ def test_in_motion_a_kink_is_as_at_rest() -> None:
     assert abs(moved.energy_balance) < 0.02 * still.energy_bending
 
 
-@pytest.mark.parametrize("intervals", [16, 32, 64])
+@pytest.mark.parametrize("intervals", [16, 32, 64, 128, 256])
 @pytest.mark.parametrize(("scene", "exact"), [
     (lambda intervals: pulled(0.6, intervals, around=0.5), 4.0 * EJ / THIN * sin(0.25 * 0.6) ** 2),
+    (lambda intervals: pulled(1.5, intervals, around=0.5), 4.0 * EJ / THIN * sin(0.25 * 1.5) ** 2),
     (lambda intervals: plucked(0.4337, intervals, force=0.1), 0.1**2 * EJ / (8.0 * THIN)),
 ])  # fmt: skip
 def test_at_rest_the_bending_energy_is_that_of_the_layers(
@@ -172,6 +174,19 @@ def test_at_rest_the_bending_energy_is_that_of_the_layers(
 ) -> None:
     """Of the elastica (4 EJ / lambda) sin^2(theta / 4), on each side."""
     assert last(scene(intervals)).energy_bending == pytest.approx(exact, rel=0.02)
+
+
+@pytest.mark.parametrize("intervals", [32, 64])
+def test_of_a_rod_that_springs_back_next_to_nothing_is_added(intervals: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A motion of waves far longer than an interval, which has no such layer."""
+    bent = Initial(lambda s: np.stack([(1.0 - np.cos(3.0 * s)) / 3.0, 0.0 * s, np.sin(3.0 * s) / 3.0], axis=1))
+    time = LENGTH**2 * sqrt(float(ROD.mass(0.0)) / EJ)
+    scene = Scene(ROD, bent, End.clamp(), End.free(), 2.0 * time, 0.05 * time,
+                  numerics=Numerics("staggered", intervals=intervals))  # fmt: skip
+    completed = [frame.energy_bending for frame in simulate(scene)]
+    monkeypatch.setattr(Layers, "complete", lambda layers, fields, held, t: 0.0)
+    plain = [frame.energy_bending for frame in simulate(scene)]
+    assert_allclose(completed, plain, atol=1e-2 * max(plain))
 
 
 def test_two_loads_side_by_side_bend_the_rod_as_both_do() -> None:

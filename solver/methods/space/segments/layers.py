@@ -1,15 +1,16 @@
 """The curvature of a taut rod at its ends and where it is kinked, which changes within less than an interval.
 
 There, as in a wire at its clamp, kappa = (theta / lambda) exp(-s / lambda), lambda = sqrt(EJ / T), by the angle theta
-between the end and the direction in which the rod goes off (of large ones, 2 sin(theta / 2) instead: the elastica). A
-chain with intervals h longer than that shows all of theta in its first joint, 2 theta / h, which says how fine the mesh
-is. The same chain solved in closed form, x = h / lambda, tells what its joints show of such a layer: the rotations of
-its segments differ from that far away by psi_j, with
+between the end and the force there, along which the rod goes off (of large ones, 2 sin(theta / 2) instead: the
+elastica). A chain with intervals h longer than that shows all of theta in its first joint, 2 theta / h, which says how
+fine the mesh is. The same chain solved in closed form, x = h / lambda, tells what its joints show of such a layer: the
+rotations of its segments differ from that far away by psi_j, with
 
     psi_j+1 - 2 psi_j + psi_j-1 = x^2 psi_j,   psi_j+1 = rho psi_j,   psi_1 = 2 theta / (x^2 + 3 - rho).
 
-So theta follows from what two joints show, and then what is missing at each node; of order h^2 where the mesh resolves
-the layer. A force P in a point kinks the rod by theta = 2 asin(P / 2T), half of it on each side; if it acts on segment
+What is missing at each node is of order h^2 where the mesh resolves the layer.
+
+A force P in a point kinks the rod by theta = 2 asin(P / 2T), half of it on each side; if it acts on segment
 m, the part a of an interval behind its first joint, the layers before and behind it are on this mesh as high as if they
 were those of p theta and (1 - p) theta, p = (1 - rho + x^2 (1 - a)) / (2 (1 - rho) + x^2).
 
@@ -21,7 +22,7 @@ first three nodes tell b = (2 kappa_1 - kappa_2 - kappa_0) / (1 - rho)^2, and b 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import asin, pi, sqrt
+from math import asin, atan2, hypot, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -42,9 +43,9 @@ RESOLVED = 0.05
 WIDE = 24
 """Nodes of a layer on one side that are completed."""
 SECOND = 2
-"""Joint of an end layer that is compared with its first."""
+"""Node of an end layer up to which it is looked at."""
 ALIKE = 0.5
-"""Tension at an end that may turn, by that at its second joint, from which on it is taken to be the same in a layer."""
+"""Force at an end, by that at its second joint, from which on it is taken to be the same in a layer."""
 
 
 class Layer(NamedTuple):
@@ -87,15 +88,21 @@ class Layer(NamedTuple):
         mesh = (1.0 - rho) * np.where(self.at <= 0, p, 1.0 - p) * rho ** np.where(self.at <= 0, -self.at, self.at - 1)
         return mesh, 0.5 * x * np.exp(-x * np.abs(self.at - self.a))
 
-    def stored(self, x: float) -> tuple[float, float]:
-        """Its bending energy in EJ theta^2 / h, on the mesh and in truth."""
+    def missing(self, x: float, part: float) -> float:
+        """By how much its bending energy is more than on the mesh, in EJ theta^2 / h; `part` as above.
+
+        What the first joint beside it leaves of the angle bends as an elastica on the mesh too.
+        """
         rho = _decay(x)
-        part = 0.5 * (1.0 - rho) / (1.0 + rho)
+        beyond = 0.5 * (1.0 - rho) / (1.0 + rho)
         if self.load is None:
-            psi = 2.0 / (x * x + 3.0 - rho)
-            return (1.0 - psi) ** 2 + part * psi**2, 0.25 * x
-        p = self._before(x, rho)
-        return part * (p**2 + (1.0 - p) ** 2), 0.125 * x
+            left = 2.0 / (x * x + 3.0 - rho)
+            on_mesh, true = (1.0 - left) ** 2 + beyond * left**2, 0.25 * x
+        else:
+            left, p = rho, self._before(x, rho)
+            on_mesh, true = beyond * (p**2 + (1.0 - p) ** 2), 0.125 * x
+        full, rest = _elastica(0.5 * part * np.array([1.0, left])) ** 2
+        return float(true * full - on_mesh * rest)
 
     def _before(self, x: float, rho: float) -> float:
         """p of a kink."""
@@ -140,7 +147,7 @@ class Layers(NamedTuple):
             if layer.load is None:
                 missing[layer.nodes, :2] += self._at_hinge(fields, layer, x, ~turned & (x > RESOLVED))
             if lacking.any():
-                theta = self._angle(fields, layer, x) if layer.load is None else _kink(fields, layer, layer.load, T, t)
+                theta = _off_end(fields, layer) if layer.load is None else _kink(fields, layer, layer.load, T, t)
                 if not theta.any():
                     continue
                 turned_back = rotate_back(fields.orientation[layer.nodes], np.tile(theta, (len(layer.at), 1)))
@@ -149,9 +156,8 @@ class Layers(NamedTuple):
                 for k in np.flatnonzero(lacking):
                     mesh, true = layer.shown(float(x[k]))
                     missing[layer.nodes, k] += shape * angles[:, k] * (true - mesh) / self.h
-                    on_mesh, stored = layer.stored(float(x[k]))
-                    stored *= float(_elastica(0.5 * layer.part(angles[:1]))[0]) ** 2
-                    energy += float(layer.EJ[k] * angles[0, k] ** 2 / self.h * (stored - on_mesh))
+                    stored = layer.missing(float(x[k]), float(layer.part(angles[:1])[0]))
+                    energy += float(layer.EJ[k] * angles[0, k] ** 2 / self.h * stored)
         fields.kappa[:] += missing
         return energy
 
@@ -169,14 +175,6 @@ class Layers(NamedTuple):
             missing[:, k] = bend[k] / (1.0 - rho) ** 2 * (rho**layer.at - np.exp(-x[k] * layer.at))
         return missing
 
-    def _angle(self, fields: Fields, layer: Layer, x: Array) -> Array:
-        """The angle (3,), as a vector, lab, between an end and the direction in which the rod goes off there."""
-        end, second = layer.nodes[[0, SECOND]]
-        R, beyond = rotation_of(fields.orientation[end]), rotation_of(fields.orientation[second])
-        moment = fields.q[end] - R.T @ beyond @ fields.q[second]
-        shown = [mesh[0] - mesh[SECOND] for mesh, _ in (layer.shown(float(value)) for value in x)]
-        return np.asarray(R[:, :2] @ (moment[:2] * self.h / (layer.EJ * shown)))
-
 
 def _decay(x: float) -> float:
     """rho."""
@@ -186,6 +184,19 @@ def _decay(x: float) -> float:
 def _elastica(half: Array) -> Array:
     """sin(x) / x (n,): by how much less an elastica bends that turns by 2x in a layer."""
     return np.asarray(np.sinc(half / pi))
+
+
+def _off_end(fields: Fields, layer: Layer) -> Array:
+    """The angle (3,), as a vector, lab, by which the rod turns between an end and the force there; 0 if there is none.
+    """
+    end, _, second = layer.nodes[: SECOND + 1].tolist()
+    f1, f2, f3 = fields.f[end].tolist()
+    across = hypot(f1, f2)
+    if across == 0.0 or hypot(across, f3) < ALIKE * float(np.linalg.norm(fields.f[second])):
+        return np.zeros(3)
+    angle = atan2(across, f3) / across
+    turned = np.array([-angle * f2, angle * f1, 0.0])
+    return np.asarray(rotation_of(fields.orientation[end]) @ (turned if end == 0 else -turned))
 
 
 def _kink(fields: Fields, layer: Layer, load: PointLoad, T: float, t: float) -> Array:

@@ -482,7 +482,7 @@ class Straight(TypedDict):
 
 
 class Switch(TypedDict):
-    """New conditions on some components from a time on; a rate may be a stop."""
+    """New conditions from a time on: a preset, and what differs from it; a rate may be a stop."""
 
     x1: NotRequired[Union[Union[float, ScheduleTable], None]]
     """position: displacement along the axis since t = 0 or the switch; it is followed by its change; in m"""
@@ -522,6 +522,9 @@ class Switch(TypedDict):
 
     at: float
     """the time from which on the new conditions hold; in s"""
+
+    preset: NotRequired[Union[Literal["clamp", "pin", "slider", "free"], None]]
+    """what holds from then on for components that are not named: `free` lets the end go"""
 
     v1: NotRequired[Union[Union[Union[float, ScheduleTable], Stop], None]]
     """rate: velocity along the axis, or a stop; in m/s"""

@@ -8,6 +8,7 @@ A component is conditioned once: its rate, its position, or its load.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -106,9 +107,12 @@ SwitchedAngularVelocity = Annotated[Rate | None, means("rate: angular velocity a
 
 
 class Switch(_Conditions):
-    """New conditions on some components from a time on; a rate may be a stop."""
+    """New conditions from a time on: a preset, and what differs from it; a rate may be a stop."""
 
     at: Annotated[Positive, means("the time from which on the new conditions hold", "s")]
+    preset: Annotated[
+        PresetName | None, means("what holds from then on for components that are not named: `free` lets the end go")
+    ] = None
     v1: SwitchedVelocity = None
     v2: SwitchedVelocity = None
     v3: SwitchedVelocity = None
@@ -118,9 +122,17 @@ class Switch(_Conditions):
 
     @model_validator(mode="after")
     def _not_empty(self) -> Self:
-        if self.model_fields_set == {"at"}:
+        if self.preset is None and all(self.condition(rotation, i) is None for rotation, i in _NAMES):
             raise refusal("", None, "must change at least one component")
         return self
+
+    def condition(self, rotation: bool, i: int, since: float = 0.0) -> Condition | None:
+        """That of the component, or of the preset, from `since` (s) on; None where neither is given."""
+        own = super().condition(rotation, i, since)
+        if own is None and self.preset is not None:
+            preset = PRESETS[self.preset]()
+            own = replace((preset.rotation if rotation else preset.translation)[i][0], since=since)
+        return own
 
 
 class EndObject(_Conditions):

@@ -18,12 +18,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from service.cases.driven import Driven
+from service.cases.stability import critical_twist, pull, stiffness_and_mass
 from solver import Scene
 from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.methods.space.one_axis.axis import axis_of
 from solver.physics.axial import distances, has_to_stretch
-from solver.physics.elasticity import can_stretch, elasticity_of, moments, principal
+from solver.physics.elasticity import can_stretch, elasticity_of, moments
 from solver.physics.loads import solids
 from solver.physics.section import sample
 from solver.run.first_mesh import first_mesh
@@ -53,10 +54,8 @@ doubling of the first mesh."""
 DEARER = {"wound up": 4.0, "on solids": 4.0, "limp": 3.0, "stressed at the start": 1.5, "touching": 3.0}
 """How many times more a static analysis takes."""
 FRAMES = 60
-GREENHILL = 8.987
-"""Torque, in EJ/L, at which a straight rod with clamped ends buckles (Greenhill 1883)."""
 WINDS = 1.3
-"""Torque, in that at which a rod buckles that is pulled as it is, from which on it is taken to wind itself up."""
+"""Twist, in that at which a rod buckles that is pulled as it is, from which on it is taken to wind itself up."""
 SPINS = 15.0
 """Rotation (rad) of an end about itself, more than of the ends against each other, from which on a rod spins."""
 INTERVALS, FINELY = 16, 2001
@@ -120,7 +119,7 @@ def _at_rest(scene: Scene) -> float:
     driven = Driven.of(scene)
     urged = Urged.of(scene, driven)
     dear = {
-        "wound up": _winding(scene, driven) > WINDS,
+        "wound up": driven.turned > WINDS * critical_twist(scene),
         "on solids": any(isinstance(load, solids.Given) for load in scene.loads),
         "limp": urged.weight_across > LIMP, "stressed at the start": urged.stress > STRESSED,
         "touching": scene.contact is not None,
@@ -139,7 +138,7 @@ def kind_of(scene: Scene) -> str:
         return "let go and stretching"
     if _is_still(scene, driven, urged):
         return "still"
-    if _winding(scene, driven) > WINDS:
+    if driven.turned > WINDS * critical_twist(scene):
         return "overdamped and wound up" if overdamped else "wound up"
     if scene.contact is not None and urged.bent > TIED and not overdamped:
         return "lies on itself"
@@ -239,7 +238,7 @@ class Urged:
     @classmethod
     def of(cls, scene: Scene, driven: Driven) -> Urged:
         """As a scene has it."""
-        length, (stiffness, mass) = float(scene.rod.length), _mean(scene)
+        length, (stiffness, mass) = float(scene.rod.length), stiffness_and_mass(scene)
         s = np.linspace(0.0, length, INTERVALS + 1)
         _, quaternion, kappa = nodes_at_rest(scene.initial, s)
         tangent = rotate(quaternion, np.tile([0.0, 0.0, 1.0], (len(quaternion), 1)))
@@ -264,23 +263,6 @@ class Urged:
     def at_once(self) -> bool:
         """Whether the rod is not at rest where it begins."""
         return self.thrown or max(self.weight_across, self.stress, self.force) > SMALL
-
-
-def _winding(scene: Scene, driven: Driven) -> float:
-    """The torque of the ends' turning, if the rod stayed straight, over that at which it buckles: with a tension T, in
-    EJ/L^2, that is 2 sqrt(T + (GREENHILL / 2)^2) EJ/L."""
-    s = np.linspace(0.0, float(scene.rod.length), INTERVALS + 1)
-    bending, torsion = _mean(scene)[0], float(principal(elasticity_of(scene.rod, s))[:, 2].mean())
-    bearable = 2.0 * np.sqrt(_pull(scene) * scene.rod.length**2 / bending + 0.25 * GREENHILL**2)
-    return float(torsion / bending * driven.turned / bearable)
-
-
-def _pull(scene: Scene) -> float:
-    """The force (N) that pulls at an end along the rod as it begins, at the end of the run."""
-    _, quaternion, _ = nodes_at_rest(scene.initial, np.linspace(0.0, float(scene.rod.length), INTERVALS + 1))
-    tangent = rotate(quaternion[[0, -1]], np.tile([0.0, 0.0, 1.0], (2, 1)))
-    ends = zip((scene.start, scene.end), tangent, strict=True)
-    return max(0.0, *(_along(end, along, scene.t_end) for end, along in ends))
 
 
 def _is_braked(scene: Scene) -> bool:
@@ -343,26 +325,13 @@ def _slides(end: End) -> bool:
 
 def _frequency(scene: Scene) -> float:
     """The first angular frequency (rad/s) of the rod as a cantilever, a chain that hangs or a string, the largest."""
-    (stiffness, mass), length = _mean(scene), float(scene.rod.length)
+    (stiffness, mass), length = stiffness_and_mass(scene), float(scene.rod.length)
     hanging = HANGING * np.sqrt(np.linalg.norm(scene.gravity) / length)
-    string = np.pi * np.sqrt(_pull(scene) / mass) / length
+    string = np.pi * np.sqrt(pull(scene) / mass) / length
     return float(max(FIRST_FREQUENCY * np.sqrt(stiffness / mass) / length**2, hanging, string))
-
-
-def _mean(scene: Scene) -> tuple[float, float]:
-    """EJ (N m^2) of the softer axis and mass per length (kg/m)."""
-    s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
-    softer = principal(elasticity_of(scene.rod, s))[:, :2].min(axis=1)
-    return float(softer.mean()), float(sample(scene.rod, s).mass.mean())
 
 
 def _across(end: End, tangent: Array) -> float:
     """The force (N) across the rod that is there at once at a free end."""
     loads = [c[0].curve.value(0.0) if c[0].kind == "load" else 0.0 for c in end.translation]
     return float(np.linalg.norm(np.cross(tangent, loads) if end.frame == "lab" else loads[:2]))
-
-
-def _along(end: End, tangent: Array, t: float) -> float:
-    """The force (N) along the rod at an end that it leaves free, at a time."""
-    loads = [c[0].curve.value(t) if c[0].kind == "load" else 0.0 for c in end.translation]
-    return float(tangent @ loads if end.frame == "lab" else loads[2])

@@ -1,4 +1,5 @@
-"""How much a small disturbance of a straight rod would grow, by what presses or twists it as if it were at rest."""
+"""At what twist a rod buckles, and how a small disturbance of a straight one grows, by what presses or twists it as if
+it were at rest."""
 
 from __future__ import annotations
 
@@ -7,13 +8,18 @@ from typing import Any
 import numpy as np
 
 from solver import Scene
+from solver.kernels.rotation import rotate
 from solver.measures.buckling import STRAIGHT, Disturbance, Transverse
+from solver.physics.elasticity import elasticity_of, principal
 from solver.physics.ends import travel
 from solver.physics.section import sample
 from solver.scene.ends import Component, End
+from solver.scene.layout import nodes_at_rest
 
-TIMES, PLACES = 21, 65
-"""At which it is looked at."""
+TIMES, PLACES, INTERVALS = 21, 65, 16
+"""At which it is looked at, and of what is needed only about."""
+GREENHILL = 8.987
+"""Torque, in EJ/L, at which a straight rod with clamped ends buckles (Greenhill 1883)."""
 
 
 def growth(scene: Scene, axis: Any) -> float:
@@ -27,6 +33,36 @@ def growth(scene: Scene, axis: Any) -> float:
         torque = _torque(scene, axis, s, torsion, t)
         disturbance.go_on(dt, transverse.straight(s, torque / torsion, torque, _tension(scene, axis, s, t)))
     return disturbance.growth
+
+
+def critical_twist(scene: Scene) -> float:
+    """The twist (rad) of its ends at which a rod buckles, if it is straight: its torque, with a tension T in EJ/L^2, is
+    2 sqrt(T + (GREENHILL / 2)^2) EJ/L."""
+    s = np.linspace(0.0, float(scene.rod.length), INTERVALS + 1)
+    bending, torsion = stiffness_and_mass(scene)[0], float(principal(elasticity_of(scene.rod, s))[:, 2].mean())
+    torque = 2.0 * np.sqrt(pull(scene) * scene.rod.length**2 / bending + 0.25 * GREENHILL**2)
+    return float(torque * bending / torsion)
+
+
+def pull(scene: Scene) -> float:
+    """The force (N) that pulls at an end along the rod as it begins, at the end of the run."""
+    _, quaternion, _ = nodes_at_rest(scene.initial, np.linspace(0.0, float(scene.rod.length), INTERVALS + 1))
+    tangent = rotate(quaternion[[0, -1]], np.tile([0.0, 0.0, 1.0], (2, 1)))
+    ends = zip((scene.start, scene.end), tangent, strict=True)
+    return max(0.0, *(_along(end, along, scene.t_end) for end, along in ends))
+
+
+def stiffness_and_mass(scene: Scene) -> tuple[float, float]:
+    """EJ (N m^2) of the softer axis and mass per length (kg/m), their means along the rod."""
+    s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
+    softer = principal(elasticity_of(scene.rod, s))[:, :2].min(axis=1)
+    return float(softer.mean()), float(sample(scene.rod, s).mass.mean())
+
+
+def _along(end: End, tangent: Any, t: float) -> float:
+    """The force (N) along the rod at an end that it leaves free, at a time."""
+    loads = [c[0].curve.value(t) if c[0].kind == "load" else 0.0 for c in end.translation]
+    return float(tangent @ loads if end.frame == "lab" else loads[2])
 
 
 def _tension(scene: Scene, axis: Any, s: Any, t: float) -> Any:

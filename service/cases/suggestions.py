@@ -61,7 +61,7 @@ def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
     meant = named_otherwise(name, known)
     if meant:
         return FieldError(fault.pointer, fault.value, f"{fault.rule}: did you mean {meant}?")
-    hint = did_you_mean(name, known, ALIKE) or _elsewhere(name, whole) or did_you_mean(name, known)
+    hint = did_you_mean(name, known, ALIKE) or _elsewhere(name, path, whole) or did_you_mean(name, known)
     return FieldError(fault.pointer, fault.value, fault.rule + hint)
 
 
@@ -116,14 +116,17 @@ def _models_at(whole: type[BaseModel], path: Sequence[str]) -> list[type[BaseMod
     return models
 
 
-def _elsewhere(name: str, whole: type[BaseModel]) -> str:
-    """Where a field of this name belongs, as the end of a message; if there are few such places, or all of them are in
-    lists of one name."""
+def _elsewhere(name: str, path: Sequence[str], whole: type[BaseModel]) -> str:
+    """Where a field of this name belongs, which stands at this path, as the end of a message; if there are few such
+    places, or all of them are in lists of one name: there in which objects, if it is in such a list already."""
     places = _places(whole).get(name, ())
     if 0 < len(places) <= MOST_PLACES:
         return f" here: its place is {' or '.join(places)}"
     lists = {place.rpartition(".0.")[0].rpartition(".")[2] for place in places}
-    return f" here: its place is in {lists.pop()}" if len(lists) == 1 and "" not in lists else ""
+    if len(lists) != 1 or "" in lists:
+        return ""
+    inner = dict.fromkeys(place.split(".")[-2] for place in places) if lists <= set(path) else lists
+    return f" here: its place is in {', '.join(inner)}"
 
 
 @cache

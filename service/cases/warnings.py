@@ -15,10 +15,9 @@ from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
 from service.cases.extents import forces, largest, times, widest
 from service.cases.initial import Straight
-from service.cases.outlook import GREENHILL
 from service.cases.quantities import ProfileTable, ScheduleTable
 from service.cases.size import tables_in
-from service.cases.stability import growth
+from service.cases.stability import critical_twist, growth
 from service.cases.units import units_of
 from solver import Curve, End, Scene
 from solver.kernels.rotation import matrix_of
@@ -31,8 +30,8 @@ from solver.physics.seed import seed_of
 from solver.scene.layout import nodes_at_rest
 from solver.scene.view import View
 
-WIDEST, THICKEST = 3.0, 0.2
-"""Diameter in m, as of the largest pipes, and in rod lengths, beyond which the theory of thin rods says little."""
+WIDEST, THICKEST = 10.0, 0.2
+"""Diameter in m, as of the largest chimneys, and in rod lengths, beyond which the theory of thin rods says little."""
 GRAVITY = (1.0, 30.0)
 """m/s²: less than on the moon, more than on Jupiter."""
 SHEARED = 0.5
@@ -55,7 +54,7 @@ def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
             *_contact(spec, scene), *_sheared(spec, scene), *_column(scene), *_unstable(spec, scene),
             *_pushed_in(spec, scene), *_obstacles(spec), *_begins_inside(scene), *_friction_at_rest(spec),
             *_touches_itself(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec),
-            *_idle(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
+            *_idle(scene), *_stays(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -81,9 +80,7 @@ def _contact(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     """A rod that is twisted past buckling, and can give way, sooner or later touches itself."""
     if spec.contact is not None or not _gives_way(spec, scene):
         return
-    s = np.linspace(0.0, spec.rod.length, 11)
-    bending, torsion = (float(np.mean(scene.rod.stiffness[i](s))) for i in (0, 2))
-    turned, bearable = _turned(scene), GREENHILL * bending / torsion
+    turned, bearable = _turned(scene), critical_twist(scene)
     if turned > bearable:
         rule = (f"is not given, but the ends twist the rod by {turned / (2 * pi):.3g} turns, and it buckles at "
                 f"{bearable / (2 * pi):.3g}: it would pass through itself")
@@ -266,6 +263,17 @@ def _idle(scene: Scene) -> Iterator[FieldError]:
         for time in late:
             rule = f"has a switch at {time:g} s, and the run ends at t_end, {scene.t_end:g} s: it does nothing"
             yield FieldError(f"/ends/{name}/switches", time, rule)
+
+
+def _stays(scene: Scene) -> Iterator[FieldError]:
+    """An end that is given a place, where only a change of it is followed."""
+    for name, end in (("start", scene.start), ("end", scene.end)):
+        for letter, components in (("x", end.translation), ("theta", end.rotation)):
+            for i, condition in ((i, condition) for i, component in enumerate(components) for condition in component):
+                if condition.kind == "position" and condition.curve.is_constant and not condition.curve.is_zero:
+                    rule = ("does not change, and a position is followed by its change: this end stays where it is; "
+                            "give the way that it goes as a table that begins at 0")  # fmt: skip
+                    yield FieldError(f"/ends/{name}/{letter}{i + 1}", condition.curve.value(0.0), rule)
 
 
 def _is_clamp(end: End) -> bool:

@@ -75,7 +75,7 @@ PAIRS = (
          (), "initial.", lambda scene: scene.initial, lambda scene, part: replace(scene, initial=part)),
     Pair(End, (EndObject,), {"translation": TRANSLATION, "rotation": ROTATION}, ("preset", "switches")),
     Pair(Condition, (Switch, Stop), {"kind": (*TRANSLATION, *ROTATION), "curve": (*TRANSLATION, *ROTATION),
-                                     "since": ("at",), "within": ("stop_within",)}),
+                                     "since": ("at",), "within": ("stop_within",)}, ("preset",)),
     Pair(DistributedLoad, (DistributedSpec,)),
     Pair(PointLoad, (PointSpec,), {}, (),
          "loads.point.0.", lambda scene: scene.points[0], lambda scene, part: replace(scene, points=(part,))),

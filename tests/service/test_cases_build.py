@@ -70,6 +70,16 @@ def test_an_end_may_be_written_out_without_a_preset():
     assert end.rotation[2][0].curve.value(0.0) == -1.0
 
 
+def test_a_switch_to_a_preset_changes_all_that_it_does_not_name():
+    switches = [{"at": 2.0, "preset": "free", "q3": 0.5}, {"at": 3.0, "preset": "clamp"}]
+    end = scene("elastica", **{"ends.end": {"preset": "pin", "switches": switches}, "loads.point": []}).end
+    for component in (*end.translation, *end.rotation):
+        first, free, held = component
+        assert (free.kind, free.since, held.kind, held.since) == ("load", 2.0, "rate", 3.0)
+        assert free.curve.value(2.5) == (0.5 if component is end.rotation[2] else 0.0)
+        assert first.kind == ("rate" if component in end.translation else "load")
+
+
 def test_properties_given_directly_take_the_place_of_moduli():
     raw = load_case("elastica")
     raw["rod"] = {

@@ -108,6 +108,7 @@ REFUSED: list[tuple[str, Any, str]] = [
     ("ends.start.frame", "global", "/ends/start/frame"),
     ("ends.end.switches.0.at", 0.0, "/ends/end/switches/0/at"),
     ("ends.end.switches", [{"at": 1.0}], "/ends/end/switches/0"),
+    ("ends.end.switches", [{"at": 1.0, "preset": None, "x1": None}], "/ends/end/switches/0"),
     ("ends.end.switches", [{"at": 2.0, "v3": 0}, {"at": 1.0, "f3": 0}], "/ends/end/switches/1/at"),
     ("ends.end.switches.0.v3.stop_within", -0.1, "/ends/end/switches/0/v3/stop_within"),
     ("ends.end.switches.0.f3", 0.0, "/ends/end/switches/0/f3"),

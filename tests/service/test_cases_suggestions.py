@@ -57,6 +57,8 @@ def test_a_case_within_another_object_is_told_as_that():
 def test_what_a_wrong_object_lacks_is_not_told():
     [fault] = refusal("ends.start", {"preset": "clamp", "v3": {"stop_within": 0.1}}).errors
     assert fault.rule == "is not a known field here: its place is in switches"
+    [fault] = refusal("ends.end", {"preset": "clamp", "switches": [{"at": 1.0, "x1": {"stop_within": 1.0}}]}).errors
+    assert fault.rule == "is not a known field here: its place is in v1, v2, v3, omega1, omega2, omega3"
     faults = refusal("rod", {"length": 1.0, "diametre": 0.01, "density": 1.0}).errors
     assert {fault.rule for fault in faults} >= {"is required", "is not a known field: did you mean diameter?"}
 

@@ -64,7 +64,7 @@ SENSIBLE: list[dict[str, Any]] = [
     {"rod.youngs_modulus": 1e4, "rod.shear_modulus": 3e3, "rod.density": 1000.0, "loads.floor": {"stiffness": 50.0}},
     {"rod.youngs_modulus": 1e4, "rod.shear_modulus": 3e3, "rod.density": 1000.0, "fluid": {"density": 1000.0}},
     {"rod.youngs_modulus": 1e4, "rod.shear_modulus": 3e3, "rod.density": 1000.0, "ends.start": "free"},
-    {"ends.end": {"preset": "free", "theta3": 4.0 * pi}},
+    {"ends.end": {"preset": "free", "theta2": {"t": [0.0, 1.0], "value": [0.0, 4.0 * pi], "interpolation": "linear"}}},
     {"ends.end": {"preset": "free", "f3": 1e5}},
     {"initial.twist": 1.5},
     {"fluid": {"density": 1.025, "drag_normal": 1.0}},  # air

@@ -65,6 +65,15 @@ def test_a_rod_that_buckles_by_twist_needs_contact(turns: float, end: str, warne
 
 
 
+@pytest.mark.parametrize(("pull", "warned"), [(0.0, True), (1e4, False)])
+def test_a_rod_that_is_pulled_bears_more_twist(pull: float, warned: bool):
+    """2 sqrt(T EJ + (8.987 EJ / 2L)^2) / GJ are 11.2 rad, and 15.1 by 1e4 N: EJ = 613.6, GJ = 490.9 N m^2."""
+    twist = {"t": [0.0, 1.0], "value": [0.0, 13.0], "interpolation": "linear"}
+    rod = PRESSED["rod"] | {"diameter": 0.05, "youngs_modulus": 2e9, "shear_modulus": 8e8}
+    ends = {"start": {"preset": "clamp", "theta3": twist}, "end": {"preset": "slider", "f3": pull}}
+    assert ("/contact" in {found.pointer for found in _warned(PRESSED | {"rod": rod, "ends": ends})}) == warned
+
+
 @pytest.mark.parametrize(("turned", "warned"), [(725.0, True), (72.0, False)])
 def test_a_rod_that_its_ends_wring_is_told_so(turned: float, warned: bool):
     """Of D = L / 100 the surface is sheared by 725 / 200."""
@@ -225,6 +234,9 @@ LATER = {"t": [2.0, 3.0], "value": [0.0, 1.0], "interpolation": "linear"}
     ({"loads": {"distributed": [{"force": [0.0, 1.0, 0.0]}, {"moment": [0.0, 0.0, 0.0]}]}}, "/loads/distributed/1"),
     ({"ends": {"start": "clamp", "end": {"preset": "free", "switches": [{"at": 1.0, "v1": 0.0}]}}},
      "/ends/end/switches"),
+    ({"ends": {"start": {"preset": "clamp", "x2": 0.1}, "end": "free"}}, "/ends/start/x2"),
+    ({"ends": {"start": "clamp", "end": {"preset": "free", "switches": [{"at": 0.5, "theta1": 0.1}]}}},
+     "/ends/end/theta1"),
     ({"initial": {"shape": "straight", "velocity": [0.0, 2.0, 0.0]}}, "/initial/velocity"),
     ({"initial": {"shape": "straight", "angular_velocity": [0.0, 2.0, 0.0]}}, "/initial/angular_velocity"),
     ({"ends": {"start": "clamp", "end": {"preset": "clamp", "frame": "lab", "x1": {

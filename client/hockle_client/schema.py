@@ -153,6 +153,11 @@ class EndObject(TypedDict):
     omega3: NotRequired[Union[Union[float, ScheduleTable], None]]
     """rate: angular velocity about the axis; in rad/s"""
 
+    mass: NotRequired[float]
+    """m of a body at the end, a point: where it is loaded it pulls with m (g − dv/dt) besides. For `staggered`
+    and static analyses; in kg; default 0.0
+    """
+
     switches: NotRequired[Sequence[Switch]]
     """new conditions from later times on, in order; default []"""
 
@@ -623,6 +628,7 @@ Setting = Literal[
     "ends.end.f3.t",
     "ends.end.f3.value",
     "ends.end.frame",
+    "ends.end.mass",
     "ends.end.omega1",
     "ends.end.omega1.interpolation",
     "ends.end.omega1.t",
@@ -699,6 +705,7 @@ Setting = Literal[
     "ends.start.f3.t",
     "ends.start.f3.value",
     "ends.start.frame",
+    "ends.start.mass",
     "ends.start.omega1",
     "ends.start.omega1.interpolation",
     "ends.start.omega1.t",

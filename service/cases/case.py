@@ -225,6 +225,11 @@ class CaseSpec(Spec):
             if self.analysis == "dynamic" and getattr(self.rod, name) is not None and self.numerics.method == "box":
                 rule = f"must be staggered for a rod that {does}: leave out rod.{name}, or give this method"
                 raise refusal("numerics/method", self.numerics.method, rule)
+        for name in ("start", "end"):
+            mass = getattr(getattr(self.ends, name), "mass", 0.0)
+            if self.analysis == "dynamic" and mass > 0.0 and self.numerics.method == "box":
+                rule = f"must be staggered for a body at an end: leave out ends.{name}.mass, or give this method"
+                raise refusal("numerics/method", self.numerics.method, rule)
         return self
 
     @model_validator(mode="after")

@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from service.cases.errors import refusal
-from service.cases.quantities import FrameName, Positive, Schedule, Spec, curve
+from service.cases.quantities import FrameName, NotNegative, Positive, Schedule, Spec, curve
 from service.meaning import means
 from solver import Condition, End
 from solver.scene.ends import Component
@@ -150,6 +150,11 @@ class EndObject(_Conditions):
     omega1: AngularVelocity = None
     omega2: AngularVelocity = None
     omega3: AngularVelocity = None
+    mass: Annotated[
+        NotNegative,
+        means("m of a body at the end, a point: where it is loaded it pulls with m (g − dv/dt) besides. For "
+              "`staggered` and static analyses", "kg"),
+    ] = 0.0  # fmt: skip
     switches: Annotated[
         tuple[Switch, ...], Field(max_length=100), means("new conditions from later times on, in order")
     ] = ()
@@ -176,7 +181,7 @@ class EndObject(_Conditions):
         preset = PRESETS[self.preset or "free"]()
         first, second, third = (self._component(False, i, preset.translation[i]) for i in range(3))
         fourth, fifth, sixth = (self._component(True, i, preset.rotation[i]) for i in range(3))
-        return End((first, second, third), (fourth, fifth, sixth), self.frame)
+        return End((first, second, third), (fourth, fifth, sixth), self.frame, self.mass)
 
     def _component(self, rotation: bool, i: int, preset: Component) -> Component:
         own = self.condition(rotation, i)

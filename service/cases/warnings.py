@@ -258,6 +258,9 @@ def _idle(scene: Scene) -> Iterator[FieldError]:
         name = "shear" if fluid.shear else "schedule"
         yield FieldError(f"/fluid/{name}", None, "is of a current that is 0: it does nothing")
     for name, end in (("start", scene.start), ("end", scene.end)):
+        if end.mass > 0.0 and all(c.kind != "load" for component in end.translation for c in component):
+            rule = "is of a body at an end that is held in place: the rod does not feel it"
+            yield FieldError(f"/ends/{name}/mass", end.mass, rule)
         conditions = chain.from_iterable((*end.translation, *end.rotation))
         late = sorted({condition.since for condition in conditions if condition.since >= scene.t_end})
         for time in late:

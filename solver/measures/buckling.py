@@ -213,10 +213,13 @@ def _mass(scene: Scene, p: int, at: Array) -> Array:
     if scene.fluid:
         borne = borne + scene.fluid.density * scene.fluid.added_mass * 0.25 * np.pi * rod.diameter(at) ** 2
     moved = _moved(p, at)
-    M = np.asarray(sum(each.T @ ((weights * borne)[:, None] * each) for each in moved))
+    borne = weights * borne
+    M = np.asarray(sum(each.T @ (borne[:, None] * each) for each in moved))
+    for end, node in ((scene.start, 0), (scene.end, -1)):
+        M += end.mass * sum(np.outer(each[node], each[node]) for each in moved)
     for i, axis in enumerate(_axes(p)):
         nodes = 2 * np.arange(len(at)) + i
-        M[nodes, nodes] += weights * (borne * at[1] ** 2 / 12.0 if axis != 2 else rod.inertia[2](at))
+        M[nodes, nodes] += borne * at[1] ** 2 / 12.0 if axis != 2 else weights * rod.inertia[2](at)
     return M
 
 

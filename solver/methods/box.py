@@ -101,7 +101,9 @@ class BoxMethod:
 
     @classmethod
     def of(cls, scene: Scene) -> BoxMethod:
-        """The method for a scene. Raises ValueError for a rod with a law that is not known here."""
+        """The method for a scene. Raises ValueError for a rod with a law, or a body, that is not known here."""
+        if scene.start.mass or scene.end.mass:
+            raise ValueError('method must be "staggered" for a body at an end, got "box"')
         if needs_segments(scene.rod):
             raise ValueError(f'method must be "staggered" for a rod that {needs_segments(scene.rod)}, got "box"')
         return cls(scene)

@@ -76,6 +76,7 @@ class StaggeredMethod(RadauMethod):
                            Coupling.empty(N if scene.contact is not None else 0))  # fmt: skip
         compliance = axial_compliance(scene)
         self.driven.compliance[:], self._ends_give = 0.5 * compliance, compliance > 0.0
+        self.driven.mass[:] = scene.start.mass, scene.end.mass
         self._joints = self._bend(self.state.quaternion)[0]
         self._R = R = np.zeros((N + 2, 3, 3))
         matrices_of(self.state.quaternion, R)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from itertools import pairwise
+from math import inf
 from typing import Literal
 
 import numpy as np
@@ -51,13 +52,19 @@ class End:
     `translation[i]` is on v_i or f_i, `rotation[i]` on omega_i or q_i. The components of the
     translation are along a1, a2, a3 (`frame` "material") or e1, e2, e3 ("lab"); those of the
     rotation are always material.
+
+    `mass` (kg, >= 0) of a body at the end's place, a point: along components that are loaded, it pulls with
+    m (g - dv/dt) besides. (Staggered method.)
     """
 
     translation: tuple[Component, Component, Component]
     rotation: tuple[Component, Component, Component]
     frame: Frame_ = "material"
+    mass: float = 0.0
 
     def __post_init__(self) -> None:
+        if not 0.0 <= self.mass < inf:
+            raise ValueError(f"mass must be >= 0 kg, got {self.mass}")
         for name, components in (("translation", self.translation), ("rotation", self.rotation)):
             for i, component in enumerate(components):
                 times = [c.since for c in component]
@@ -95,7 +102,10 @@ class End:
         return _rest(self.translation)
 
     def keeps(self, view: View) -> bool:
-        """Whether the end asks for no motion and no load but along the motion about an axis, at all times."""
+        """Whether the end asks for no motion and no load but along the motion about an axis, at all times, and has no
+        body, which is known in space alone."""
+        if self.mass > 0.0:
+            return False
         moves = view.moves
         if self.frame == "lab":
             along = np.abs(view.n) > 0.5

@@ -234,6 +234,7 @@ LATER = {"t": [2.0, 3.0], "value": [0.0, 1.0], "interpolation": "linear"}
     ({"loads": {"distributed": [{"force": [0.0, 1.0, 0.0]}, {"moment": [0.0, 0.0, 0.0]}]}}, "/loads/distributed/1"),
     ({"ends": {"start": "clamp", "end": {"preset": "free", "switches": [{"at": 1.0, "v1": 0.0}]}}},
      "/ends/end/switches"),
+    ({"ends": {"start": {"preset": "clamp", "mass": 2.0}, "end": "free"}}, "/ends/start/mass"),
     ({"ends": {"start": {"preset": "clamp", "x2": 0.1}, "end": "free"}}, "/ends/start/x2"),
     ({"ends": {"start": "clamp", "end": {"preset": "free", "switches": [{"at": 0.5, "theta1": 0.1}]}}},
      "/ends/end/theta1"),

@@ -117,8 +117,10 @@ def _axis(R: Array, kind: int, k: int, n: int) -> float:
 
 
 @inner
-def _open_end(driven: Driven, tangents: Tangents, a: int, lower: Array, D: Array, upper: Array) -> None:
-    """Add what openings do to the blocks of rows 0, N and N + 1: to loaded rotations, and to held translations."""
+def _open_end(driven: Driven, tangents: Tangents, eigenvalue: complex, a: int, lower: Array, D: Array,
+              upper: Array) -> None:  # fmt: skip
+    """Add what openings do to the blocks of rows 0, N and N + 1: to loaded rotations, and to held translations or those
+    of a body."""
     last, side = len(tangents.opens) - 1, 0 if a == 0 else 1
     for m in range(3):
         if a != last and driven.kinds[side, 3 + m] == RATE:
@@ -133,9 +135,10 @@ def _open_end(driven: Driven, tangents: Tangents, a: int, lower: Array, D: Array
     R, here = tangents.R[0] if side == 0 else tangents.R[-1], tangents.opens[a]
     for k in range(3):
         kind = driven.kinds[side, k]
-        if kind in (RATE_LAB, RATE):
+        part = 1.0 + 0.0 * eigenvalue if kind in (RATE_LAB, RATE) else _inertia(driven, eigenvalue, side)
+        if part != 0.0:
             for n in range(3):
-                weight = _axis(R, kind, k, n)
+                weight = part * _axis(R, kind, k, n)
                 for m in range(3):
                     D[3 + k, m] -= weight * here[0, n, m]
                     upper[3 + k, m] -= weight * here[1, n, m]
@@ -229,7 +232,7 @@ def _fill_end(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: comp
     elif a == N:
         _condition(driven, tangents, eigenvalue, 1, D, lower, upper, upper)
     if stretches(chain.elastic):
-        _open_end(driven, tangents, a, lower, D, upper)
+        _open_end(driven, tangents, eigenvalue, a, lower, D, upper)
 
 
 @inner
@@ -262,7 +265,20 @@ def _condition(driven: Driven, tangents: Tangents, eigenvalue: complex, side: in
             for m in range(3):
                 frame[3 + k, m] += sign * tangents.turn[side, k, m] / eigenvalue
         else:
+            inertia = _inertia(driven, eigenvalue, side)
             for n in range(3):
-                D[3 + k, 3 + n] = _axis(R, kind, k, n)
+                weight = _axis(R, kind, k, n)
+                D[3 + k, 3 + n] += weight
+                if inertia != 0.0:
+                    for m in range(6):
+                        D[3 + k, m] += inertia * weight * rows[n, m]
+                        neighbour[3 + k, m] += inertia * weight * beside[n, m]
             for m in range(3):
                 frame[3 + k, m] += tangents.turn[side, k, m]
+
+
+@inner
+def _inertia(driven: Driven, eigenvalue: complex, side: int) -> complex:
+    """What the rows "the end stays where it is" count for in those of a loaded end: the inertia of its body."""
+    inertia: complex = -driven.mass[side] * eigenvalue * eigenvalue
+    return inertia

@@ -12,7 +12,7 @@ from solver.methods.space.segments.balances import Driven, Tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
 from solver.methods.space.segments.joints import share
 from solver.physics.elasticity import stretches
-from solver.physics.ends import RATE, RATE_LAB
+from solver.physics.ends import LOAD, RATE, RATE_LAB
 
 
 @inner
@@ -53,6 +53,9 @@ def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: compl
                 b[node, 3 + k] -= sign * ends[side, k] / eigenvalue
             else:
                 b[node, 3 + k] = -ends[side, k]
+                if driven.mass[side] > 0.0:
+                    moved = R[0, k] * x + R[1, k] * y + R[2, k] * z if kind == LOAD else (x, y, z)[k]
+                    b[node, 3 + k] -= driven.mass[side] * eigenvalue * eigenvalue * moved
 
 
 @inner

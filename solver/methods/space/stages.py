@@ -79,6 +79,8 @@ def turn_residuals(driven: Record, stages: Record, tangents: Record, residuals: 
 
 
 @dispatched
-def resist(chain: Record, tangents: Record, rate: float, velocity: Record, forces: Array) -> None:
-    """Write the forces of inertia (N, .) on the segments for accelerations `rate` `velocity` of their centres."""
+def resist(chain: Record, driven: Record, tangents: Record, rate: float, velocity: Record, forces: Array,
+           ends: Array) -> None:  # fmt: skip
+    """Write the forces of inertia (N, .) on the segments for accelerations `rate` `velocity` of their centres, and what
+    bodies at the ends that move with these miss (2, .)."""
     raise NotImplementedError

@@ -31,6 +31,7 @@ class AppliedLoads:
         self._sources, self._axis = sources_of(scene, samples), axis
         self.records = records_of(self._sources) if axis is None else records_about(axis, self._sources)
         self._at_ends = tuple(load for load in scene.points if load.s in (0.0, scene.rod.length))
+        self._weights = np.outer([scene.start.mass, scene.end.mass], scene.gravity)
         self._moving = tuple(source for source in self._sources if not source.steady)
         self._barring = tuple(source for source in self._sources if source.bars)
         self._striking = tuple(source for source in self._sources if source.strikes and source.record.present)
@@ -57,8 +58,11 @@ class AppliedLoads:
         return [*(corner for source in self._sources for corner in source.corners), *at_ends]
 
     def at_end(self, t: float, s: float, frame: str) -> Array:
-        """Point loads (6,) at an end in a frame, as what they add to the internal f and q there."""
+        """Point loads (6,) at an end in a frame, the weight of its body among them, as what they add to the internal f
+        and q there."""
         total = np.zeros(6)
+        if frame == "lab":
+            total[:3] = self._weights[int(s > 0.0)]
         for load in self._at_ends:
             if load.s == s and load.frame == frame:
                 total += [c.value(t) for c in (*load.force, *load.moment)]
@@ -67,13 +71,13 @@ class AppliedLoads:
     @property
     def at_ends(self) -> bool:
         """Whether there are point loads at an end."""
-        return bool(self._at_ends)
+        return bool(self._at_ends) or bool(self._weights.any())
 
     def driving(self, end: DrivenEnd, s: float, t: float, later: Sequence[float], gain: float) -> tuple[Array, Array]:
         """What drives the end at s at the times t + dt, `later` being these dt: values (times, 6) of its conditions,
         loads added, and dead lab loads (times, 6)."""
         values, dead = end.values(t, later, gain), np.zeros((len(later), 6))
-        if self._at_ends:
+        if self.at_ends:
             for k, dt in enumerate(later):
                 following, dead[k] = (self.at_end(t + dt, s, frame) for frame in ("material", "lab"))
                 values[k] += np.where(end.kinds % 2 == 1, following, 0.0)

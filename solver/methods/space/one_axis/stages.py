@@ -61,8 +61,11 @@ def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals
 
 
 @inner
-def resist(chain: Chain, tangents: Tangents, rate: float, velocity: Plane, forces: Array) -> None:
-    """Write the forces (N, 2) of inertia on the segments for accelerations `rate` `velocity` of their centres."""
+def resist(chain: Chain, driven: Driven, tangents: Tangents, rate: float, velocity: Plane, forces: Array,
+           ends: Array) -> None:  # fmt: skip
+    """Write the forces (N, 2) of inertia on the segments for accelerations `rate` `velocity` of their centres; there
+    are no bodies at the ends."""
+    ends[:] = 0.0
     for j in range(len(forces)):
         M, z = tangents.M[j], -rate * velocity[j]
         forces[j, 0], forces[j, 1] = M[0, 0] * z.real + M[0, 1] * z.imag, M[1, 0] * z.real + M[1, 1] * z.imag

@@ -31,6 +31,7 @@ from solver.kernels.vectors import (
     matrix,
     minus,
     plus,
+    tangent_acceleration,
     tangent_by_rotation,
     tangent_rate,
     times,
@@ -49,19 +50,21 @@ from solver.physics.loads.registry import Loads
 
 class Driven(NamedTuple):
     """What is given at the stages: ends' `kinds` (2, 6), `values` (3, 2, 6) and dead lab loads `dead` (3, 2, 6);
-    forces on the nodes `push` (3, N + 1, 3), lab. `compliance` (2,): see `physics.axial`, of each end."""
+    forces on the nodes `push` (3, N + 1, 3), lab. Of each end its `compliance` (2,), see `physics.axial`, and the
+    `mass` (2,) of the body there, kg."""
 
     kinds: Kinds
     values: Array
     dead: Array
     push: Array
     compliance: Array
+    mass: Array
 
     @classmethod
     def empty(cls, intervals: int) -> Driven:
         """Zeros for N = `intervals`."""
         return cls(np.zeros((2, 6), np.int64), np.zeros((3, 2, 6)), np.zeros((3, 2, 6)),
-                   np.zeros((3, intervals + 1, 3)), np.zeros(2))  # fmt: skip
+                   np.zeros((3, intervals + 1, 3)), np.zeros(2), np.zeros(2))  # fmt: skip
 
 
 class Tangents(NamedTuple):
@@ -210,13 +213,13 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
     """Write what the conditions at the ends miss at stage i."""
     N = len(chain.mass)
     for side in range(2):
-        frame, node = (0, 0) if side == 0 else (N + 1, N)
+        frame = 0 if side == 0 else N + 1
         R, V = matrix(stages.R[i], frame), _end_velocity(chain, stages, i, side)
         kinds, values, dead = driven.kinds[side], driven.values[i, side], driven.dead[i, side]
         if driven.compliance[side] > 0.0:  # the rod's end and what holds it move apart along the tangent
             T, give = (R[0][2], R[1][2], R[2][2]), driven.compliance[side] * (1.0 if side == 1 else -1.0)
             V = plus(V, times(dot(T, vector(stages.F_t[i], side)) * give, T))
-        pull = minus(vector(stages.F[i], node), vector(driven.dead[i], side))
+        pull = _end_pull(chain, driven, stages, i, side)
         speed_within, pull_within = in_material(R, V), in_material(R, pull)
         couple = in_material(R, (dead[3], dead[4], dead[5]))
         inner = stages.left[i, 0] if side == 0 else stages.right[i, N]
@@ -241,6 +244,28 @@ def _end_velocity(chain: Chain, stages: Stages, i: int, side: int) -> Any:
     lever, along = 0.5 * chain.h + stages.opening[i, 0, N], (R[0][2], R[1][2], R[2][2])
     swing = times(lever, tangent_rate(R, vector(stages.omega[i], N)))
     return plus(plus(vector(stages.V[i], N - 1), swing), times(stages.opening[i, 1, N], along))
+
+
+@inner
+def _end_acceleration(chain: Chain, stages: Stages, i: int, side: int) -> Any:
+    """The acceleration, lab, of the rod's start or end."""
+    if side == 0:
+        return vector(stages.base[i], 2)
+    N, R = len(chain.mass), matrix(stages.R[i], len(chain.mass))
+    omega, alpha, opening = vector(stages.omega[i], N), vector(stages.alpha[i], N), stages.opening[i]
+    swing = times(0.5 * chain.h + opening[0, N], tangent_acceleration(R, omega, alpha))
+    swing = plus(swing, times(2.0 * opening[1, N], tangent_rate(R, omega)))
+    return plus(plus(vector(stages.A[i], N - 1), swing), times(opening[2, N], (R[0][2], R[1][2], R[2][2])))
+
+
+@inner
+def _end_pull(chain: Chain, driven: Driven, stages: Stages, i: int, side: int) -> Any:
+    """The force, lab, that is more in the rod's end than its dead loads and its body ask for."""
+    pull = minus(vector(stages.F[i], 0 if side == 0 else len(chain.mass)), vector(driven.dead[i], side))
+    if driven.mass[side] > 0.0:
+        inertia = driven.mass[side] * (1.0 if side == 1 else -1.0)
+        pull = plus(pull, times(inertia, _end_acceleration(chain, stages, i, side)))
+    return pull
 
 
 @kernel
@@ -287,11 +312,10 @@ def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents
     """Tangents of the conditions on a loaded end's rotation (the start's with the opposite sign), and `turn`."""
     N = len(chain.mass)
     for side in range(2):
-        frame, node = (0, 0) if side == 0 else (N + 1, N)
-        R, dead = matrix(stages.R[i], frame), driven.dead[i, side]
+        R, dead = matrix(stages.R[i], 0 if side == 0 else N + 1), driven.dead[i, side]
         swing = in_material_by_rotation(times(-1.0, in_material(R, (dead[3], dead[4], dead[5]))))
         speed = in_material(R, _end_velocity(chain, stages, i, side))
-        pull = in_material(R, minus(vector(stages.F[i], node), vector(driven.dead[i], side)))
+        pull = in_material(R, _end_pull(chain, driven, stages, i, side))
         tangents.turn[side] = 0.0
         for k in range(3):
             for m in range(3):

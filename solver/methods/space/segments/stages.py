@@ -7,6 +7,7 @@ from solver.kernels.copying import copy
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import spun_between
 from solver.kernels.scratch import scratch
+from solver.kernels.vectors import in_material, matrix, times, vector
 from solver.methods.space.segments.balances import Driven, Tangents, balance_segments, condition_ends, segment_tangents
 from solver.methods.space.segments.chain import STAGES, Chain, Residuals, Stages
 from solver.methods.space.segments.joints import bend_joints
@@ -15,7 +16,7 @@ from solver.methods.space.segments.opening import add_levers, pull_joints
 from solver.methods.space.segments.viscosity import resist_rates
 from solver.physics.contact.forces import touching
 from solver.physics.elasticity import is_viscous, stretches
-from solver.physics.ends import LOAD, RATE
+from solver.physics.ends import LOAD, LOAD_LAB, RATE
 from solver.physics.loads.registry import Loads
 
 begin_step, tangents_at, in_contact = spin_steadily, segment_tangents, touching
@@ -84,8 +85,17 @@ def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals
 
 
 @inner
-def resist(chain: Chain, tangents: Tangents, rate: float, velocity: Array, forces: Array) -> None:
-    """Write the forces (N, 3) of inertia on the segments for accelerations `rate` `velocity` of their centres."""
+def resist(chain: Chain, driven: Driven, tangents: Tangents, rate: float, velocity: Array, forces: Array,
+           ends: Array) -> None:  # fmt: skip
+    """Write the forces (N, 3) of inertia on the segments for accelerations `rate` `velocity` of their centres, and what
+    bodies at the ends that move with these miss (2, 3)."""
+    for side in range(2):
+        frame, beside, sign = (0, 0, -1.0) if side == 0 else (len(tangents.R) - 1, len(velocity) - 1, 1.0)
+        push = times(sign * driven.mass[side] * rate, vector(velocity, beside))
+        within = in_material(matrix(tangents.R, frame), push)
+        for k in range(3):
+            kind = driven.kinds[side, k]
+            ends[side, k] = push[k] if kind == LOAD_LAB else (within[k] if kind == LOAD else 0.0)
     for j in range(len(forces)):
         for k in range(3):
             forces[j, k] = 0.0

@@ -228,8 +228,7 @@ def estimate_error(reference: Reference, dt: float, state: Record, centres: Arra
     factors, mu = work.real, scheme.gamma / dt
     turned = _load_rotation(chain, state, stages, scheme.error, mu, dt, factors)
     moved = _delay(centres, stages.r, stages.V, scheme.error, mu, work.velocities)
-    resist(chain, work.tangents, mu, work.velocities, factors.load)
-    factors.ends[:] = 0.0
+    resist(chain, driven, work.tangents, mu, work.velocities, factors.load, factors.ends)
     complete(chain, driven, work.tangents, mu, factors)
     solve(factors)
     turn_error, move_error, (turns, moves) = 0.0, 0.0, widths(factors)

@@ -136,6 +136,9 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"loads__damping": 1.0}, "followed by the frames"),
     ({"loads__gravity": LYING}, "let go or loaded at once"),
     ({"loads__gravity": [1e-3, 0, 0], "loads__damping": 1.0}, "let go gently"),
+    ({"loads__gravity": [1e-3, 0, 0], "loads__point": []}, "swinging as a stick"),
+    ({"loads__point": [], "ends__start": moved(x1=True, to=1.0)}, "moved and ringing"),
+    ({"loads__gravity": [1e7, 1e7, 0]}, "limp and moved"),
     ({"loads__gravity": LYING, "loads__damping": 1e3}, "overdamped"),
     ({"loads__gravity": ASKEW}, "in space and moved or let go"),
     ({"loads__gravity": ASKEW, "loads__damping": 0.1}, "swinging in space"),
@@ -150,7 +153,9 @@ LYING, ASKEW = [9.81, 0, 0], [9.81, 9.81, 0]
     ({"loads__gravity": ASKEW, "loads__damping": 0.1, "loads__point": [{"s": 1.0, "force": [0.1 * STIFFNESS, 0, 0]}]},
      "in space and moved or let go"),
     ({"ends__end": "clamp"}, "held straight"),
-    ({"ends__end": moved(x3=True, to=-0.1)}, "held straight and moved"),
+    ({"ends__end": moved(x3=True, to=-1e-4)}, "held straight and moved"),
+    ({"ends__end": moved(x3=True, to=-0.1)}, "held straight and springing"),
+    ({"ends__end": moved(x3=True, to=-1e-4), "rod__kappa0": [5.0, 0, 0]}, "held straight and springing"),
     ({"ends__end": moved(x3=True, to=-0.1) | moved(theta3=True, to=5.0)}, "held straight and twisted"),
     ({"ends__start": "free", "loads__point": [], "loads__gravity": ASKEW}, "flying freely"),
     ({"ends__start": "free", "loads__point": [], "initial__angular_velocity": [0, 5, 0]}, "flying freely"),
@@ -208,6 +213,17 @@ def test_what_moves_the_rod_tells_what_a_tolerance_is_likely_to_cost(settings, k
     case = parse_case(apply_settings(load_case("cantilever-vibration"), {"numerics.tolerance": 1e-3} | told))
     assert outlook.kind_of(build_scene(case)) == kind
     assert estimate(case).seconds >= outlook.likely_seconds(build_scene(case)) >= outlook.SECONDS[kind]
+
+
+def test_a_piece_that_stands_for_a_body_costs_what_finding_its_end_does():
+    def seconds(heavy):
+        mass = {"s": [0.0, 0.95, 0.96, 1.0], "value": [1.0, 1.0, heavy, heavy], "interpolation": "linear"}
+        rod = {"rod.mass_per_length": mass, "rod.density": None, "rod.inertia_per_length": [1e-4] * 3}
+        driven = {"ends.start": moved(x1=True, to=1e-3), "loads.point": [], "loads.damping": 1.0}
+        return outlook.likely_seconds(build_scene(parse_case(apply_settings(load_case("cantilever-vibration"),
+                                                                            rod | driven))))  # fmt: skip
+
+    assert seconds(100.0) == outlook.SECONDS["with a heavy piece"] > seconds(10.0)
 
 
 def test_a_schedule_with_many_points_makes_as_many_steps():

@@ -15,19 +15,22 @@ intervals of a mesh.)
 from __future__ import annotations
 
 from dataclasses import replace
-from math import floor, log
+from math import floor, log, pi
 
 import numpy as np
 
 from solver.arrays import Array
 from solver.physics.elasticity import Viscosity
 from solver.scene.rod import Derived, Rod
+from solver.scene.scene import Scene
 
 BY_GRADE = 8.0
 """How many times longer the retardation time is for each grade: waves are damped that are twice as long, where the
 rope's tension makes them run."""
 MOST = 0.25
 """Of the retardation time in L^2 sqrt(m / EJ)."""
+DAMPED_ALREADY = 2.0
+"""Damping (1/s), in the angular frequency of a bending wave, with which that wave is none."""
 
 
 def with_viscosity(rod: Rod, intervals: int, grade: int) -> Rod:
@@ -38,6 +41,14 @@ def with_viscosity(rod: Rod, intervals: int, grade: int) -> Rod:
         return np.asarray(scale * np.sqrt(mass / np.sqrt(EJ1 * EJ2)))
 
     return replace(rod, laws=(*rod.laws, Viscosity(Derived(time, rod.mass, *rod.stiffness[:2]))))
+
+
+def has_waves(scene: Scene, intervals: int) -> bool:
+    """Whether bending waves of two intervals, the shortest of a mesh, are more than the scene's own damping lets be."""
+    s = np.linspace(0.0, float(scene.rod.length), 101)
+    stiffness = np.sqrt(scene.rod.stiffness[0](s) * scene.rod.stiffness[1](s))
+    k = pi * intervals / float(scene.rod.length)
+    return bool(scene.damping < DAMPED_ALREADY * k**2 * np.sqrt(np.max(stiffness / scene.rod.mass(s))))
 
 
 def highest_grade(intervals: int) -> int:

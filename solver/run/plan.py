@@ -37,6 +37,8 @@ MOST_WORK_AT_REST = 20.0 * MOST_WORK
 """Of a static analysis on one mesh, if none as coarse has come to its end: no waves can keep it from that."""
 FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
+TO_THE_END = 6.0
+"""Part of MOST_WORK that a run with the longest steps may take which no viscosity makes faster, as it has no waves."""
 OVERDRAWN = 0.25
 """Part of MOST_WORK that an attempt may take beyond what was left for it, lest all of it be lost near its end."""
 PATIENCE, MOST_PATIENCE = 8.0, 2.5
@@ -87,14 +89,15 @@ def _is_damped(attempt: Attempt | Trial) -> bool:
     return grade_of(attempt.steps) is not None
 
 
-def allowance(history: Sequence[Attempt], trial: Trial) -> float:
-    """The work that an attempt may take before it is given up as slow. With viscosity those without it do not count."""
+def allowance(history: Sequence[Attempt], trial: Trial, waves: bool = True) -> float:
+    """The work that an attempt may take before it is given up as slow. With viscosity those without it do not count.
+    `waves`: whether the rod may have such as viscosity damps."""
     complete = [attempt for attempt in history if attempt.complete and _is_damped(attempt) == _is_damped(trial)]
     if trial.steps == AT_REST and all(trial.mesh < attempt.mesh for attempt in complete):
         return MOST_WORK_AT_REST
     if not complete:
         if not _is_damped(trial):
-            return MOST_WORK * FIRST_PART
+            return MOST_WORK * (FIRST_PART if waves or trial.steps > LOOSEST else TO_THE_END)
         last = any(attempt.slow and _is_damped(attempt) for attempt in history)
         last = last or grade_of(trial.steps) == highest_grade(intervals_of(trial.mesh))
         return MOST_WORK * (LAST_PART if last else DAMPED_PART)
@@ -152,6 +155,8 @@ def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_inter
     if not complete:
         yield _until_one_is_complete(history, most_intervals, t_end)
         return
+    if len(complete) == 1 and complete[0].work > MOST_PATIENCE * MOST_WORK:
+        return  # what is to tell its error may not take as long
     meshes = {attempt.mesh for attempt in complete}
     if len(meshes) == 1 and history[-1].slow and _work(history) > MOST_WORK:
         # what was to tell the error took far longer than what it is the error of, or had too many waves

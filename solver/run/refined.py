@@ -203,7 +203,7 @@ class Refined(Run):
         none is lost: what is none at a frame was none before."""
         if not self._history and attempt.pressed and self._first_if_pressed > attempt.trial.mesh:
             return Outcome.MESH_TOO_COARSE
-        if attempt.work > allowance(self._attempts, attempt.trial):
+        if attempt.work > allowance(self._attempts, attempt.trial, attempt.waves):
             return Outcome.TOLERANCE_NOT_REACHED
         return None
 

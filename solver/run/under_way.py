@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from solver.measures.frame import Frame, Statistics
-from solver.run.artificial_viscosity import retardation_time, with_viscosity
+from solver.run.artificial_viscosity import has_waves, retardation_time, with_viscosity
 from solver.run.checkpoint import Saved, restore, saved
 from solver.run.equilibria import Equilibria
 from solver.run.first_mesh import first_intervals
@@ -31,8 +31,9 @@ SMALL_MOTION = 1e-3
 class UnderWay:
     """The `run` of a trial, with what it has taken so far: its own `statistics`, and `work` as `plan` counts it.
 
-    `pressed`: whether strands have pressed on each other. It depends on nothing but the scene and the trial, so another
-    run whose scene begins alike passes through the same states; and it holds no frames.
+    `pressed`: whether strands have pressed on each other; `waves`: whether the rod may have short ones. It depends on
+    nothing but the scene and the trial, so another run whose scene begins alike passes through the same states; and it
+    holds no frames.
     """
 
     def __init__(self, scene: Scene, trial: Trial) -> None:
@@ -41,6 +42,7 @@ class UnderWay:
         self.work, self.pressed = 0.0, False
         tolerance = scene.numerics.tolerance or 1.0
         intervals = intervals_of(trial.mesh, first_intervals(scene))
+        self.waves = has_waves(scene, intervals)
         numerics = replace(
             scene.numerics, tolerance=None, verify=False, intervals=intervals,
             dt_max=longest_step(trial.steps, scene.output_interval), strides=strides_of(tolerance, trial.steps),

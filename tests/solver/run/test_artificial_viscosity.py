@@ -9,7 +9,7 @@ import pytest
 
 from solver import Curve, VerifiedFrame, simulate
 from solver.physics.elasticity import Viscosity, elasticity_of
-from solver.run.artificial_viscosity import highest_grade, retardation_time, with_viscosity
+from solver.run.artificial_viscosity import has_waves, highest_grade, retardation_time, with_viscosity
 from solver.run.refined import Refined
 from solver.run.trial import AT_REST, DAMPED, LOOSEST, grade_of
 from tests.solver.scenes import ROPE, rope_let_go
@@ -31,6 +31,14 @@ def test_it_comes_on_top_of_the_rods_own() -> None:
     s = np.linspace(0.0, 1.0, 5)
     elastic = elasticity_of(both, s)
     np.testing.assert_allclose(elastic.viscosity, (0.1 + added) * elastic.K, rtol=1e-12)
+
+
+@pytest.mark.parametrize("intervals", [16, 64])
+def test_what_a_scene_damps_itself_is_no_wave(intervals: int) -> None:
+    """omega = k^2 sqrt(EJ / m) of waves that are two intervals long."""
+    critical = 2.0 * (np.pi * intervals) ** 2 * float(np.sqrt(EJ / MASS))
+    for part, waves in ((0.0, True), (0.9, True), (1.1, False)):
+        assert has_waves(replace(rope_let_go(), damping=part * critical), intervals) == waves
 
 
 @pytest.mark.parametrize("intervals", [16, 20, 64, 128, 512, 1024])

@@ -9,9 +9,11 @@ import pytest
 
 from solver.run.plan import (
     FAR_FROM_IT,
+    FIRST_PART,
     MADE,
     MOST_PATIENCE,
     MOST_WORK,
+    TO_THE_END,
     WAVES,
     Excess,
     allowance,
@@ -20,7 +22,7 @@ from solver.run.plan import (
     to_come,
 )
 from solver.run.series import Attempt, Chosen, chosen
-from solver.run.trial import AT_REST, DAMPED, Trial, step_tolerance
+from solver.run.trial import AT_REST, DAMPED, LOOSEST, Trial, step_tolerance
 
 SMALL = 0.01 * MOST_WORK
 
@@ -180,6 +182,15 @@ def test_where_what_is_to_tell_the_error_takes_far_too_long_nothing_else_is_trie
     assert next_trial([first], [Excess()], 2000) == Trial(1, -2)
     assert allowance([first], Trial(1, -2)) == MOST_PATIENCE * MOST_WORK
     assert next_trial([first, second], [Excess()], 2000) is None
+
+
+def test_what_has_no_waves_and_is_slow_may_go_on_to_its_end() -> None:
+    first, last = Trial(3, 0), Trial(3, LOOSEST)
+    assert allowance([], first) == allowance([], first, waves=False) == allowance([], last) == FIRST_PART * MOST_WORK
+    assert allowance([slow(3, 0)], last, waves=False) == TO_THE_END * MOST_WORK
+    for work, more in ((0.9, True), (1.1, False)):
+        history = [slow(3, 0), ran(3, LOOSEST, work * MOST_PATIENCE * MOST_WORK)]
+        assert (next_trial(history, [Excess()], 2000) is not None) == more
 
 
 def test_an_attempt_that_is_begun_is_not_given_up_as_soon_as_nothing_is_left() -> None:

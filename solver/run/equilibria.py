@@ -168,7 +168,7 @@ class Equilibria(Run):
         fields = self._fields(point)
         held = [end.held[3:5] for end in equations.ends]
         unresolved_bending = self._layers.complete(fields, held, equations.time(point.q))
-        self.remarks.turning_loads += equations.loads_turn()
+        self.remarks.rested(t, path.modes, equations.loads_turn())
         self.remarks.stretched(equations.strain(), float(self.s[-1]))
         self.remarks.sunk(deepest_within(self._scene, self.s, fields.r), t)
         stages = equations.stages

@@ -23,8 +23,9 @@ class Remarks:
     stretch, at a frame, if that is more than a tenth. `energy_lost`: energy that went nowhere, over the largest that
     motion, strain and contact ever had, if that is more than a tenth. `retardation_time` (s): of the rod's material,
     with what was added to it so that the run comes to its end, see `artificial_viscosity`. `turning_loads`: frames of a
-    static analysis in which forces turned with the rod. `disturbance_growth`: the logarithm of the factor by which a
-    small disturbance across a straight or a plane rod would have grown, if that is much, see `measures.buckling`.
+    static analysis in which forces turned with the rod; `unstable_frames`: of the others those whose equilibrium is
+    unstable, and `first_unstable` (s) the time of the first. `disturbance_growth`: the logarithm of the factor by which
+    a small disturbance across a straight or a plane rod would have grown, if that is much, see `measures.buckling`.
     `buckling_seed` (N/m): the load across it that the run added so that it buckles, see `physics.seed`.
     """
 
@@ -42,6 +43,8 @@ class Remarks:
     energy_lost: float = 0.0
     retardation_time: float = 0.0
     turning_loads: int = 0
+    unstable_frames: int = 0
+    first_unstable: float = 0.0
     disturbance_growth: float = 0.0
     buckling_seed: float = 0.0
 
@@ -56,6 +59,13 @@ class Remarks:
         """At a frame, so deep (m) within a solid."""
         if depth > self.deepest_in_solid:
             self.deepest_in_solid, self.deepest_in_solid_at = depth, t
+
+    def rested(self, t: float, negative_modes: int, turning: bool) -> None:
+        """At a frame of a static analysis."""
+        self.turning_loads += turning
+        if negative_modes and not turning:
+            self.first_unstable = self.first_unstable if self.unstable_frames else t
+            self.unstable_frames += 1
 
     def attributes(self) -> dict[str, float | int]:
         """The values that are not zero, by name."""
@@ -124,6 +134,12 @@ class Remarks:
                 "The rod stays straight, or in its plane, beyond its critical load, because nothing in the case "
                 "disturbs it: even the smallest disturbance would have grown large. Add a small load across it, which "
                 "says to which side it buckles."
+            )
+        if self.unstable_frames:
+            sentences.append(
+                f"In {self.unstable_frames} frames, first at t = {self.first_unstable:.6g} s, the equilibrium is unstable "
+                "(negative_modes): no rod stays there. Add a small load, which says to which side it leaves, or make a "
+                "dynamic run."
             )
         if self.turning_loads:
             sentences.append(

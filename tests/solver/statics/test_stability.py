@@ -100,6 +100,18 @@ def test_stability_is_lost_at_eulers_load_and_a_seed_leads_to_the_stable_branch(
     assert seeded.negative_modes == 0
 
 
+@pytest.mark.parametrize("numerics", [Numerics(intervals=10), Numerics("staggered", tolerance=1e-2)])
+@pytest.mark.parametrize(("load", "frames"), [(4.0, 8), (2.0, 0)])
+def test_a_run_says_from_when_on_its_equilibria_are_unstable(load: float, frames: int, numerics: Numerics) -> None:
+    """Beyond pi^2 / 4 EJ/L^2, which is at t = .617 of 4."""
+    pressed = PointLoad(LENGTH, (ZERO, ZERO, ramp(-load * EJ)))
+    run = simulate(static(points=(pressed,), output_interval=0.05, numerics=numerics))
+    assert len(list(run)) == 21
+    told = {name: value for name, value in run.attributes().items() if "unstable" in name}
+    assert told == ({"unstable_frames": frames, "first_unstable": pytest.approx(0.65)} if frames else {})
+    assert any("is unstable" in note for note in run.notes()) == bool(frames)
+
+
 @pytest.mark.parametrize("thrust", [0.5, 5.0, 30.0, 70.0])
 def test_both_counts_of_falling_directions_agree(thrust: float) -> None:
     """Where next to no load depends on the place, the count from segment to segment is that of all together."""

@@ -137,9 +137,9 @@ class Remarks:
             )
         if self.unstable_frames:
             sentences.append(
-                f"In {self.unstable_frames} frames, first at t = {self.first_unstable:.6g} s, the equilibrium is unstable "
-                "(negative_modes): no rod stays there. Add a small load, which says to which side it leaves, or make a "
-                "dynamic run."
+                f"In {self.unstable_frames} frames, first at t = {self.first_unstable:.6g} s, the equilibrium is "
+                "unstable (negative_modes): no rod stays there. Add a small load, which says to which side it leaves, "
+                "or make a dynamic run."
             )
         if self.turning_loads:
             sentences.append(

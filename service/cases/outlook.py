@@ -17,6 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from service.cases.driven import Driven
 from service.cases.stability import critical_twist, pull, stiffness_and_mass
@@ -115,7 +116,7 @@ def likely_seconds(scene: Scene) -> float:
     if scene.analysis == "static":
         return _at_rest(scene)
     kind = kind_of(scene)
-    if kind != "still" and _has_heavy_piece(scene) and not _is_braked(scene):
+    if kind != "still" and heavy_part(scene).any() and not _is_braked(scene):
         return max(SECONDS[kind], SECONDS["with a heavy piece"])
     if kind == RINGING:
         return SECONDS[kind] * max(scene.t_end / scene.output_interval / FRAMES, 1.0)
@@ -278,10 +279,10 @@ class Urged:
         return self.thrown or max(self.weight_across, self.stress, self.force) > SMALL
 
 
-def _has_heavy_piece(scene: Scene) -> bool:
-    """Whether a piece of the rod is so heavy as a body that hangs at it."""
+def heavy_part(scene: Scene) -> NDArray[np.bool_]:
+    """Where, of FINELY places along the rod, it is so heavy as a body that hangs at it."""
     mass = scene.rod.mass(np.linspace(0.0, float(scene.rod.length), FINELY)) + np.zeros(FINELY)
-    return bool(mass.max() > HEAVY * np.median(mass))
+    return np.asarray(mass > HEAVY * np.median(mass))
 
 
 def _is_braked(scene: Scene) -> bool:

@@ -15,6 +15,7 @@ from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
 from service.cases.extents import forces, largest, times, widest
 from service.cases.initial import Straight
+from service.cases.outlook import HEAVY, heavy_part
 from service.cases.quantities import ProfileTable, ScheduleTable
 from service.cases.size import tables_in
 from service.cases.stability import critical_twist, growth
@@ -44,6 +45,8 @@ BEYOND = 1.0 + 1e-6
 """Part of the rod's length up to which a table ends at the rod's end."""
 BESIDE, WITHIN = 8.0, 0.9
 """In D: how far along the rod places are neighbours; and how near others overlap."""
+SHORT = 0.1
+"""Part of the rod's length up to which a heavy piece may stand for a body."""
 JERK = 1e-3
 """Part of the largest speed that an end which is held may have at first: that of a rod which begins to swing."""
 
@@ -54,7 +57,8 @@ def warnings_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
             *_contact(spec, scene), *_sheared(spec, scene), *_column(scene), *_unstable(spec, scene),
             *_pushed_in(spec, scene), *_obstacles(spec), *_begins_inside(scene), *_friction_at_rest(spec),
             *_touches_itself(scene), *_stretched(scene), *_pulled_apart(scene), *_tables(spec), *_frames(spec),
-            *_idle(scene), *_stays(scene), *_held_back(scene), *_too_fast(spec, scene)]  # fmt: skip
+            *_idle(scene), *_stays(scene), *_body(spec, scene), *_held_back(scene),
+            *_too_fast(spec, scene)]  # fmt: skip
 
 
 def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -266,6 +270,17 @@ def _idle(scene: Scene) -> Iterator[FieldError]:
         for time in late:
             rule = f"has a switch at {time:g} s, and the run ends at t_end, {scene.t_end:g} s: it does nothing"
             yield FieldError(f"/ends/{name}/switches", time, rule)
+
+
+def _body(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """A short piece at an end that is as heavy as a body, which a mesh hardly finds."""
+    heavy = heavy_part(scene)
+    for name, along in (("start", heavy), ("end", heavy[::-1])):
+        many = int(np.argmin(along))  # the first place that is not
+        if 0 < many <= SHORT * len(heavy) and spec.analysis == "dynamic":
+            rule = (f"is more than {HEAVY:g} times as much along the {many / len(heavy) * spec.rod.length:.2g} m at "
+                    f"its {name} as elsewhere: if that is a body, ends.{name}.mass is more exact, and costs less")
+            yield FieldError("/rod/mass_per_length", None, rule)
 
 
 def _stays(scene: Scene) -> Iterator[FieldError]:

@@ -221,6 +221,20 @@ def test_ends_that_would_tear_the_rod_are_told(moved: float, warned: bool):
     assert any("torn" in warning.rule for warning in found) == warned
 
 
+@pytest.mark.parametrize(("heavy", "places", "warned"), [
+    (100.0, (0.0, 0.95, 0.96, 1.0), True), (10.0, (0.0, 0.95, 0.96, 1.0), False), (100.0, (0.0, 0.6, 0.61, 1.0), False),
+])  # fmt: skip
+def test_a_short_heavy_piece_at_an_end_is_told_that_there_are_bodies(heavy: float, places: tuple[float, ...],
+                                                                     warned: bool):  # fmt: skip
+    for name, values in (("end", [1.0, 1.0, heavy, heavy]), ("start", [heavy, heavy, 1.0, 1.0])):
+        s = list(places) if name == "end" else [1.0 - place for place in places[::-1]]
+        mass = {"s": s, "value": values, "interpolation": "linear"}
+        rod = {**PRESSED["rod"], "mass_per_length": mass, "inertia_per_length": [1e-4] * 3}
+        rod.pop("density")
+        found = _warned(PRESSED | {"rod": rod, "ends": {"start": "clamp", "end": "free"}})
+        assert [f"ends.{name}.mass" in warning.rule for warning in found] == [True] * warned
+
+
 LATER = {"t": [2.0, 3.0], "value": [0.0, 1.0], "interpolation": "linear"}
 
 

@@ -168,4 +168,4 @@ def test_a_command_computes_on_one_core():
 
 def test_validate_warns_of_a_slip_and_refuses_nothing(capsys: pytest.CaptureFixture[str]):
     assert main(["validate", "elastica", "--set", "rod.diameter=30"]) == 0
-    assert "warning: /rod/diameter is more than 3 m, got 30.0: is it given in m?" in capsys.readouterr().err
+    assert "warning: /rod/diameter is more than 10 m, got 30.0: is it given in m?" in capsys.readouterr().err

@@ -84,16 +84,21 @@ function quaternion(a, b, c) {
 function end(shape, name) {
   const given = shape.ends[name];
   if (typeof given === "string") return given;
-  const driven = Object.keys(given).filter((key) => !["preset", "frame", "switches"].includes(key));
-  return [given.preset, ...driven, ...(given.switches?.length ? ["switches"] : [])].filter(Boolean).join(" with ");
+  const besides = [...(given.mass > 0 ? [`a body of ${given.mass} kg`] : []), ...(given.switches?.length ? ["switches"] : [])];
+  return [given.preset, ...driven(given), ...besides].filter(Boolean).join(" with ");
+}
+
+/** The components of an end that have conditions of their own. @param {any} given */
+function driven(given) {
+  return Object.keys(given).filter((key) => !["preset", "frame", "mass", "switches"].includes(key));
 }
 
 /** A point of the kind's colour at each end. @param {any} shape @param {Vector[]} r */
 function ends(shape, r) {
   return ["start", "end"].flatMap((name, k) => {
     const given = shape.ends[name], kind = typeof given === "string" ? given : given?.preset;
-    const driven = typeof given === "object" && Object.keys(given).some((key) => !["preset", "frame", "switches"].includes(key));
-    return [...r[k ? r.length - 1 : 0], ...(driven ? DRIVEN : ENDS[kind] ?? DRIVEN)];
+    const own = typeof given === "object" && driven(given).length > 0;
+    return [...r[k ? r.length - 1 : 0], ...(own ? DRIVEN : ENDS[kind] ?? DRIVEN)];
   });
 }
 

@@ -117,3 +117,7 @@ def test_the_preview_shows_the_rod_its_ends_and_its_loads(form, page):
     form("case=goyal-2003")
     page.wait_for_function("told => document.querySelector('.preview p').innerText === told",
                            arg="start: clamp with omega3, end: slider with switches")
+    form("case=static-elastica")
+    page.fill("#case-ends-end", json.dumps({"preset": "free", "mass": 2.0}))
+    page.wait_for_function("told => document.querySelector('.preview p').innerText === told",
+                           arg="start: clamp, end: free with a body of 2 kg")

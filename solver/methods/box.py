@@ -47,8 +47,8 @@ LARGEST_FEEDBACK = 0.5
 """Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 
 UNSEEN = 0.03
-"""Rotation (rad), or displacement in rod lengths, by which a step leaves an end behind that it sees at rest, worth as
-much as a motion that changes altogether within it; of one that it sees moving, a part of that is added."""
+"""Rotation (rad), or displacement in rod lengths, by which a step leaves an end behind, worth as much as a motion that
+changes altogether within it."""
 DIVISIBLE = 0.5
 """Of the time that twist takes to run along an interval: in less the mesh cannot follow an end, which it overshoots."""
 SMALL_MOTION = 1e-6
@@ -128,7 +128,7 @@ class BoxMethod:
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
         looks = dt > self._divisible and not consistent
         length = float(self.s[-1])
-        self._unseen = max(end.unseen(t, dt, length, UNSEEN) for end in (self.start, self.end)) if looks else 0.0
+        self._unseen = max(end.unseen(t, dt, length) for end in (self.start, self.end)) if looks else 0.0
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> Array:
@@ -166,9 +166,9 @@ class BoxMethod:
 
     def relative_increment(self, dt: float) -> float:
         """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|; at the least by
-        what it leaves an end behind, see UNSEEN."""
+        what it leaves an end behind, in UNSEEN."""
         change, motion = self._measured.acceleration, self._measured.motion
-        return max(dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1])), self._unseen)
+        return max(dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1])), self._unseen / UNSEEN)
 
     def strain(self) -> float:
         """The trial's largest strain of an interval."""

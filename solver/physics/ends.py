@@ -15,9 +15,6 @@ RATE, LOAD, RATE_LAB, LOAD_LAB = 0, 1, 2, 3
 ABOUT_A3 = 5
 """Of the six components the rotation about the rod itself."""
 
-SEEN = 0.7
-"""Part of an end's motion in a step that counts beside what the step leaves out of it."""
-
 Kinds = NDArray[np.int64]
 
 
@@ -87,18 +84,17 @@ class DrivenEnd:
             values[:, i] = self._values_of(i, t, later, gain)
         return values
 
-    def unseen(self, t: float, dt: float, length: float, unit: float) -> float:
+    def unseen(self, t: float, dt: float, length: float) -> float:
         """The largest prescribed rotation (rad), or displacement in rod lengths, by which a step from t at the mean of
-        its rates at begin and end leaves the end behind, as where it goes from rest to rest within it, or was behind;
-        relative to a `unit` and SEEN of the step at these rates.
+        its rates at begin and end leaves the end behind, as where it goes from rest to rest within it, or was behind.
         """
         largest = 0.0
         for i in self._moving:
             condition = self._components[i][self._active[i]]
             if condition.kind in ("rate", "position"):
-                moved, scale = self._behind(i, condition, t + dt), unit * (length if i < 3 else 1.0)
-                seen = 0.5 * dt * (_rate(condition, t + 2e-9 * dt, dt) + _rate(condition, t + dt, dt))
-                largest = max(largest, abs(moved - seen) / (scale + SEEN * abs(seen)))
+                moved = self._behind(i, condition, t + dt)
+                rates = _rate(condition, t + 2e-9 * dt, dt) + _rate(condition, t + dt, dt)
+                largest = max(largest, abs(moved - 0.5 * dt * rates) / (length if i < 3 else 1.0))
         return largest
 
     def prescribed(self, component: int, t: float) -> float | None:

@@ -82,9 +82,8 @@ def test_a_rod_that_says_how_it_stretches_is_judged_by_that_alone():
     assert [at for at, _ in told(rope | {"rod.axial_stiffness": 1e6})] == ["/rod/axial_stiffness"]
 
 
-EXPECTED = ("/loads/gravity", "/contact", "/rod/mass_per_length")
-"""Scaled gravity, rods that wind up without contact, heavy pieces that stand for bodies: some scenes of the bank have
-them on purpose."""
+EXPECTED = ("/loads/gravity", "/contact")
+"""Scaled gravity, and rods that wind up without contact: some scenes of the bank have them on purpose."""
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -92,4 +91,6 @@ def test_plausible_scenes_are_beyond_doubt(kind: str):
     for number in range(8):
         spec = parse_case(scene(kind, number))
         doubts = [warning for warning in warnings_of(spec, build_scene(spec)) if warning.pointer not in EXPECTED]
-        assert doubts == []
+        bodies = [warning for warning in doubts if "if that is a body" in warning.rule]
+        assert doubts == bodies
+        assert not bodies or kind == "rubber"  # whose jumper is a heavy piece of the rope

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
 from math import inf
 
@@ -46,7 +47,7 @@ and fall with the motion, or it turns the rod; without it |Tw + Wr - Lk| of goya
 LARGEST_FEEDBACK = 0.5
 """Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 
-UNSEEN = 0.03
+LEFT_BEHIND = 0.02
 """Rotation (rad), or displacement in rod lengths, by which a step leaves an end behind, worth as much as a motion that
 changes altogether within it."""
 DIVISIBLE = 0.5
@@ -91,7 +92,7 @@ class BoxMethod:
         if numerics.rho_inf_space < 1.0:
             softest = principal(self.section.elastic)[:, 0]
             self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / softest)))
-        self._last_dt, self._taken_dt, self._consistent, self._unseen = 0.0, 0.0, False, 0.0
+        self._last_dt, self._taken_dt, self._consistent, self._left_behind = 0.0, 0.0, False, 0.0
         twisting = np.sqrt(self.section.inertia[:, 2] / principal(self.section.elastic)[:, 2])
         self._divisible = DIVISIBLE * self.h * float(twisting.mean())
         """Step (s) that is not shortened for an end: what it does within it is made up for in those that follow."""
@@ -119,16 +120,15 @@ class BoxMethod:
         ahead = dt / self._taken_dt if dt <= 2.0 * self._taken_dt else 0.0
         gain = min(self._gain, LARGEST_FEEDBACK / dt)
         self.applied.set_time(t + dt)
+        follows = dt > self._divisible and not consistent
         stretch_feedback(self._stretch, self._stretch_before, ahead, gain, self.work.feedback)
         guess(self.state, self._F_rate, 0.0 if consistent else dt, self.trial.Y)
         self.contact.prepare(self._bending, self.state.r, self.state.Y, dt)
         status, iterations = step(self._hand_over(), self.state, self.trial, self._rule, dt, self.h,
-                                  self._ends(t, dt))  # fmt: skip
+                                  self._ends(t, dt, follows))  # fmt: skip
         self.applied.check()
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
-        looks = dt > self._divisible and not consistent
-        length = float(self.s[-1])
-        self._unseen = max(end.unseen(t, dt, length) for end in (self.start, self.end)) if looks else 0.0
+        self._left_behind = max(self._lags(t, dt)) if follows else 0.0
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> Array:
@@ -139,11 +139,8 @@ class BoxMethod:
         late = 1.0 if self._consistent else 0.5
         enter_step(self._handed.reference, old, new, self.contact.power()[0], c0_of(self._rule, dt), dt, late, self.h,
                    self._flows)  # fmt: skip
-        for end, node in ((self.start, 0), (self.end, len(self.s) - 1)):
-            moved = self._flows.moved[node]
-            if not end.in_lab:
-                moved[:3] = rotate_back(old.quaternion[node : node + 1], moved[None, :3])[0]
-            end.follow(moved)
+        for end, node in ((self.start, 0), (self.end, -1)):
+            end.follow(_along_axes(end, self._flows.moved[node], old.quaternion[node]))
         self.state, self.trial, self._taken_dt, self._bending = new, old, dt, self._measured.bending
         self._gain = max(self._gain, self._feedback_rate(self._measured.turning))
         self._stretch_before, self._stretch, self._trial_stretch = (
@@ -157,8 +154,7 @@ class BoxMethod:
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
         for end, node in ((self.start, 0), (self.end, -1)):
-            velocity = self.state.Y[node, V : V + 3] if end.in_lab else self.velocity()[node]
-            end.switch(t, np.concatenate([velocity, self.state.Y[node, OMEGA : OMEGA + 3]]))
+            end.switch(t, _along_axes(end, self.state.Y[node, V : OMEGA + 3], self.state.quaternion[node]))
 
     def velocity(self) -> Array:
         """v (n, 3), material."""
@@ -166,9 +162,9 @@ class BoxMethod:
 
     def relative_increment(self, dt: float) -> float:
         """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|; at the least by
-        what it leaves an end behind, in UNSEEN."""
+        what it leaves an end behind, in LEFT_BEHIND."""
         change, motion = self._measured.acceleration, self._measured.motion
-        return max(dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1])), self._unseen / UNSEEN)
+        return max(dt * dt * change / (motion + SMALL_MOTION * float(self.s[-1])), self._left_behind / LEFT_BEHIND)
 
     def strain(self) -> float:
         """The trial's largest strain of an interval."""
@@ -255,12 +251,30 @@ class BoxMethod:
         """The scheme of the step at hand."""
         return BACKWARD_EULER if self._consistent else self._scheme
 
-    def _ends(self, t: float, dt: float) -> EndValues:
-        """What is given at both ends at the end of the step."""
+    def _ends(self, t: float, dt: float, follows: bool) -> EndValues:
+        """What is given at both ends at the end of the step; where it `follows` them, with what the scheme leaves out.
+        """
         gain, length = LARGEST_FEEDBACK / dt, float(self.s[-1])
         values, dead = self.applied.driving(self.start, 0.0, t, (dt,), gain)
         end_values, end_dead = self.applied.driving(self.end, length, t, (dt,), gain)
+        if follows:
+            values[0] += self._rule.left_out * self.start.uneven(t, dt)
+            end_values[0] += self._rule.left_out * self.end.uneven(t, dt)
         return EndValues(self.start.kinds, values[0], dead[0], self.end.kinds, end_values[0], end_dead[0])
+
+    def _lags(self, t: float, dt: float) -> Iterator[float]:
+        """By how much the trial leaves each end behind, see `DrivenEnd`."""
+        for end, node in ((self.start, 0), (self.end, -1)):
+            turned = self.work.past[node, 3:6] + self.trial.Y[node, OMEGA : OMEGA + 3] / c0_of(self._rule, dt)
+            moved = np.concatenate([self.trial.r[node] - self.state.r[node], turned])
+            yield end.left_behind(t + dt, _along_axes(end, moved, self.state.quaternion[node]), float(self.s[-1]))
+
+
+def _along_axes(end: DrivenEnd, moved: Array, quaternion: Array) -> Array:
+    """A displacement or velocity (lab), and a rotation or omega (material), along the axes of an end (6,)."""
+    if end.in_lab:
+        return moved
+    return np.concatenate([rotate_back(quaternion[None], moved[None, :3].copy())[0], moved[3:]])
 
 
 def _initial_state(initial: Initial, s: Array, section: Section) -> tuple[State, Array]:

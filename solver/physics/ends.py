@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,18 +84,28 @@ class DrivenEnd:
             values[:, i] = self._values_of(i, t, later, gain)
         return values
 
-    def unseen(self, t: float, dt: float, length: float) -> float:
-        """The largest prescribed rotation (rad), or displacement in rod lengths, by which a step from t at the mean of
-        its rates at begin and end leaves the end behind, as where it goes from rest to rest within it, or was behind.
-        """
-        largest = 0.0
+    def uneven(self, t: float, dt: float) -> Array:
+        """By how much the mean (6,) of a prescribed rate over a step from t is more than that of its values at begin
+        and end, as where an end goes from rest to rest within it."""
+        rates = np.zeros(6)
+        for i, condition in self._prescribed():
+            moved = travel(condition, t + dt) - travel(condition, t)
+            rates[i] = moved / dt - 0.5 * (_rate(condition, t + 2e-9 * dt, dt) + _rate(condition, t + dt, dt))
+        return rates
+
+    def left_behind(self, t: float, moved: Array, length: float) -> float:
+        """The largest rotation (rad), or displacement in rod lengths, by which the end is from where it must be at t
+        once it has `moved` (6,), see `follow`."""
+        behind = [abs(self._behind(i, condition, t) - moved[i]) / (length if i < 3 else 1.0)
+                  for i, condition in self._prescribed()]  # fmt: skip
+        return float(max(behind, default=0.0))
+
+    def _prescribed(self) -> Iterator[tuple[int, Condition]]:
+        """Numbers of the components whose motion is given, and by what."""
         for i in self._moving:
             condition = self._components[i][self._active[i]]
             if condition.kind in ("rate", "position"):
-                moved = self._behind(i, condition, t + dt)
-                rates = _rate(condition, t + 2e-9 * dt, dt) + _rate(condition, t + dt, dt)
-                largest = max(largest, abs(moved - 0.5 * dt * rates) / (length if i < 3 else 1.0))
-        return largest
+                yield i, condition
 
     def prescribed(self, component: int, t: float) -> float | None:
         """The exact displacement (m) along, or rotation (rad) about, an axis since t = 0, if it has been prescribed all

@@ -39,7 +39,7 @@ class NewtonSystem:
         self._method, self._dt = method, dt
         self._scheme = Scheme.of(rho_inf)
         self._c0 = c0_of(self._scheme, dt)
-        self._ends = method._ends(0.0, dt)
+        self._ends = method._ends(0.0, dt, True)
         self._shooting = Shooting.empty(len(method.s) - 1)
         method.trial.Y[:] = method.state.Y
         history(method.state, self._scheme, dt, method.work.past)

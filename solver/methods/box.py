@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from itertools import pairwise
 from math import inf
 
 import numpy as np
@@ -11,7 +9,7 @@ from scipy.linalg import solveh_banded
 
 from solver.arrays import Array
 from solver.kernels.handed import Handed, Reference
-from solver.kernels.rotation import relative_rotation, rotate_back, tangents_of
+from solver.kernels.rotation import product, rotate_back, tangents_of
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape
@@ -47,7 +45,7 @@ and fall with the motion, or it turns the rod; without it |Tw + Wr - Lk| of goya
 LARGEST_FEEDBACK = 0.5
 """Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 
-LEFT_BEHIND = 0.02
+LEFT_BEHIND = 0.05
 """Rotation (rad), or displacement in rod lengths, by which a step leaves an end behind, worth as much as a motion that
 changes altogether within it."""
 DIVISIBLE = 0.5
@@ -128,7 +126,8 @@ class BoxMethod:
                                   self._ends(t, dt, follows))  # fmt: skip
         self.applied.check()
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
-        self._left_behind = max(self._lags(t, dt)) if follows else 0.0
+        lags = (self._lag(end, node, t, dt) for end, node in self._at_ends if follows and end.driven)
+        self._left_behind = max(lags, default=0.0)
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> Array:
@@ -139,7 +138,7 @@ class BoxMethod:
         late = 1.0 if self._consistent else 0.5
         enter_step(self._handed.reference, old, new, self.contact.power()[0], c0_of(self._rule, dt), dt, late, self.h,
                    self._flows)  # fmt: skip
-        for end, node in ((self.start, 0), (self.end, -1)):
+        for end, node in self._at_ends:
             end.follow(_along_axes(end, self._flows.moved[node], old.quaternion[node]))
         self.state, self.trial, self._taken_dt, self._bending = new, old, dt, self._measured.bending
         self._gain = max(self._gain, self._feedback_rate(self._measured.turning))
@@ -153,8 +152,8 @@ class BoxMethod:
 
     def switch_ends(self, t: float) -> None:
         """Put in force the end conditions that hold from t on."""
-        for end, node in ((self.start, 0), (self.end, -1)):
-            end.switch(t, _along_axes(end, self.state.Y[node, V : OMEGA + 3], self.state.quaternion[node]))
+        for end, node in self._at_ends:
+            end.switch(t, self._rates(end, node))
 
     def velocity(self) -> Array:
         """v (n, 3), material."""
@@ -237,6 +236,10 @@ class BoxMethod:
         rescale_aux(self.state, 1.0)
 
     @property
+    def _at_ends(self) -> tuple[tuple[DrivenEnd, int], ...]:
+        return (self.start, 0), (self.end, -1)
+
+    @property
     def _records(self) -> tuple[Section, Loads, Scales, Touch, Work]:
         """What the kernels of a step get by reference."""
         return self.section, self.applied.records, self._scales, self.contact.touch, self.work
@@ -252,29 +255,37 @@ class BoxMethod:
         return BACKWARD_EULER if self._consistent else self._scheme
 
     def _ends(self, t: float, dt: float, follows: bool) -> EndValues:
-        """What is given at both ends at the end of the step; where it `follows` them, with what the scheme leaves out.
-        """
-        gain, length = LARGEST_FEEDBACK / dt, float(self.s[-1])
-        values, dead = self.applied.driving(self.start, 0.0, t, (dt,), gain)
-        end_values, end_dead = self.applied.driving(self.end, length, t, (dt,), gain)
-        if follows:
-            values[0] += self._rule.left_out * self.start.uneven(t, dt)
-            end_values[0] += self._rule.left_out * self.end.uneven(t, dt)
-        return EndValues(self.start.kinds, values[0], dead[0], self.end.kinds, end_values[0], end_dead[0])
+        """What is given at both ends at the end of the step; where it `follows` them, so that they arrive."""
+        values, dead = self._driven(self.start, 0, t, dt, follows)
+        end_values, end_dead = self._driven(self.end, -1, t, dt, follows)
+        return EndValues(self.start.kinds, values, dead, self.end.kinds, end_values, end_dead)
 
-    def _lags(self, t: float, dt: float) -> Iterator[float]:
-        """By how much the trial leaves each end behind, see `DrivenEnd`."""
-        for end, node in ((self.start, 0), (self.end, -1)):
-            turned = self.work.past[node, 3:6] + self.trial.Y[node, OMEGA : OMEGA + 3] / c0_of(self._rule, dt)
-            moved = np.concatenate([self.trial.r[node] - self.state.r[node], turned])
-            yield end.left_behind(t + dt, _along_axes(end, moved, self.state.quaternion[node]), float(self.s[-1]))
+    def _driven(self, end: DrivenEnd, node: int, t: float, dt: float, follows: bool) -> tuple[Array, Array]:
+        """Values and dead loads (6,) of an end."""
+        gain = 0.0 if follows else LARGEST_FEEDBACK / dt
+        values, dead = self.applied.driving(end, float(self.s[node]), t, (dt,), gain)
+        if follows:
+            values[0] += end.correction(t, dt, self._rates(end, node), self._rule.left_out)
+        return values[0], dead[0]
+
+    def _rates(self, end: DrivenEnd, node: int) -> Array:
+        """Velocity and omega (6,) that an end has now, along its axes."""
+        return _along_axes(end, self.state.Y[node, V : OMEGA + 3], self.state.quaternion[node])
+
+    def _lag(self, end: DrivenEnd, node: int, t: float, dt: float) -> float:
+        """By how much the trial leaves an end behind, see `DrivenEnd`."""
+        turned = self.work.past[node, 3:6] + self.trial.Y[node, OMEGA : OMEGA + 3] / c0_of(self._rule, dt)
+        moved = np.concatenate([self.trial.r[node] - self.state.r[node], turned])
+        return end.left_behind(t + dt, _along_axes(end, moved, self.state.quaternion[node]), float(self.s[-1]))
 
 
 def _along_axes(end: DrivenEnd, moved: Array, quaternion: Array) -> Array:
     """A displacement or velocity (lab), and a rotation or omega (material), along the axes of an end (6,)."""
     if end.in_lab:
         return moved
-    return np.concatenate([rotate_back(quaternion[None], moved[None, :3].copy())[0], moved[3:]])
+    along = moved.copy()
+    along[:3] = rotate_back(quaternion[None], moved[None, :3])[0]
+    return along
 
 
 def _initial_state(initial: Initial, s: Array, section: Section) -> tuple[State, Array]:
@@ -307,8 +318,7 @@ def _follow_tangents(start: Array, quaternion: Array, s: Array) -> Array:
 
 def _kappa_correction(quaternion: Array, kappa: Array, s: Array) -> Array:
     """The smallest change of kappa (n, 3) that makes its means those of the nodes' relative rotations."""
-    turned = np.array([_turn(a, b) for a, b in pairwise(quaternion)])
-    missing = turned / np.diff(s)[:, None] - 0.5 * (kappa[1:] + kappa[:-1])
+    missing = _turns(quaternion) / np.diff(s)[:, None] - 0.5 * (kappa[1:] + kappa[:-1])
     bands = np.full((2, len(missing)), 0.25)
     bands[1] = 0.5
     shares = solveh_banded(bands, missing)
@@ -318,7 +328,11 @@ def _kappa_correction(quaternion: Array, kappa: Array, s: Array) -> Array:
     return correction
 
 
-def _turn(left: Array, right: Array) -> Array:
-    theta = np.empty(3)
-    relative_rotation(left, right, theta)
-    return theta
+def _turns(quaternion: Array) -> Array:
+    """The rotations (n - 1, 3) from each node to the next, shorter than pi."""
+    left, right = quaternion[:-1].T, quaternion[1:].T
+    cosine, *axis = product.py_func(left[0], *-left[1:], *right)  # type: ignore[attr-defined]
+    along = np.where(cosine < 0.0, -1.0, 1.0) * np.array(axis)
+    sine = np.sqrt(np.sum(along**2, axis=0))
+    angle = 2.0 * np.arctan2(sine, np.abs(cosine))
+    return np.asarray(along * np.where(sine > 0.0, angle / np.where(sine > 0.0, sine, 1.0), 2.0)).T

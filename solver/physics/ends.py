@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,28 +84,33 @@ class DrivenEnd:
             values[:, i] = self._values_of(i, t, later, gain)
         return values
 
-    def uneven(self, t: float, dt: float) -> Array:
-        """By how much the mean (6,) of a prescribed rate over a step from t is more than that of its values at begin
-        and end, as where an end goes from rest to rest within it."""
-        rates = np.zeros(6)
-        for i, condition in self._prescribed():
-            moved = travel(condition, t + dt) - travel(condition, t)
-            rates[i] = moved / dt - 0.5 * (_rate(condition, t + 2e-9 * dt, dt) + _rate(condition, t + dt, dt))
-        return rates
+    def correction(self, t: float, dt: float, rates: Array, left_out: float) -> Array:
+        """What is to be added (6,) to the rates that are given at the end of a step from t, for the end, which has
+        `rates` (6,) now, to be where it must.
+
+        It moves by the mean of both rates; `left_out`: see `Scheme`. Of what that would leave it behind by, less half
+        of what the step leaves out, for the correction acts in the next step too.
+        """
+        extra = self._held * ((self._travel_at_switch - self.travel) / dt - 0.5 * rates)
+        for i in self._prescribed:
+            condition = self._condition(i)
+            begin, end = _rate(condition, t + 2e-9 * dt, dt), _rate(condition, t + dt, dt)
+            mean = (travel(condition, t + dt) - travel(condition, t)) / dt
+            uneven = left_out * (mean - 0.5 * (begin + end))
+            extra[i] = self._behind(i, condition, t) / dt + 1.5 * uneven - 0.5 * (rates[i] - begin)
+        return extra
+
+    @property
+    def driven(self) -> bool:
+        """Whether any motion is given now."""
+        return bool(self._prescribed)
 
     def left_behind(self, t: float, moved: Array, length: float) -> float:
         """The largest rotation (rad), or displacement in rod lengths, by which the end is from where it must be at t
         once it has `moved` (6,), see `follow`."""
-        behind = [abs(self._behind(i, condition, t) - moved[i]) / (length if i < 3 else 1.0)
-                  for i, condition in self._prescribed()]  # fmt: skip
+        behind = (abs(self._behind(i, self._condition(i), t) - moved[i]) / (length if i < 3 else 1.0)
+                  for i in self._prescribed)  # fmt: skip
         return float(max(behind, default=0.0))
-
-    def _prescribed(self) -> Iterator[tuple[int, Condition]]:
-        """Numbers of the components whose motion is given, and by what."""
-        for i in self._moving:
-            condition = self._components[i][self._active[i]]
-            if condition.kind in ("rate", "position"):
-                yield i, condition
 
     def prescribed(self, component: int, t: float) -> float | None:
         """The exact displacement (m) along, or rotation (rad) about, an axis since t = 0, if it has been prescribed all
@@ -124,11 +129,14 @@ class DrivenEnd:
         self._held = np.zeros(6)
         """1 for components that are held where they are. Free ones are worth nothing."""
         self._moving: list[int] = []
+        self._prescribed: list[int] = []
+        """Numbers of the components whose motion is given."""
         for i, component in enumerate(self._components):
             condition = component[self._active[i]]
             load = condition.kind == "load"
             if condition.kind == "stop" or not condition.curve.is_zero:
                 self._moving.append(i)
+                self._prescribed += [i] if condition.kind in ("rate", "position") else []
             else:
                 self._held[i] = float(not load)
             if i < 3 and self.in_lab:
@@ -137,7 +145,7 @@ class DrivenEnd:
                 self.kinds[i] = LOAD if load else RATE
 
     def _values_of(self, i: int, t: float, later: Sequence[float], gain: float) -> list[float]:
-        condition = self._components[i][self._active[i]]
+        condition = self._condition(i)
         if condition.kind == "load":
             return [condition.curve.value(t + dt) for dt in later]
         if condition.kind == "stop":
@@ -145,6 +153,10 @@ class DrivenEnd:
             return [speed * (1.0 - _smoothstep((t + dt - since) / within)) for dt in later]
         behind = self._behind(i, condition, t)
         return [_rate(condition, t + dt, dt) + gain * behind for dt in later]
+
+    def _condition(self, i: int) -> Condition:
+        """What is in force now of a component."""
+        return self._components[i][self._active[i]]
 
     def _behind(self, i: int, condition: Condition, t: float) -> float:
         """How far a prescribed component of the end, as it is now, is from where it must be at t (m or rad)."""

@@ -32,6 +32,8 @@ class AppliedLoads:
         self.records = records_of(self._sources) if axis is None else records_about(axis, self._sources)
         self._at_ends = tuple(load for load in scene.points if load.s in (0.0, scene.rod.length))
         self._weights = np.outer([scene.start.mass, scene.end.mass], scene.gravity)
+        self.at_ends = bool(self._at_ends) or bool(self._weights.any())
+        """Whether there are point loads, or bodies with a weight, at an end."""
         self._moving = tuple(source for source in self._sources if not source.steady)
         self._barring = tuple(source for source in self._sources if source.bars)
         self._striking = tuple(source for source in self._sources if source.strikes and source.record.present)
@@ -67,11 +69,6 @@ class AppliedLoads:
             if load.s == s and load.frame == frame:
                 total += [c.value(t) for c in (*load.force, *load.moment)]
         return total if s > 0.0 else -total
-
-    @property
-    def at_ends(self) -> bool:
-        """Whether there are point loads at an end."""
-        return bool(self._at_ends) or bool(self._weights.any())
 
     def driving(self, end: DrivenEnd, s: float, t: float, later: Sequence[float], gain: float) -> tuple[Array, Array]:
         """What drives the end at s at the times t + dt, `later` being these dt: values (times, 6) of its conditions,

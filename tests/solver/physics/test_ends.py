@@ -188,13 +188,13 @@ def test_one_that_is_moved_from_rest_to_rest_within_a_step_is_where_it_has_to_be
 
 
 def test_one_that_turns_smoothly_is_followed_in_few_steps() -> None:
-    """What the scheme leaves out of a rotation is given with its rate. The feedback alone, which comes a step later,
-    was 4e-3 rad behind, in 80 steps."""
+    """What a step would leave behind is given with the rate at its end. Half of what the step before left behind, as it
+    was given, left 4e-3 rad, in 80 steps."""
     turn = Curve.table([0.0, 0.5, 1.5, 2.0], [0.0, 4.0, -4.0, 0.0], "smoothstep")
     scene = Scene(ROD, Initial.straight(), End.slider(), turned_clamp(Condition("position", turn)), 2.0, 0.1,
                   numerics=Numerics(method="box", intervals=20, dt_max=0.05))  # fmt: skip
     run = simulate(scene)
     frames = list(run)
     angles = np.unwrap([2.0 * np.arctan2(frame.orientation[-1, 3], frame.orientation[-1, 0]) for frame in frames])
-    assert np.abs(angles - [turn.value(frame.t) for frame in frames]).max() < 2e-3
-    assert run.statistics.steps < 65
+    assert np.abs(angles - [turn.value(frame.t) for frame in frames]).max() < 1.5e-3
+    assert run.statistics.steps < 60

@@ -39,13 +39,17 @@ from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
 from solver.physics.elasticity import can_stretch, without_stretch
 from solver.physics.ends import DrivenEnd
-from solver.scene.ends import End
+from solver.scene.curve import Curve
+from solver.scene.ends import Condition, End
 from solver.scene.scene import Scene
 
 SOON = 2.0**-14
 """In dt_max: steps that find the forces at the start."""
 NONE = 1e-9
 """Part of the rod's length by which nothing is moved that is held."""
+
+JERKED = 0.01
+"""Strain at the start from which on what the ends begin to do is no part of it."""
 
 for asked in (space, linear):
     enter(asked, (Chain, State, Driven, Factors, Touch), motion, stages, tridiagonal, segments_increments,
@@ -56,6 +60,27 @@ def _held_axes(end: End, R: Array) -> Array:
     """The directions (n, 3), lab, in which an end with the rotation R is held at the start."""
     held = [component[0].kind != "load" for component in end.translation]
     return (np.eye(3) if end.frame == "lab" else R.T)[held]
+
+
+def _going_on(end: End) -> End:
+    """An end whose motion goes on as it is at t = 0."""
+    def rate(condition: Condition) -> float:
+        return condition.curve.value(0.0) if condition.kind == "rate" else condition.curve.derivative(0.0)
+
+    components = [component if component[0].kind == "load" else (Condition("rate", Curve.constant(rate(component[0]))),)
+                  for component in (*end.translation, *end.rotation)]  # fmt: skip
+    return replace(end, translation=tuple(components[:3]), rotation=tuple(components[3:]))
+
+
+def _forces_at_start(scene: Scene) -> Array | None:
+    """F of the joints, see `State`, that the rod of a scene bears at t = 0; None where it cannot begin."""
+    method, dt = StaggeredMethod(scene), SOON * scene.numerics.dt_max
+    for t in (0.0, dt):  # at first an end that is set going at once gives other forces
+        status, _ = method.try_step(t, dt, consistent=True)
+        if status != CONVERGED:
+            return None
+        method.take_step(t, dt)
+    return method.state.F
 
 
 class StaggeredMethod(RadauMethod):
@@ -103,16 +128,17 @@ class StaggeredMethod(RadauMethod):
 
         Else its sound would ring from the start on, and the steps follow it. The given centreline is that of the rod
         without stretch: what is held stays there; else the centre of mass does. Where both ends are held so that
-        the rod cannot become longer, it begins without stretch.
+        the rod cannot become longer, it begins without stretch. An end that is jerked has to stretch it first.
         """
-        rigid = StaggeredMethod(replace(scene, rod=without_stretch(scene.rod)))
-        for t in (0.0, SOON * scene.numerics.dt_max):  # at first an end that is set going at once gives other forces
-            status, _ = rigid.try_step(t, SOON * scene.numerics.dt_max, consistent=True)
-            if status != CONVERGED:
-                return
-            rigid.take_step(t, SOON * scene.numerics.dt_max)
         state, e = self.state, np.zeros_like(self.state.opening[0])
-        measure_openings(self.chain, self._R, rigid.state.F, self._joints, e)
+        for ends in ((scene.start, scene.end), (_going_on(scene.start), _going_on(scene.end))):
+            rod = without_stretch(scene.rod)
+            F = _forces_at_start(replace(scene, rod=rod, start=ends[0], end=ends[1]))
+            if F is None:
+                return
+            measure_openings(self.chain, self._R, F, self._joints, e)
+            if np.abs(e / self.chain.span).max() <= JERKED:
+                break
         moved, still = np.zeros((3, len(self.s) - 1, 3)), np.zeros_like(state.omega)
         shift_segments(self._R, still, still, np.stack([e, 0.0 * e, 0.0 * e]), *moved)
         tip = moved[0, -1] + e[-1] * self._R[-2, :, 2]
@@ -123,7 +149,7 @@ class StaggeredMethod(RadauMethod):
             back = -(tip if len(ends) else np.average(moved[0], axis=0, weights=self.chain.mass))
             spin = np.array(scene.initial.angular_velocity, dtype=float)
             state.base[:] += np.stack([back, np.cross(spin, back), np.cross(spin, np.cross(spin, back))])
-        state.opening[0], state.F[:] = e, rigid.state.F
+        state.opening[0], state.F[:] = e, F
 
     def _bear_along(self) -> None:
         """Let the state's forces bear what loads the rod along itself at t = 0, half at either end.

@@ -95,6 +95,22 @@ def test_a_hanging_rod_hangs_from_the_start_on() -> None:
         assert abs(frame.energy_balance) < 1e-6 * first.energy_stretching
 
 
+def test_a_rod_whose_end_is_jerked_has_to_be_stretched_first() -> None:
+    """It was as long at once as if it bore the acceleration of a body at its other end. Until sound has come there and
+    back the end bears the impedance of the rod times its speed."""
+    impedance, speed = sqrt(EA * MASS), 1e-3 * sqrt(EA / MASS)
+    pulled = Condition("rate", Curve.table([0.0, 1e-4], [0.0, -speed]))
+    way = LENGTH / sqrt(EA / MASS)
+    start = End((FIXED, FIXED, (pulled,)), End.clamp().rotation)
+    end = replace(End.free(), mass=20.0 * MASS * LENGTH)
+    scene = Scene(elastic(EA), Initial.straight(), start, end, way, 0.5 * way,
+                  numerics=Numerics("staggered", intervals=64, dt_max=0.01 * way))  # fmt: skip
+    first, middle, _ = simulate(scene)
+    assert np.abs(first.strain).max() == 0.0
+    assert middle.f[0, 2] == pytest.approx(impedance * speed, rel=0.05)
+    assert abs(middle.f[-1, 2]) < 0.02 * impedance * speed
+
+
 @pytest.mark.parametrize("held", ["the end", "neither"])
 def test_what_is_not_held_is_where_the_stretch_brings_it(held: str) -> None:
     """The rod hangs from its end, or flies with its middle pulled apart by a load at either end."""

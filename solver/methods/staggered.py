@@ -67,9 +67,11 @@ def _going_on(end: End) -> End:
     def rate(condition: Condition) -> float:
         return condition.curve.value(0.0) if condition.kind == "rate" else condition.curve.derivative(0.0)
 
-    components = [component if component[0].kind == "load" else (Condition("rate", Curve.constant(rate(component[0]))),)
-                  for component in (*end.translation, *end.rotation)]  # fmt: skip
-    return replace(end, translation=tuple(components[:3]), rotation=tuple(components[3:]))
+    one, two, three, *turns = (
+        component if component[0].kind == "load" else (Condition("rate", Curve.constant(rate(component[0]))),)
+        for component in (*end.translation, *end.rotation)
+    )  # fmt: skip
+    return replace(end, translation=(one, two, three), rotation=(turns[0], turns[1], turns[2]))
 
 
 def _forces_at_start(scene: Scene) -> Array | None:
@@ -131,9 +133,9 @@ class StaggeredMethod(RadauMethod):
         the rod cannot become longer, it begins without stretch. An end that is jerked has to stretch it first.
         """
         state, e = self.state, np.zeros_like(self.state.opening[0])
-        for ends in ((scene.start, scene.end), (_going_on(scene.start), _going_on(scene.end))):
-            rod = without_stretch(scene.rod)
-            F = _forces_at_start(replace(scene, rod=rod, start=ends[0], end=ends[1]))
+        rigid = replace(scene, rod=without_stretch(scene.rod))
+        for asked in (rigid, replace(rigid, start=_going_on(scene.start), end=_going_on(scene.end))):
+            F = _forces_at_start(asked)
             if F is None:
                 return
             measure_openings(self.chain, self._R, F, self._joints, e)

@@ -34,7 +34,7 @@ from solver.statics.equations import Equations
 from solver.statics.first_forces import first_forces
 from solver.statics.path import MOST_STEPS, Path
 from solver.statics.point import Point
-from solver.statics.stability import coupled, negative_modes, neutral_modes
+from solver.statics.stability import negative_modes, neutral_modes
 
 WAYS = ((True, True), (False, True), (False, False))
 """In which to let go of the initial shape, the one to try first before the others: whether the forces that hold it turn
@@ -90,11 +90,6 @@ class Equilibria(Run):
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""
         return self._equations.contact.pressing
-
-    @property
-    def coupled(self) -> bool:
-        """Whether the rotations are counted all together, as far as is known."""
-        return coupled(self._equations)
 
     def warm(self) -> None:
         """Have every kernel compiled."""

@@ -24,8 +24,8 @@ PAIR = 2.0
 """What each pair of points that press on each other adds: a coil's are many more than its intervals."""
 DEAR_AT_REST, PRESSED_AT_REST, COUPLED_AT_REST = 20.0, 4.0, 0.5
 """How many times more work an iteration of a static analysis is, with all that goes with it; of that how many times
-more where strands press on each other; and what the square of its intervals adds where rotations are coupled far apart.
-"""
+more where strands press on each other; and what the square of its intervals adds there, for all rotations are counted
+together."""
 LOOSEST, AT_REST, DAMPED = -2, -9, -11
 """The longest steps that are tried; what stands for those of a static analysis, which make no error and are no other
 when they are tried again; and what stands for the longest steps of a rod with an artificial viscosity, as do all
@@ -66,10 +66,10 @@ def work_of_iteration(mesh: int, pressing: int) -> float:
     return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT if pressing else 1.0) + PAIR * pressing
 
 
-def work_at_rest(mesh: int, pressing: int, coupled: bool) -> float:
-    """Of an iteration of a static analysis; `coupled`: whether it counts all rotations together."""
-    nearby = (intervals_of(mesh) + OVERHEAD) * (PRESSED_AT_REST if pressing else 1.0)
-    return DEAR_AT_REST * nearby + (COUPLED_AT_REST * intervals_of(mesh) ** 2 if coupled else 0.0)
+def work_at_rest(mesh: int, pressing: int) -> float:
+    """Of an iteration of a static analysis."""
+    nearby = DEAR_AT_REST * (intervals_of(mesh) + OVERHEAD)
+    return PRESSED_AT_REST * nearby + COUPLED_AT_REST * intervals_of(mesh) ** 2 if pressing else nearby
 
 
 def longest_step(steps: int, interval: float) -> float:

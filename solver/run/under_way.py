@@ -64,8 +64,8 @@ class UnderWay:
         frame = self.run.advance()
         pressing = self.run.pressing
         self.pressed = self.pressed or pressing > 0
-        per_iteration = (work_at_rest(self.trial.mesh, pressing, self.run.coupled) if isinstance(self.run, Equilibria)
-                         else work_of_iteration(self.trial.mesh, pressing))  # fmt: skip
+        of_iteration = work_at_rest if isinstance(self.run, Equilibria) else work_of_iteration
+        per_iteration = of_iteration(self.trial.mesh, pressing)
         self.work += (self.statistics.newton_iterations - before) * per_iteration
         return frame
 

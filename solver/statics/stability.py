@@ -16,6 +16,7 @@ from scipy.linalg.lapack import dgbsv, dsytrf
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
+from solver.statics.elimination import falling_in_turn
 from solver.statics.equations import Equations
 from solver.statics.tangent import SOFTEST_PLACE, levers
 
@@ -38,19 +39,14 @@ def neutral_modes(equations: Equations, falling: int) -> int:
     return max(_count(equations, -NEUTRAL) - falling, 0)
 
 
-def coupled(equations: Equations) -> bool:
-    """Whether rotations far apart are coupled: where strands press on each other, or loads depend on the place."""
-    return equations.contact.pressing > 0 or bool(equations.stiffness_of_loads().any())
-
-
 def _count(equations: Equations, softest: float) -> int:
     """Directions of falling energy where every rotation has as much stiffness more."""
-    K = equations.stiffness_of_loads()
-    length = float(equations.s[-1])
-    T = equations.tangents
-    bands = _second_variation(T.stiff, T.behind, equations, softest) * (length / equations.stiffness)
-    G, W, ties = _conditions(equations)
-    if equations.contact.pressing or K.any():
+    K, length = equations.stiffness_of_loads(), float(equations.s[-1])
+    D, B = _second_variation(equations, softest)
+    if K.any() and not equations.contact.pressing:
+        return falling_in_turn(equations, D, B, no_softer(K, softest) * (length**3 / equations.stiffness))
+    bands, (G, W, ties) = _in_bands(D, B), _conditions(equations)
+    if equations.contact.pressing:
         return _all_together(equations, K, bands, G, W, softest) - ties
     full = np.zeros((3 * BAND + 1, bands.shape[1]))
     full[2 * BAND :] = bands
@@ -84,9 +80,8 @@ def _conditions(equations: Equations) -> tuple[Array, Array, int]:
 
 
 def _all_together(equations: Equations, K: Array, bands: Array, G: Array, W: Array, softest: float) -> int:
-    """Negative eigenvalues of [H G^t; G W] where strands press on each other or loads depend on the place, which
-    couples rotations far apart. (Eliminated from segment to segment the counts fell below zero.) How these move a rod
-    along itself by stretching it is left out."""
+    """Negative eigenvalues of [H G^t; G W] where strands press on each other, which couples rotations far apart. How
+    these, and loads by place, move a rod along itself by stretching it is left out."""
     length = float(equations.s[-1])
     unit, steps = length / equations.stiffness, -2.0 * levers(equations.stages.R[0], equations.chain.h)[1:-1]
     H, turned = _from_bands(bands), slice(3, 3 * len(steps) + 3)
@@ -100,14 +95,18 @@ def _all_together(equations: Equations, K: Array, bands: Array, G: Array, W: Arr
     return int(np.sum(np.diag(factors)[~paired] < 0.0)) + int(np.sum(paired)) // 2
 
 
+def no_softer(K: Array, softest: float) -> Array:
+    """The stiffness (n, 3, 3) of loads by place, with as much more, of the sign of `softest`, as a slide along them is
+    taken for neutral by."""
+    more = float(np.copysign(NEUTRAL_PLACE, softest) * np.abs(K).max())
+    return np.asarray(0.5 * (K + K.transpose(0, 2, 1)) + more * np.eye(3))
+
+
 def of_loads(K: Array, steps: Array, softest: float) -> tuple[Array, Array, Array]:
     """The second variation by the rotations of the n segments (3 n, 3 n), of which what is above the diagonal blocks is
     none, by these and the place of the start (3 n, 3), and by this alone (3, 3). The centre of a segment is moved by
-    the place of the start, the rotations of all segments before it, by `steps` (n, 3, 3), and half its own.
-
-    Loads have as much stiffness more, of either sign, as a slide along them is taken for neutral by.
-    """
-    K = 0.5 * (K + K.transpose(0, 2, 1)) + np.copysign(NEUTRAL_PLACE, softest) * np.abs(K).max() * np.eye(3)
+    the place of the start, the rotations of all segments before it, by `steps` (n, 3, 3), and half its own."""
+    K = no_softer(K, softest)
     pushed, one = steps @ (K[::-1].cumsum(axis=0)[::-1] - 0.5 * K), np.arange(len(K))
     by_rotations = (pushed.reshape(-1, 3) @ steps.reshape(-1, 3).T).reshape(len(K), 3, len(K), 3)
     by_rotations[one, :, one] -= 0.25 * steps @ K @ steps.transpose(0, 2, 1)
@@ -135,25 +134,30 @@ def _from_bands(bands: Array) -> Array:
     return full
 
 
-def _second_variation(stiff: Array, behind: Array, equations: Equations, softest: float) -> Array:
-    """H's symmetric part in lower bands (6, 3 n); rotations that are held count as stiff."""
-    n, unit = len(stiff), equations.stiffness / float(equations.s[-1])
-    soft = softest * unit * equations.chain.h / float(equations.s[-1])
-    D = 0.5 * (stiff + stiff.transpose(0, 2, 1)) + soft * np.eye(3)
-    B = np.zeros_like(D)
-    B[:-1] = 0.5 * (behind[:-1] + equations.tangents.before[1:].transpose(0, 2, 1))
+def _second_variation(equations: Equations, softest: float) -> tuple[Array, Array]:
+    """H's symmetric part in EJ/L, of each segment's rotation (N + 2, 3, 3) and with the next one's (N + 1, 3, 3);
+    rotations that are held count as stiff."""
+    T, unit = equations.tangents, float(equations.s[-1]) / equations.stiffness
+    soft = softest * equations.chain.h / float(equations.s[-1])
+    D = 0.5 * unit * (T.stiff + T.stiff.transpose(0, 2, 1)) + soft * np.eye(3)
+    B = 0.5 * unit * (T.behind[:-1] + T.before[1:].transpose(0, 2, 1))
     for side, end in enumerate(equations.ends):
         fixed = end.held[3:]
-        for block in (D[-side], D[-side].T, B[0] if side == 0 else B[-2].T):
+        for block in (D[-side], D[-side].T, B[0] if side == 0 else B[-1].T):
             block[fixed] = 0.0
-        D[-side][fixed, fixed] = unit
-    bands = np.zeros((BAND + 1, 3 * n))
+        D[-side][fixed, fixed] = 1.0
+    return D, B
+
+
+def _in_bands(D: Array, B: Array) -> Array:
+    """The block tridiagonal symmetric matrix in lower bands (6, 3 n)."""
+    bands = np.zeros((BAND + 1, 3 * len(D)))
     for p in range(3):
         for q in range(3):
             if p >= q:
                 bands[p - q, q::3] = D[:, p, q]
             # the block below the diagonal is B^t
-            bands[3 + p - q, q::3] = B[:, q, p]
+            bands[3 + p - q, q:-3:3] = B[:, q, p]
     return bands
 
 

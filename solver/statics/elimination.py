@@ -26,7 +26,7 @@ def falling_in_turn(equations: Equations, D: Array, B: Array, K: Array) -> int:
     (n - 2, 3, 3) of the loads on those between, in EJ/L^3."""
     length, unit = float(equations.s[-1]), equations.stiffness / float(equations.s[-1]) ** 3
     R, (starts, ends) = equations.stages.R[0], (end.axes[:, end.held[:3]] for end in equations.ends)
-    held = starts.shape[1]
+    held = int(starts.shape[1])
     axes = np.hstack([starts, qr(starts)[0][:, held:]]) if held else np.eye(3)
     steps, K = -2.0 / length * levers(R, equations.chain.h), np.pad(K, ((1, 1), (0, 0), (0, 0)))
     opens = equations.tangents.opens

@@ -336,6 +336,12 @@ class StaggeredMethod(RadauMethod):
         if self.contact.touching and not self._guess_keeps_apart(dt):
             self._guess_standstill(dt)
 
+    def _guess_rest(self) -> None:
+        """Steady motion, and no forces but those by which the rod is stretched: these do not jump."""
+        super()._guess_rest()
+        if len(self._strain):
+            self.stages.F[:] = self.state.F
+
     def _guess_keeps_apart(self, dt: float) -> bool:
         """Whether the guess leaves parts that press on each other apart: where they rattle, the last step misleads."""
         move_guess(self._hand_over(), dt, self.state)

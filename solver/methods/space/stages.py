@@ -66,6 +66,13 @@ def evaluate(chain: Record, loads: Record, driven: Record, stages: Record, resid
 
 
 @dispatched
+def missed_by_bodies(driven: Record, stages: Record, residuals: Record, noise: float) -> float:
+    """The largest force that a body at an end misses at a stage, in the rod's largest; 0 where there is none. Less what
+    the `noise` (m/s^2) of the accelerations makes of it."""
+    raise NotImplementedError
+
+
+@dispatched
 def tangents_at(chain: Record, loads: Record, driven: Record, stages: Record, i: int, tangents: Record) -> None:
     """Write the tangents of the balances and ends at stage i."""
     raise NotImplementedError

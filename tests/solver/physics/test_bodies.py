@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
-from solver import Condition, Curve, End, Frame, Initial, Numerics, Scene, simulate
+from solver import Condition, Curve, End, Frame, Initial, Numerics, Rod, Scene, simulate
 from solver.arrays import Array
 from solver.methods.one_axis import OneAxisMethod
 from solver.physics.elasticity import Stretch
@@ -92,6 +92,37 @@ def test_on_a_rod_that_stretches_it_bounces_as_on_a_spring(frame: str) -> None:
     fallen = np.array([f.r[-1, 2] for f in frames[5:]])
     assert period(np.array([f.t for f in frames[5:]]), fallen - fallen.mean()) == pytest.approx(cycle, rel=5e-3)
     assert -np.ptp(fallen) == pytest.approx(-2.0 * M * G * LENGTH / EA, rel=0.02)
+
+
+LIMP = Rod.circular(2.8, 0.0098, 1e7, 1e7, 836.0)
+
+
+def bow(s: Array) -> Array:
+    """A half circle below e1."""
+    radius = float(LIMP.length) / pi
+    return np.stack([radius * np.sin(s / radius), 0.0 * s, radius * (np.cos(s / radius) - 1.0)], axis=1)
+
+
+@pytest.mark.parametrize(("mass", "intervals"), [(0.1, 16), (1.0, 16), (1.0, 64), (80.0, 16)])
+def test_on_a_bent_rope_that_stretches_it_begins_to_move(mass: float, intervals: int) -> None:
+    """Steps that find the first forces began without any, which the stretch there is would not let jump."""
+    rope = replace(LIMP, laws=(Stretch(Curve.constant(25000.0)),))
+    scene = Scene(rope, Initial(bow), End.pin(), with_body(mass, "material"), 0.02, 0.02, gravity=(0.0, 0.0, -G),
+                  numerics=Numerics("staggered", intervals=intervals, dt_max=0.01))  # fmt: skip
+    first, frame = simulate(scene)
+    assert frame.r[-1, 2] - first.r[-1, 2] == pytest.approx(-0.5 * G * 0.02**2, rel=0.1)  # the rope hangs on it
+
+
+def test_caught_by_a_limp_rope_it_gives_the_rope_what_it_loses() -> None:
+    """Its energy and the work on the rope's end: a fifth of its largest motion was lost where Newton's iteration ended
+    as soon as the rope's rotations and forces were good enough."""
+    rope, mass = replace(LIMP, laws=(Stretch(Curve.constant(25000.0)),)), 80.0
+    scene = Scene(rope, Initial(bow), End.pin(), with_body(mass, "material"), 1.4, 0.02, gravity=(0.0, 0.0, -G),
+                  numerics=Numerics("staggered", intervals=16, dt_max=0.01, increment_tolerance=0.1))  # fmt: skip
+    frames = list(simulate(scene))
+    motion = np.array([0.5 * mass * np.sum(frame.v[-1] ** 2) for frame in frames])
+    energy = motion + [mass * G * frame.r[-1, 2] + frame.work_ends for frame in frames]
+    assert np.abs(energy - energy[0]).max() < 0.12 * motion.max()
 
 
 def test_two_bodies_that_turn_about_each_other_keep_the_rod_taut() -> None:

@@ -44,6 +44,12 @@ def evaluate(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages, re
 
 
 @inner
+def missed_by_bodies(driven: Driven, stages: Stages, residuals: Residuals, noise: float) -> float:
+    """There is none."""
+    return 0.0
+
+
+@inner
 def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals: Residuals) -> None:
     """Turn the rows in material components from the stages' own frames into the tangents', among those of one kind."""
     ends = residuals.ends

@@ -49,6 +49,25 @@ def evaluate(chain: Chain, loads: Loads, driven: Driven, stages: Stages, residua
 
 
 @inner
+def missed_by_bodies(driven: Driven, stages: Stages, residuals: Residuals, noise: float) -> float:
+    """The largest force that a body at an end misses at a stage, less that of its inertia by `noise` (m/s^2), in the
+    largest force that a joint bears."""
+    missed, largest = 0.0, 0.0
+    for side in range(2):
+        if driven.mass[side] > 0.0:
+            for k in range(3):
+                if driven.kinds[side, k] in (LOAD, LOAD_LAB):
+                    for i in range(STAGES):
+                        missed = max(missed, abs(residuals.ends[i, side, k]) - noise * driven.mass[side])
+    if missed > 0.0:
+        for i in range(STAGES):
+            for a in range(stages.F.shape[1]):
+                for k in range(3):
+                    largest = max(largest, abs(stages.F[i, a, k]))
+    return missed / max(largest, missed) if missed > 0.0 else 0.0
+
+
+@inner
 def turn_residuals(driven: Driven, stages: Stages, tangents: Tangents, residuals: Residuals) -> None:
     """Turn the rows in material components from the stages' own frames into those that go with the tangents.
 

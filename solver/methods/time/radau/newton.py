@@ -33,6 +33,7 @@ from solver.methods.space.stages import (
     evaluate,
     in_contact,
     join_stages,
+    missed_by_bodies,
     move,
     press_stages,
     resist,
@@ -49,6 +50,10 @@ TOLERANCE = 1e-10
 iteration has converged: far below a buckling seed. A step may leave a part of its largest departure from steady
 rotation, and of that of the start from steady motion, if that is more; not of the rotation itself, for a rod may spin
 fast with a small seed. (A rod that slides without turning has no other error than that of its place.)"""
+OF_BODY, ROUNDING = 1e-5, 1e-14
+"""What a step may leave of the force that a body at an end bears, relative to the rod's largest: its acceleration is
+that of the rod's end, in which what is left of rotations and stretch, and rounding, this part of the rod's length, are
+divided by the square of the step."""
 ROUGH = 10.0
 """How many times more a step may leave that presses strands together or the rod against a solid, whose error is that of
 what rattles."""
@@ -157,6 +162,7 @@ def step(reference: Reference, dt: float, unit: float, part: float, rough: bool,
         if contact:
             press_stages(chain, stages, driven, touch, work.coupling, fresh)
         evaluate(chain, loads, driven, stages, residuals)
+        missed = missed_by_bodies(driven, stages, residuals, ROUNDING * length / (dt * dt))
         if stale:
             if not factor_both(chain, loads, driven, scheme, dt, stages, tangents, real, pair):
                 return SINGULAR, iteration
@@ -180,6 +186,7 @@ def step(reference: Reference, dt: float, unit: float, part: float, rough: bool,
         # what presses does so by as much whatever the step: what counts is the forces' own relative error
         size = max(turned / enough, forced / (max(enough, share) if contact or rough else enough))
         size = max(size, shifted / max(TOLERANCE * length, share * shift_departure(stages.shift, state.base, dt)))
+        size = max(size, missed / OF_BODY)
         if is_enough(size, before):
             move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
             if contact:

@@ -35,6 +35,8 @@ MOST_WORK = 1.2e7
 """Newton iterations times (intervals + OVERHEAD), in all, after which nothing is refined: five to ten seconds."""
 MOST_WORK_AT_REST = 20.0 * MOST_WORK
 """Of a static analysis on one mesh, if none as coarse has come to its end: no waves can keep it from that."""
+LETTING_GO = 3.0
+"""Part of MOST_WORK in which a static analysis has let go of the initial shape, or does not."""
 FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 TO_THE_END = 6.0

@@ -25,6 +25,7 @@ from solver import (
     simulate,
 )
 from solver.physics.loads.solids import Floor
+from solver.run import refined
 from solver.run.first_mesh import first_mesh
 from solver.run.refined import Refined
 from solver.run.trial import AT_REST, intervals_of
@@ -87,6 +88,15 @@ def test_a_rod_that_no_floor_holds_is_refused_on_few_meshes() -> None:
             pass
     assert failure.value.outcome is Outcome.SINGULAR_SYSTEM
     assert len(run._attempts) <= 4
+
+
+def test_a_shape_that_is_not_let_go_of_in_the_work_that_may_be_done_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not as a run that its frames or its waves make long: a fibre that lay across itself was 165 CPU s about it."""
+    monkeypatch.setattr(refined, "LETTING_GO", 1e-4)
+    run = Refined(static(initial=ARC, numerics=TO_TOLERANCE))
+    with pytest.raises(RunFailed) as failure:
+        list(run)
+    assert (failure.value.outcome, failure.value.t) == (Outcome.EQUILIBRIUM_LOST, 0.0)
 
 
 def test_the_first_mesh_shows_the_corners_of_the_shape() -> None:

@@ -3,6 +3,7 @@ it were at rest."""
 
 from __future__ import annotations
 
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,8 @@ GREENHILL = 8.987
 
 
 def growth(scene: Scene, axis: Any) -> float:
-    """The logarithm of the factor by which it would grow until t_end, of a rod along the lab's `axis` (3,)."""
+    """The logarithm of the factor by which it would grow until t_end, of a rod along the lab's `axis` (3,); of a static
+    analysis, in which nothing grows, inf where it is unstable at any time."""
     transverse = Transverse.of(scene)
     if transverse is None or transverse.p != STRAIGHT:
         return 0.0
@@ -31,8 +33,11 @@ def growth(scene: Scene, axis: Any) -> float:
     torsion, disturbance = scene.rod.stiffness[2](s) + 0.0 * s, Disturbance(transverse, scene.damping)
     for t in dt * np.arange(1, TIMES):
         torque = _torque(scene, axis, s, torsion, t)
-        disturbance.go_on(dt, transverse.straight(s, torque / torsion, torque, _tension(scene, axis, s, t)))
-    return disturbance.growth
+        stiffness = transverse.straight(s, torque / torsion, torque, _tension(scene, axis, s, t))
+        if scene.at_rest and disturbance.grows(stiffness):
+            return inf
+        disturbance.go_on(dt, stiffness)
+    return 0.0 if scene.at_rest else disturbance.growth
 
 
 def critical_twist(scene: Scene) -> float:

@@ -113,12 +113,14 @@ def _column(scene: Scene) -> Iterator[FieldError]:
 
 def _unstable(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     """A straight rod that is loaded beyond its critical load or torque, with no load across it."""
-    if scene.at_rest or has_to_stretch(scene) or (R := _kept_straight(spec, scene)) is None:
+    if has_to_stretch(scene) or (R := _kept_straight(spec, scene)) is None:
         return
     if (grows := growth(scene, R[:, 2])) > MUCH:
-        rule = ("has nothing across the rod, which is straight and pressed, or twisted, beyond its critical load: a "
-                f"small disturbance would grow by a factor of 1e{grows / log(10.0):.0f}, but there is none; add a "
-                "small load across it, which says to which side it buckles")
+        so = "no rod stays so, but nothing says to which side it leaves"
+        if not scene.at_rest:
+            so = f"a small disturbance would grow by a factor of 1e{grows / log(10.0):.0f}, but there is none"
+        rule = ("has nothing across the rod, which is straight and pressed, or twisted, beyond its critical load: "
+                f"{so}; add a small load across it, which says to which side it buckles")
         yield FieldError("/loads", None, rule)
 
 

@@ -151,7 +151,7 @@ class Disturbance:
 
     def go_on(self, dt: float, stiffness: Array) -> None:
         """For a time dt (s) that ends with a `stiffness` (r, r)."""
-        grew, self._grew = self._grew, self._grows(stiffness)
+        grew, self._grew = self._grew, self.grows(stiffness)
         if not self._grew:
             self._speed[:] = 0.0
         if not (grew and self._grew):
@@ -170,7 +170,8 @@ class Disturbance:
         self.growth += (fastest - c) * dt + float(np.log(size / np.linalg.norm(self._place)))
         self._place[:], self._speed[:] = modes @ then / size, modes @ moved / size
 
-    def _grows(self, stiffness: Array) -> bool:
+    def grows(self, stiffness: Array) -> bool:
+        """Whether any disturbance grows with a `stiffness` (r, r)."""
         try:
             cholesky(stiffness + self._slow**2 * np.eye(len(stiffness)))
         except LinAlgError:

@@ -37,8 +37,8 @@ class Seed(DistributedLoad):
 
 
 def seed_of(scene: Scene) -> Seed | None:
-    """The seed that a scene of a motion needs; None if none. (By the box method such a rod has no start.)"""
-    if scene.at_rest or scene.numerics.method == "box" or not has_to_stretch(scene):
+    """The seed that a scene needs; None if none. (By the box method such a rod has no start.)"""
+    if (scene.numerics.method == "box" and not scene.at_rest) or not has_to_stretch(scene):
         return None
     transverse, apart, length = Transverse.of(scene), distances(scene), float(scene.rod.length)
     if transverse is None or transverse.p != STRAIGHT or apart is None:
@@ -58,6 +58,11 @@ def seeded(scene: Scene) -> Scene:
     """The scene with the seed that it needs, if any."""
     seed = seed_of(scene)
     return replace(scene, distributed=(*scene.distributed, seed)) if seed else scene
+
+
+def size_of_seed(scene: Scene) -> float:
+    """The force (N/m) of the seed that a scene has; 0 if none."""
+    return sum(load.size for load in scene.distributed if isinstance(load, Seed))
 
 
 def _stiffness_of_laws(rod: Rod, s: np.ndarray) -> float:

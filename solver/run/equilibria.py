@@ -20,6 +20,7 @@ from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import axial_stiffness, largest_strain
 from solver.physics.loads.solids import deepest_within
 from solver.physics.section import Beside
+from solver.physics.seed import size_of_seed
 from solver.run.linking import LinkingNumber
 from solver.run.run import Run
 from solver.run.watch import Watch
@@ -61,6 +62,7 @@ class Equilibria(Run):
         check_place(scene)
         compile_apart("statics", "from solver.run.equilibria import exercise; exercise()")
         self.remarks.axial_stiffness = axial_stiffness(scene)
+        self.remarks.buckling_seed = size_of_seed(scene)
         self._ring = is_ring(scene)
         self._watch = Watch(self.remarks, scene.contact is not None, self._ring)
         self._falling: list[float] = []

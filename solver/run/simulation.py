@@ -13,7 +13,7 @@ from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
 from solver.physics.axial import axial_stiffness, largest_strain
 from solver.physics.loads.solids import deepest_within
-from solver.physics.seed import Seed
+from solver.physics.seed import size_of_seed
 from solver.run.accounts import Accounts
 from solver.run.run import Run
 from solver.run.step_control import CONSISTENT_STEPS, StepControl
@@ -48,7 +48,7 @@ class Simulation(Run):
                                  for component in (*e.translation, *e.rotation) for c in component[1:]})  # fmt: skip
         if scene.numerics.method == "staggered":
             self.remarks.axial_stiffness = axial_stiffness(scene)
-        self.remarks.buckling_seed = sum(load.size for load in scene.distributed if isinstance(load, Seed))
+        self.remarks.buckling_seed = size_of_seed(scene)
         self._largest_strain = largest_strain(scene)
         self._watch = Watch(self.remarks, scene.contact is not None, is_ring(scene))
         self._turn = self._trial_turn = pi

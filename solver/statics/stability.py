@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from scipy.linalg import eigvalsh
 from scipy.linalg.lapack import dgbsv, dsytrf
 
 from solver.arrays import Array
@@ -54,7 +53,7 @@ def _count(equations: Equations, softest: float) -> int:
         full[2 * BAND - k, k:] = bands[k, : -k]
     _, _, solved, _ = dgbsv(BAND, BAND, full, G)
     S = W - G.T @ solved
-    falling = int(np.sum(eigvalsh(S) < 0.0))
+    falling = int(np.sum(np.linalg.eigvalsh(S) < 0.0))
     return int(_negative_pivots(bands.copy())) + falling - ties
 
 

@@ -16,8 +16,8 @@ demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 serve: .venv/.runtime  ## API, worker and broker, until Ctrl-C
 	$(BIN)/hockle serve
 
-test: .venv/.dev .venv/.docs  ## the whole test suite, four files at a time: many tests wait
-	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --durations 15
+test: .venv/.dev .venv/.docs  ## the whole test suite, three files at a time: many tests wait
+	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --durations 15
 
 lint: .venv/.dev .venv/.docs  ## style, types, and who may import whom
 	$(BIN)/ruff check .

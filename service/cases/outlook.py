@@ -7,9 +7,9 @@ spent is spent. The seconds of CPU time are about those of such scenes, of 20 to
 `stress/plausible/bank.py`, and to 470 scenes put together at random from rods, ends, shapes, loads, drives, solids,
 laws and water. For how many of the bank they are right to a factor of 3 stands in `stress/results/plausible.md`. Of 269
 scenes of 81 other kinds, drawn as people of many trades might send them, they were right for 69 %, and are for 83 %
-since they were fitted to some of these too; so they were, and are, for 70 more of as many kinds. What else is known of
-a scene before it runs tells little more: a forest of trees over thirty numbers of it is right for 89 % of the bank's
-and 61 % of the others that it has not seen.
+since they were fitted to some of these too; so they were, and are, for 70 more of as many kinds, and for 70 % of 60
+others, to which they were not fitted. What else is known of a scene before it runs tells little more: a forest of trees
+over thirty numbers of it is right for 89 % of the bank's and 61 % of the others that it has not seen.
 """
 
 from __future__ import annotations

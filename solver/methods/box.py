@@ -114,7 +114,7 @@ class BoxMethod:
         """
         if not consistent and self._last_dt > 0.0 and dt != self._last_dt:
             rescale_aux(self.state, dt / self._last_dt)
-        self._last_dt, self._consistent = dt, consistent
+        self._last_dt, self._consistent, self._left_behind = dt, consistent, 0.0
         ahead = dt / self._taken_dt if dt <= 2.0 * self._taken_dt else 0.0
         gain = min(self._gain, LARGEST_FEEDBACK / dt)
         self.applied.set_time(t + dt)
@@ -126,8 +126,6 @@ class BoxMethod:
                                   self._ends(t, dt, follows))  # fmt: skip
         self.applied.check()
         self._measured = measure_trial(self.state, self.trial, self.h, self._trial_stretch)
-        lags = (self._lag(end, node, t, dt) for end, node in self._at_ends if follows and end.driven)
-        self._left_behind = max(lags, default=0.0)
         return int(status), int(iterations)
 
     def take_step(self, t: float, dt: float) -> Array:
@@ -262,21 +260,19 @@ class BoxMethod:
 
     def _driven(self, end: DrivenEnd, node: int, t: float, dt: float, follows: bool) -> tuple[Array, Array]:
         """Values and dead loads (6,) of an end."""
-        gain = 0.0 if follows else LARGEST_FEEDBACK / dt
+        corrected = follows and end.driven
+        gain = 0.0 if corrected else LARGEST_FEEDBACK / dt
         values, dead = self.applied.driving(end, float(self.s[node]), t, (dt,), gain)
-        if follows:
-            values[0] += end.correction(t, dt, self._rates(end, node), self._rule.left_out)
+        if corrected:
+            rates, length = self._rates(end, node), float(self.s[-1])
+            extra, still = end.correction(t, dt, rates, self._rule.left_out, length)
+            values[0] += extra
+            self._left_behind = max(self._left_behind, still)
         return values[0], dead[0]
 
     def _rates(self, end: DrivenEnd, node: int) -> Array:
         """Velocity and omega (6,) that an end has now, along its axes."""
         return _along_axes(end, self.state.Y[node, V : OMEGA + 3], self.state.quaternion[node])
-
-    def _lag(self, end: DrivenEnd, node: int, t: float, dt: float) -> float:
-        """By how much the trial leaves an end behind, see `DrivenEnd`."""
-        turned = self.work.past[node, 3:6] + self.trial.Y[node, OMEGA : OMEGA + 3] / c0_of(self._rule, dt)
-        moved = np.concatenate([self.trial.r[node] - self.state.r[node], turned])
-        return end.left_behind(t + dt, _along_axes(end, moved, self.state.quaternion[node]), float(self.s[-1]))
 
 
 def _along_axes(end: DrivenEnd, moved: Array, quaternion: Array) -> Array:

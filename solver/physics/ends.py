@@ -84,33 +84,29 @@ class DrivenEnd:
             values[:, i] = self._values_of(i, t, later, gain)
         return values
 
-    def correction(self, t: float, dt: float, rates: Array, left_out: float) -> Array:
-        """What is to be added (6,) to the rates that are given at the end of a step from t, for the end, which has
-        `rates` (6,) now, to be where it must.
-
-        It moves by the mean of both rates; `left_out`: see `Scheme`. Of what that would leave it behind by, less half
-        of what the step leaves out, for the correction acts in the next step too.
-        """
-        extra = self._held * ((self._travel_at_switch - self.travel) / dt - 0.5 * rates)
-        for i in self._prescribed:
-            condition = self._condition(i)
-            begin, end = _rate(condition, t + 2e-9 * dt, dt), _rate(condition, t + dt, dt)
-            mean = (travel(condition, t + dt) - travel(condition, t)) / dt
-            uneven = left_out * (mean - 0.5 * (begin + end))
-            extra[i] = self._behind(i, condition, t) / dt + 1.5 * uneven - 0.5 * (rates[i] - begin)
-        return extra
-
     @property
     def driven(self) -> bool:
         """Whether any motion is given now."""
         return bool(self._prescribed)
 
-    def left_behind(self, t: float, moved: Array, length: float) -> float:
-        """The largest rotation (rad), or displacement in rod lengths, by which the end is from where it must be at t
-        once it has `moved` (6,), see `follow`."""
-        behind = (abs(self._behind(i, self._condition(i), t) - moved[i]) / (length if i < 3 else 1.0)
-                  for i in self._prescribed)  # fmt: skip
-        return float(max(behind, default=0.0))
+    def correction(self, t: float, dt: float, rates: Array, left_out: float, length: float) -> tuple[Array, float]:
+        """What is to be added (6,) to the rates that are given at the end of a step from t, for the end, which has
+        `rates` (6,) now, to be where it must; and the largest rotation (rad), or displacement in rod lengths, that it
+        is still behind.
+
+        It moves by the mean of both rates; `left_out`: see `Scheme`. Of what that would leave it behind by, less half
+        of what the step leaves out, for the correction acts in the next step too.
+        """
+        extra, still = self._held * ((self._travel_at_switch - self.travel) / dt - 0.5 * rates), 0.0
+        for i in self._prescribed:
+            condition = self._condition(i)
+            begin, end = _rate(condition, t + 2e-9 * dt, dt), _rate(condition, t + dt, dt)
+            now, then = travel(condition, t), travel(condition, t + dt)
+            uneven = left_out * ((then - now) / dt - 0.5 * (begin + end))
+            behind = (now - self._travelled(i)) / dt + uneven - 0.5 * float(rates[i] - begin)
+            extra[i] = behind + 0.5 * uneven
+            still = max(still, dt * abs(0.5 * behind - 0.25 * uneven) / (length if i < 3 else 1.0))
+        return extra, still
 
     def prescribed(self, component: int, t: float) -> float | None:
         """The exact displacement (m) along, or rotation (rad) about, an axis since t = 0, if it has been prescribed all
@@ -151,16 +147,17 @@ class DrivenEnd:
         if condition.kind == "stop":
             speed, since, within = self._stopping_from[i], condition.since, condition.within
             return [speed * (1.0 - _smoothstep((t + dt - since) / within)) for dt in later]
-        behind = self._behind(i, condition, t)
+        # how far the end, as it is now, is from where it must be (m or rad)
+        behind = travel(condition, t) - self._travelled(i) if gain else 0.0
         return [_rate(condition, t + dt, dt) + gain * behind for dt in later]
 
     def _condition(self, i: int) -> Condition:
         """What is in force now of a component."""
         return self._components[i][self._active[i]]
 
-    def _behind(self, i: int, condition: Condition, t: float) -> float:
-        """How far a prescribed component of the end, as it is now, is from where it must be at t (m or rad)."""
-        return travel(condition, t) - float(self.travel[i] - self._travel_at_switch[i])
+    def _travelled(self, i: int) -> float:
+        """The displacement (m) or rotation (rad) of a component since what is in force now came into force."""
+        return float(self.travel[i] - self._travel_at_switch[i])
 
 
 def _rate(condition: Condition, t: float, dt: float) -> float:

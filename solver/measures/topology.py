@@ -89,10 +89,15 @@ def writhe_shares(r: Array, tangents: Array) -> tuple[float, float]:
     return -_segment_pairs(_columns(r, 2), touching) / pi, share_of_rays(r, tangents)
 
 
+@allocating
 def share_of_rays(r: Array, tangents: Array) -> float:
     """The part of `writhe` (turns) that the pairs with a ray, or with the line that joins the ends, have in it."""
-    unit = np.array([_unit(tangent) for tangent in tangents]).reshape(-1, 3)
-    return 0.0 if is_plane(r, unit) else -float(_rays(r, unit) if len(unit) else _gap(r)) / pi
+    unit = np.empty_like(tangents)
+    for i in range(len(tangents)):
+        unit[i] = tangents[i] / norm(vector(tangents, i))
+    if is_plane(r, unit):
+        return 0.0
+    return -(_rays(r, unit) if len(unit) else _gap(r)) / pi
 
 
 @kernel
@@ -183,7 +188,7 @@ def _unit(direction: ArrayLike) -> Vector:
     return x / length, y / length, z / length
 
 
-@kernel
+@inner
 def _rays(r: Array, tangents: Array) -> float:
     """Half the signed area of all pairs with a ray of the polygon `r` (n, 3): with the one that arrives along the first
     of the unit `tangents` (2, 3), with the one that leaves along the last, and of these two. Where ends meet the rays
@@ -199,7 +204,7 @@ def _rays(r: Array, tangents: Array) -> float:
     return total - half_area(across, last, first) if kind == OPEN else total
 
 
-@kernel
+@inner
 def _gap(r: Array) -> float:
     """Half the signed area of all segments of `r` (n, 3) with the straight line from its end to its start."""
     start, end, total = vector(r, 0), vector(r, -1), 0.0

@@ -94,7 +94,9 @@ def share_of_rays(r: Array, tangents: Array) -> float:
     """The part of `writhe` (turns) that the pairs with a ray, or with the line that joins the ends, have in it."""
     unit = np.empty_like(tangents)
     for i in range(len(tangents)):
-        unit[i] = tangents[i] / norm(vector(tangents, i))
+        length = norm(vector(tangents, i))
+        for k in range(3):
+            unit[i, k] = tangents[i, k] / length
     if is_plane(r, unit):
         return 0.0
     return -(_rays(r, unit) if len(unit) else _gap(r)) / pi

@@ -345,7 +345,8 @@ class StaggeredMethod(RadauMethod):
     def _guess_keeps_apart(self, dt: float) -> bool:
         """Whether the guess leaves parts that press on each other apart: where they rattle, the last step misleads."""
         move_guess(self._hand_over(), dt, self.state)
-        return bool(keeps_apart(self.contact.touch, self._trial_nodes()[0]))
+        touch = self.contact.touch
+        return bool(keeps_apart(touch.points, touch.pairs, self._trial_nodes()[0]))
 
     def _guess_standstill(self, dt: float) -> None:
         """Nothing moves."""

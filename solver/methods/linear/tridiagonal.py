@@ -39,31 +39,32 @@ def _invert6(D: Array, room: Array, inverse: Array) -> bool:
 
     With D = (A B; C E), P = E^-1, S = (A - B P C)^-1: (S, -S B P; -P C S, P + P C S B P).
     """
-    E, P = room[0:3, 0:3], room[3:6, 0:3]
+    blocks = scratch_like((3, 3, 3), D)
+    E, P, S = blocks[0], blocks[1], blocks[2]
     for k in range(3):
         for m in range(3):
             E[k, m] = D[3 + k, 3 + m]
     if not invert3(E, P):
         return False
     # (P C) into the lower left block, (B P) into the upper right one, for now
-    _times(room, 3, 0, D, 3, 0, inverse, 3, 0)
-    _times(D, 0, 3, room, 3, 0, inverse, 0, 3)
+    _times(P, 0, 0, D, 3, 0, inverse, 3, 0)
+    _times(D, 0, 3, P, 0, 0, inverse, 0, 3)
     for k in range(3):
         for m in range(3):
             E[k, m] = D[k, m]
-    _subtract_times(D, 0, 3, inverse, 3, 0, room, 0, 0)
-    S = inverse[0:3, 0:3]
+    _subtract_times(D, 0, 3, inverse, 3, 0, E, 0, 0)
     if not invert3(E, S):
         return False
     # S B P into room, then P + P C (S B P)
-    _times(inverse, 0, 0, inverse, 0, 3, room, 0, 3)
+    _times(S, 0, 0, inverse, 0, 3, room, 0, 3)
     for k in range(3):
         for m in range(3):
+            inverse[k, m] = S[k, m]
             inverse[3 + k, 3 + m] = P[k, m]
             room[3 + k, 3 + m] = -inverse[3 + k, m]
             inverse[k, 3 + m] = -room[k, 3 + m]
     _subtract_times(room, 3, 3, room, 0, 3, inverse, 3, 3)
-    _times(room, 3, 3, inverse, 0, 0, inverse, 3, 0)
+    _times(room, 3, 3, S, 0, 0, inverse, 3, 0)
     return True
 
 

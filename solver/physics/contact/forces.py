@@ -127,9 +127,8 @@ def _press_at(touch: Touch, pressing: Pressing, r: Array, velocity: Array, stage
 
 
 @kernel
-def keeps_apart(touch: Touch, r: Array) -> bool:
+def keeps_apart(points: Points, pairs: Pairs, r: Array) -> bool:
     """Whether nodes at r (n, 3) leave the pairs enough of the gaps that they had at the start of the step."""
-    points, pairs = touch.points, touch.pairs
     for m in range(pairs.members.counts[0]):
         place_point(points, pairs.members.points[m], r, r)
     for pair in range(pairs.counts[0]):

@@ -244,9 +244,9 @@ def test_a_step_that_is_refused_is_tried_again_from_where_it_began() -> None:
 def test_a_guess_that_closes_more_than_half_of_a_gap_is_told_from_one_that_does_not() -> None:
     contact, s = contact_of_the_loop()
     contact.prepare(*state_of(loop(0.04), s), 0.01)
-    assert keeps_apart(contact.touch, state_of(loop(0.04), s)[1])
-    assert keeps_apart(contact.touch, state_of(loop(0.036), s)[1])
-    assert not keeps_apart(contact.touch, state_of(loop(0.02), s)[1])
+    assert keeps_apart(contact.touch.points, contact.touch.pairs, state_of(loop(0.04), s)[1])
+    assert keeps_apart(contact.touch.points, contact.touch.pairs, state_of(loop(0.036), s)[1])
+    assert not keeps_apart(contact.touch.points, contact.touch.pairs, state_of(loop(0.02), s)[1])
 
 
 def test_no_update_of_newtons_closes_a_gap_that_presses() -> None:

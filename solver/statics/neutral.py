@@ -2,8 +2,9 @@
 
 An arch between two pins may swing about their chord, and a round rod that nothing twists spin about its own axis: what
 is near such a state is one of many, and an iteration ends at any of them. Of these the path goes on from the nearest to
-where it was. Whether a turn changes nothing is asked of the tangent at an equilibrium, so that loads, ends and the
-rod's law need not be asked.
+where it was. Between clamps in one line a buckle turns about them, and each section about itself as much back. Whether
+a turn changes nothing is asked of the tangent at an equilibrium, so that loads, ends and the rod's law need not be
+asked.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.rotation import matrices_of, relative_rotation, rotation_of, turn
+from solver.scene.layout import across
 from solver.statics.equations import Equations
 from solver.statics.point import BLOCK, FORCE, PSI, Point, X
 from solver.statics.stability import NEUTRAL
@@ -24,21 +26,25 @@ PASSES = 3
 
 class Neutral:
     """The turns by which an equilibrium stays one: `turns` (k, 4), each about the axes of the lab, through a pivot,
-    and about the rod itself, of the point that `equations` looked at last, at equilibrium."""
+    and about the rod itself, of the point at which `equations` factored the tangent last, at equilibrium."""
 
     def __init__(self, equations: Equations) -> None:
         self._equations = equations
-        self.turns = np.empty((0, 4))
-        if not any(end.held[3:].all() for end in equations.ends):
-            self.turns = self._at_rest()
+        held = [equations.stages.R[0, -side, :, 2] for side, end in enumerate(equations.ends) if end.held[3:].all()]
+        self._of_buckle = bool(held)
+        """Whether an end holds the rod's rotation: then what turns about its tangent is turned back about itself."""
+        self.turns = self._at_rest(np.array([[*held[0], -1.0]]) if held else np.eye(4))
 
-    def _at_rest(self) -> Array:
-        """See `turns`: of unit mean square rotation of the sections, and at right angles to each other."""
+    def _at_rest(self, candidates: Array) -> Array:
+        """See `turns`: of those that are made of some candidates (k, 4), of unit mean square rotation of the sections,
+        and at right angles to each other."""
         R = self._equations.stages.R[0]
-        psi = np.stack([_rotations(about, R).ravel() for about in np.eye(4)])
+        psi = np.stack([_rotations(about, R).ravel() for about in candidates])
         sizes, turns = np.linalg.eigh(psi @ psi.T / len(R))
-        distinct = sizes > SAME * sizes[-1]
-        turns = turns[:, distinct].T / np.sqrt(sizes[distinct])[:, None]
+        distinct = sizes > SAME * max(1.0, sizes[-1])
+        if not distinct.any():
+            return np.empty((0, 4))
+        turns = turns[:, distinct].T @ candidates / np.sqrt(sizes[distinct])[:, None]
         changes = self._equations.changed_by(self._moves(turns)).reshape(len(turns), -1)
         mixed, sizes, _ = np.linalg.svd(np.sqrt(len(R)) * changes, full_matrices=False)
         return np.asarray(mixed[:, sizes < NEUTRAL * self._equations.loading()].T @ turns)
@@ -54,6 +60,14 @@ class Neutral:
             point = _turned(point, -np.asarray(parts) @ self.turns, R, pivot)
         return point
 
+    def without(self, z: Array) -> Array:
+        """A displacement (N + 2, 9) of the point that was looked at last, less what only turns a buckle about the rod:
+        next to nothing stands against it, and rounding makes it large."""
+        if self._of_buckle:
+            for move in self._moves(self.turns):
+                z = z - np.sum(move[:, PSI] * z[:, PSI]) / np.sum(move[:, PSI] ** 2) * move
+        return z
+
     def _pivot(self) -> Array:
         """A point (3,) that all turns leave where it is: where an end is held."""
         held = [end.pin for end in self._equations.ends if end.held[:3].any()]
@@ -61,14 +75,16 @@ class Neutral:
 
     def _moves(self, turns: Array) -> Array:
         """The displacements (k, N + 2, 9) of turns (k, 4)."""
+        if not len(turns):
+            return np.empty((0, 0, BLOCK))
         stages = self._equations.stages
         R, F = stages.R[0], stages.F[0]
         places = np.vstack([stages.base[0, 0], stages.r[0], self._equations.tip()]) - self._pivot()
         z = np.zeros((len(turns), len(R), BLOCK))
         for move, about in zip(z, turns, strict=True):
             move[:, PSI] = _rotations(about, R)
-            move[:, X] = np.cross(about[:3], places)
-            move[1:, FORCE] = np.cross(about[:3], F)
+            move[:, X] = across(about[:3], places)
+            move[1:, FORCE] = across(about[:3], F)
         return z
 
 

@@ -57,7 +57,7 @@ WITHOUT_END = 1e3
 LEAST = 1e-7
 """By how much q changes at the least where the schedules begin, a unit of the branch."""
 REACHED = 1e-10
-STEEP = 0.02
+STEEP = 0.005
 """Least dq at which a step may end at a given q."""
 
 
@@ -196,16 +196,19 @@ class Path:
             self._easy, self.last_iterations = iteration <= EASY_ITERATIONS, iteration
             left, solver = self._equations.linearise(guess)
             rest = float(np.abs(left).max())
-            if BALANCED * self._equations.loading() > rest > NO_LONGER * unbalanced:
+            balanced = rest < BALANCED * self._equations.loading()
+            if balanced and rest > NO_LONGER * unbalanced:
                 return guess
             if solver.singular:
                 return None
-            z, dq = -solver.solve(left), 0.0
+            z, dq = self._neutral.without(-solver.solve(left)), 0.0
             if across is not None:
-                w = -solver.solve(self._equations.slope(guess, 0.0))
+                w = self._neutral.without(-solver.solve(self._equations.slope(guess, 0.0)))
                 dq = -across.dot(z, 0.0) / across.dot(w, 1.0)
                 z += dq * w
             size = self._size(z, guess)
+            if balanced and size > before:
+                return guess
             at_rest = ROUNDING > size > NO_LONGER * before
             falls = size < 2.0 * before or rest < NO_LONGER * unbalanced
             if not (at_rest or (falls and size < LARGEST_CORRECTION)) or not self._equations.keeps_apart(z):
@@ -227,11 +230,11 @@ class Path:
         """An equilibrium, turned as near to the last one as may be, and the branch's direction there: as it was, or
         right behind a corner with q going `forward` (+-1)."""
         _, solver = self._equations.linearise(point)
-        neutral = Neutral(self._equations)
-        if len(neutral.turns):
-            point = neutral.nearest(point, self.point)
+        self._neutral = Neutral(self._equations)
+        if len(self._neutral.turns):
+            point = self._neutral.nearest(point, self.point)
             _, solver = self._equations.linearise(point)
-        new = Direction(-solver.solve(self._equations.slope(point, forward * AHEAD)), 1.0)
+        new = Direction(self._neutral.without(-solver.solve(self._equations.slope(point, forward * AHEAD))), 1.0)
         size = np.sqrt(new.dot(new.z, 1.0)) * np.sign(forward or self.direction.dot(new.z, 1.0))
         return point, Direction(new.z / size, float(1.0 / size))
 

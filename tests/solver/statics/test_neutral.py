@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solver import FREE, Condition, Curve, End, Initial, Numerics, constant_vector, simulate
+from solver import FIXED, FREE, Condition, Curve, DistributedLoad, End, Initial, Numerics, constant_vector, simulate
 from solver.arrays import Array
 from solver.scene.layout import nodes_at_rest
 from tests.solver.scenes import LENGTH, ROD
@@ -66,3 +66,21 @@ def test_what_its_load_turns_is_turned() -> None:
     *_, frame = simulate(scene)
     tension = np.array([1e-2, 9.81, 0.0])
     assert_allclose(frame.r[-1], LENGTH * tension / np.linalg.norm(tension), atol=1e-6)
+
+
+@pytest.mark.parametrize("side", [1e-9, 1e-7])
+def test_a_buckle_that_next_to_nothing_turns_about_its_rod_is_followed_past_its_fold(side: float) -> None:
+    """As an umbilical of 60 m with 7 turns, which throws a hockle when it is slack: what says to which side is 1e-9 of
+    its weight, and turns the buckle about the rod by far less than rounding does."""
+    length, pull = 60.0, 20.0
+    rod = replace(ROD, length=length, stiffness=constant_vector((30.0, 30.0, 40.0)), diameter=Curve.constant(0.02),
+                  mass=Curve.constant(0.6))  # fmt: skip
+    turned = Initial.straight(direction=(1.0, 0.0, 0.0), twist=Curve.table([0.0, length], [0.0, 45.0]))
+    slack = Curve.table([0.0, 1.0], [pull, 0.1 * pull])
+    end = End((FIXED, FIXED, (Condition("load", slack),)), (FIXED, FIXED, FIXED))
+    load = DistributedLoad(constant_vector((0.0, 0.0, side)))
+    scene = static(rod=rod, initial=turned, start=End.clamp(), end=end, distributed=(load,),
+                   output_interval=0.1, numerics=Numerics("staggered", intervals=128))  # fmt: skip
+    *_, last = simulate(scene)
+    assert last.t == 1.0
+    assert last.parameter < 0.6 and last.negative_modes == 1  # back from the fold at .7, and along a loop that opens

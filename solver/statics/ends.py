@@ -98,7 +98,9 @@ class StaticEnd:
         self._turning = Turning(quaternion, self._conditions[3:], until)
         self.follows = end.frame == "material"
         self.axes = rotation_of(quaternion) if self.follows else np.eye(3)
+        self._given = [i for i, c in enumerate(self._conditions) if not c.curve.is_zero]
         self.held = np.array([c.kind != "load" for c in self._conditions])
+        self._turns_held = int(self.held[3:].sum())
         self.follower, self.moment, self.pin = np.zeros(3), np.zeros(3), place
 
     def corners(self) -> list[float]:
@@ -107,7 +109,11 @@ class StaticEnd:
 
     def values(self, t: float) -> Array:
         """(6,) at time t: displacement (m) or rotation (rad) where held, else internal force (N) or moment (N m)."""
-        return np.array([travel(c, t) if c.kind != "load" else c.curve.value(t) for c in self._conditions])
+        values = np.zeros(6)
+        for i in self._given:
+            c = self._conditions[i]
+            values[i] = travel(c, t) if c.kind != "load" else c.curve.value(t)
+        return values
 
     def spin(self, t: float) -> float | None:
         """The rotation (rad) about a3, if it is prescribed."""
@@ -137,10 +143,10 @@ class StaticEnd:
 
     def _turned(self, t: float, quaternion: Array) -> Array:
         """By how much its frame is turned away from where it is held at time t (3,)."""
-        if not self.held[3:].any():
+        if self._turns_held == 0:
             return np.zeros(3)
         there, away = self._turning.at(t), np.empty(3)
-        if self.held[3:].all():
+        if self._turns_held == 3:
             relative_rotation(there, quaternion, away)
             return away
         free = np.eye(3)[int(np.argmin(self.held[3:]))]

@@ -208,20 +208,19 @@ class Equations:
     def linearise(self, point: Point) -> tuple[Array, Solver | CoupledSolver]:
         """The residual (N + 2, 9) and the factored tangent at a point."""
         left = self.look_at(point)
-        self._factored = self.blocks()
         if self.contact.pressing:
-            return left, CoupledSolver(self._factored, self._of_contact(), self.units)
-        return left, Solver(self._factored, self.units)
+            return left, CoupledSolver(self.blocks(), self._of_contact(), self.units)
+        return left, Solver(self.blocks(), self.units)
 
     def _of_contact(self) -> csr_array:
         """What strands that press on each other add to the tangent, see `of_contact`."""
         carried = node_moves(self.stages.R[0], self.chain.h, self.units)
         return of_contact(*self.contact.stiffness(), carried, self._moves(), self._rows[0])
 
-    def changed_by(self, moves: Array) -> Array:
-        """What each of some displacements (k, N + 2, 9) makes of the residual (k, N + 2, 9), of the point at which the
-        tangent was factored last."""
-        (D, lower, upper), z = self._factored, (moves / self.units)[..., None]
+    def changed_by(self, moves: Array, blocks: tuple[Array, Array, Array]) -> Array:
+        """What each of some displacements (k, N + 2, 9) makes of the residual (k, N + 2, 9), of the point that was
+        looked at last, whose tangent has these `blocks`."""
+        (D, lower, upper), z = blocks, (moves / self.units)[..., None]
         changed = D @ z
         changed[:, 1:] += lower[1:] @ z[:, :-1]
         changed[:, :-1] += upper[:-1] @ z[:, 1:]

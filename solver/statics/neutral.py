@@ -16,6 +16,7 @@ from solver.kernels.rotation import matrices_of, relative_rotation, rotation_of,
 from solver.scene.layout import across
 from solver.statics.equations import Equations
 from solver.statics.point import BLOCK, FORCE, PSI, Point, X
+from solver.statics.solvers import CoupledSolver, Solver
 from solver.statics.stability import NEUTRAL
 
 SAME = 1e-9
@@ -26,16 +27,21 @@ PASSES = 3
 
 class Neutral:
     """The turns by which an equilibrium stays one: `turns` (k, 4), each about the axes of the lab, through a pivot,
-    and about the rod itself, of the point at which `equations` factored the tangent last, at equilibrium."""
+    and about the rod itself, of the point that was looked at last."""
 
     def __init__(self, equations: Equations) -> None:
         self._equations = equations
-        held = [equations.stages.R[0, -side, :, 2] for side, end in enumerate(equations.ends) if end.held[3:].all()]
-        self._of_buckle = bool(held)
-        """Whether an end holds the rod's rotation: then what turns about its tangent is turned back about itself."""
-        self.turns = self._at_rest(np.array([[*held[0], -1.0]]) if held else np.eye(4))
+        self._clamps = [side for side, end in enumerate(equations.ends) if end.held[3:].all()]
+        """Ends that hold the rod's rotation: what turns about the tangent there is turned back about itself."""
+        self.turns = np.empty((0, 4))
 
-    def _at_rest(self, candidates: Array) -> Array:
+    def look(self, solver: Solver | CoupledSolver) -> None:
+        """Look at the equilibrium that `equations` has just linearised."""
+        R = self._equations.stages.R[0]
+        candidates = np.array([[*R[-self._clamps[0], :, 2], -1.0]]) if self._clamps else np.eye(4)
+        self.turns = self._at_rest(candidates, solver.blocks)
+
+    def _at_rest(self, candidates: Array, blocks: tuple[Array, Array, Array]) -> Array:
         """See `turns`: of those that are made of some candidates (k, 4), of unit mean square rotation of the sections,
         and at right angles to each other."""
         R = self._equations.stages.R[0]
@@ -45,7 +51,7 @@ class Neutral:
         if not distinct.any():
             return np.empty((0, 4))
         turns = turns[:, distinct].T @ candidates / np.sqrt(sizes[distinct])[:, None]
-        changes = self._equations.changed_by(self._moves(turns)).reshape(len(turns), -1)
+        changes = self._equations.changed_by(self._moves(turns), blocks).reshape(len(turns), -1)
         mixed, sizes, _ = np.linalg.svd(np.sqrt(len(R)) * changes, full_matrices=False)
         return np.asarray(mixed[:, sizes < NEUTRAL * self._equations.loading()].T @ turns)
 
@@ -63,7 +69,7 @@ class Neutral:
     def without(self, z: Array) -> Array:
         """A displacement (N + 2, 9) of the point that was looked at last, less what only turns a buckle about the rod:
         next to nothing stands against it, and rounding makes it large."""
-        if self._of_buckle:
+        if self._clamps:
             for move in self._moves(self.turns):
                 z = z - np.sum(move[:, PSI] * z[:, PSI]) / np.sum(move[:, PSI] ** 2) * move
         return z

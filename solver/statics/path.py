@@ -89,7 +89,7 @@ class Path:
         self.point = equations.start.moved(np.zeros((len(equations.start.quaternion), 9)), 0.0)
         self.direction = Direction(np.zeros((len(equations.start.quaternion), 9)), 1.0)
         self.steps, self.iterations, self.failed, self.last_iterations, self.modes = 0, 0, 0, 0, 0
-        self._easy = True
+        self._easy, self._neutral = True, Neutral(equations)
         self.begin([])
 
     def begin(self, corners: list[float]) -> None:
@@ -230,7 +230,7 @@ class Path:
         """An equilibrium, turned as near to the last one as may be, and the branch's direction there: as it was, or
         right behind a corner with q going `forward` (+-1)."""
         _, solver = self._equations.linearise(point)
-        self._neutral = Neutral(self._equations)
+        self._neutral.look(solver)
         if len(self._neutral.turns):
             point = self._neutral.nearest(point, self.point)
             _, solver = self._equations.linearise(point)

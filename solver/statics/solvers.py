@@ -33,7 +33,7 @@ class Solver:
     """The factored tangent of one point."""
 
     def __init__(self, blocks: tuple[Array, Array, Array], units: Array) -> None:
-        D, lower, upper = blocks
+        self.blocks = D, lower, upper = blocks
         self._units, self._shape = units, (len(D), BLOCK)
         bands = np.zeros((3 * BAND + 1, BLOCK * len(D)), order="F")
         for block, (keep, place) in zip((D, lower, upper), _places(len(D)), strict=True):
@@ -52,7 +52,7 @@ class CoupledSolver:
     """The same where strands press on each other, whose nodes may be far apart along s."""
 
     def __init__(self, blocks: tuple[Array, Array, Array], contact: csr_array, units: Array) -> None:
-        D, lower, upper = blocks
+        self.blocks = D, lower, upper = blocks
         n = len(D)
         self._units, self._shape = units, (n, BLOCK)
         data = np.stack([lower, D, upper], axis=1).reshape(-1, BLOCK, BLOCK)[1:-1]

@@ -14,8 +14,9 @@ from solver.kernels.rotation import rotate
 from solver.scene.layout import nodes_at_rest
 from solver.scene.scene import Scene
 
-NEAR = 0.1
-"""Widest gap, in rod lengths."""
+CLOSED, NEAR = 1e-6, 0.1
+"""Narrowest gap, in rod lengths: a mesh says of a smaller one neither how wide it is nor which way it leads, and the
+curve is closed as it is; and the widest."""
 AHEAD = 0.8
 """Least cosine of the angles by which the line across it turns from the tangents at the ends."""
 
@@ -27,4 +28,4 @@ def is_ring(scene: Scene) -> bool:
     r, orientation, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, 3))
     gap, tangents = r[0] - r[-1], rotate(orientation[[0, -1]], np.tile([0.0, 0.0, 1.0], (2, 1)))
     width = float(np.linalg.norm(gap))
-    return width <= NEAR * scene.rod.length and bool((tangents @ gap > AHEAD * width).all())
+    return CLOSED < width / scene.rod.length <= NEAR and bool((tangents @ gap > AHEAD * width).all())

@@ -88,6 +88,8 @@ def test_what_passes_through_the_gap_hops_over_an_end() -> None:
 
 RINGS = {
     "a gap": (ring(1.0), True), "a wide gap": (ring(1.0, part=0.94), True),
+    "a gap of rounding": (ring(1.0, part=1.0 - 1e-15), False),
+    "a gap that no mesh shows": (ring(1.0, part=1.0 - 1e-8), False),
     "half a ring": (ring(1.0, part=0.5), False), "ends that overlap": (ring(1.0, part=1.03), False),
     "an end that leans": (ring(1.0, start=End.pin()), False),
     "an end that slides": (ring(1.0, start=End.slider()), False),

@@ -101,8 +101,9 @@ def sizes(scene: Scene, pieces: Iterable[Columns]) -> Array:
 
 def errors_of(error: Columns, size: Array) -> Array:
     """The errors of `QUANTITIES` (frames, 4), from those of the `JUDGED` columns, relative to `sizes`."""
-    topology = np.nan_to_num(error.numbers[:, 0, [TWIST, WRITHE]])  # NaN where the output has none
     place = np.linalg.norm(error.along[..., JUDGED_R], axis=-1).max(axis=-1)
+    topology = np.nan_to_num(error.numbers[:, 0, [TWIST, WRITHE]])  # NaN where the output has none
+    topology[np.isnan(place)] = np.nan  # or where nothing tells the errors
     kappa, energies = _rms(error.along[..., JUDGED_KAPPA]), _energies(error).max(axis=-1)
     return np.asarray(np.column_stack([place, kappa, energies, topology.max(axis=-1)]) / size)
 

@@ -29,6 +29,11 @@ def test_errors_that_nothing_tells_are_not_within_the_tolerance() -> None:
     assert accuracy.sentence() == "Nothing tells the errors: only one run came that far."
 
 
+def test_where_nothing_tells_the_errors_nothing_tells_those_of_twist_and_writhe() -> None:
+    error = Columns(np.full((1, 3, len(JUDGED)), np.nan), np.full((1, 1, len(NUMBERS)), np.nan))
+    assert np.isnan(errors_of(error, np.ones(4))).all()
+
+
 def test_what_stretching_stores_is_one_of_the_energies() -> None:
     error = Columns(np.zeros((1, 3, len(JUDGED))), np.zeros((1, 1, len(NUMBERS))))
     error.numbers[0, 0, STRETCHING] = 3.0

@@ -26,7 +26,7 @@ class Centreline(TypedDict):
     """lab, of the whole rod; in m/s; default [0.0, 0.0, 0.0]"""
 
     angular_velocity: NotRequired[Sequence[float]]
-    """lab, about the centre of mass; in rad/s; default [0.0, 0.0, 0.0]"""
+    """lab, about the centre of mass of the rod alone; in rad/s; default [0.0, 0.0, 0.0]"""
 
     shape: Literal["centreline"]
     """which of the two shapes it is"""
@@ -474,7 +474,7 @@ class Straight(TypedDict):
     """lab, of the whole rod; in m/s; default [0.0, 0.0, 0.0]"""
 
     angular_velocity: NotRequired[Sequence[float]]
-    """lab, about the centre of mass; in rad/s; default [0.0, 0.0, 0.0]"""
+    """lab, about the centre of mass of the rod alone; in rad/s; default [0.0, 0.0, 0.0]"""
 
     shape: Literal["straight"]
     """which of the two shapes it is"""

@@ -32,7 +32,7 @@ class _Motion(Spec):
         Profile, means("profile: turn of the section about the rod, beside parallel transport along it", "rad")
     ] = 0.0
     velocity: Annotated[Triple, means("lab, of the whole rod", "m/s")] = ORIGIN
-    angular_velocity: Annotated[Triple, means("lab, about the centre of mass", "rad/s")] = ORIGIN
+    angular_velocity: Annotated[Triple, means("lab, about the centre of mass of the rod alone", "rad/s")] = ORIGIN
 
     def _common(self) -> dict[str, Any]:
         return {

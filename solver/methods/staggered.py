@@ -129,8 +129,9 @@ class StaggeredMethod(RadauMethod):
         """Open the joints by the forces that the rod would bear at t = 0 if it could not stretch.
 
         Else its sound would ring from the start on, and the steps follow it. The given centreline is that of the rod
-        without stretch: what is held stays there; else the centre of mass does. Where both ends are held so that
-        the rod cannot become longer, it begins without stretch. An end that is jerked has to stretch it first.
+        without stretch: what is held stays there; else the centre of mass does, of rod and bodies. Where both ends are
+        held so that the rod cannot become longer, it begins without stretch. An end that is jerked has to stretch it
+        first.
         """
         state, e = self.state, np.zeros_like(self.state.opening[0])
         rigid = replace(scene, rod=without_stretch(scene.rod))
@@ -148,7 +149,9 @@ class StaggeredMethod(RadauMethod):
         if len(starts) and len(ends) and np.abs(ends @ tip).max() > NONE * self.s[-1]:
             return
         if not len(starts):
-            back = -(tip if len(ends) else np.average(moved[0], axis=0, weights=self.chain.mass))
+            masses = [scene.start.mass, *(self.chain.h * self.chain.mass), scene.end.mass]
+            away = np.vstack([0.0 * tip, moved[0], tip])
+            back = -(tip if len(ends) else np.average(away, axis=0, weights=masses))
             spin = np.array(scene.initial.angular_velocity, dtype=float)
             state.base[:] += np.stack([back, np.cross(spin, back), np.cross(spin, np.cross(spin, back))])
         state.opening[0], state.F[:] = e, F

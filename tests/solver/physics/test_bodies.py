@@ -135,6 +135,21 @@ def test_two_bodies_that_turn_about_each_other_keep_the_rod_taut() -> None:
     assert_allclose(frame.r.mean(axis=0), [LENGTH / 2.0, 0.0, 0.0], atol=1e-5 * LENGTH)
 
 
+def test_bodies_on_a_rod_that_stretches_turn_about_the_centre_of_mass_of_all() -> None:
+    """By far the heavier one hardly moves, though the rod is stretched by a hundredth from the start on."""
+    bodies, spin, speed = (50.0 * MASS, 10.0 * MASS), 2.0, 0.7
+    all_of_it = MASS + sum(bodies)
+    arm = (0.5 * MASS + bodies[1]) / all_of_it * LENGTH
+    pull = bodies[0] * spin**2 * arm
+    whirled = Initial.straight(velocity=(speed, spin * (arm - 0.5 * LENGTH), 0.0), angular_velocity=(spin, 0.0, 0.0))
+    scene = Scene(replace(ROD, laws=(Stretch(Curve.constant(100.0 * pull)),)), whirled,
+                  with_body(bodies[0]), with_body(bodies[1]), 6.0, 0.05, numerics=FIXED_STEPS)  # fmt: skip
+    for frame in simulate(scene):
+        rods = np.average(0.5 * (frame.r[1:] + frame.r[:-1]), axis=0)
+        centre = (MASS * rods + bodies[0] * frame.r[0] + bodies[1] * frame.r[-1]) / all_of_it
+        assert_allclose(centre, [speed * frame.t, 0.0, arm], atol=1e-5 * LENGTH)
+
+
 def test_on_a_rail_it_moves_along_the_rail_alone() -> None:
     """A body that a constant force pulls along e1, its rod straight behind it: a = f / (M + m)."""
     M, pull = 3.0 * MASS, 2.0

@@ -3,12 +3,13 @@ it were at rest."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf
 from typing import Any
 
 import numpy as np
 
-from solver import Scene
+from solver import Initial, Scene
 from solver.kernels.rotation import rotate
 from solver.measures.buckling import STRAIGHT, Disturbance, Transverse
 from solver.physics.elasticity import elasticity_of, principal
@@ -16,9 +17,12 @@ from solver.physics.ends import travel
 from solver.physics.section import sample
 from solver.scene.ends import Component, End
 from solver.scene.layout import nodes_at_rest
+from solver.scene.rod import NO_CURVATURE
 
 TIMES, PLACES, INTERVALS = 21, 65, 16
 """At which it is looked at, and of what is needed only about."""
+NEARLY = 0.9
+"""Part of its length that the distance of a rod's ends is at least, if it is nearly straight."""
 GREENHILL = 8.987
 """Torque, in EJ/L, at which a straight rod with clamped ends buckles (Greenhill 1883)."""
 
@@ -38,6 +42,29 @@ def growth(scene: Scene, axis: Any) -> float:
             return inf
         disturbance.go_on(dt, stiffness)
     return 0.0 if scene.at_rest else disturbance.growth
+
+
+def slowest_swing(scene: Scene) -> float:
+    """The period (s) of its slowest swing across itself, at first, if it were laid straight from its start to its end;
+    0 where it has none."""
+    s = np.linspace(0.0, scene.rod.length, PLACES)
+    r = nodes_at_rest(scene.initial, s)[0]
+    axis = r[-1] - r[0] if np.linalg.norm(r[-1] - r[0]) > NEARLY * scene.rod.length else None
+    if axis is None:
+        return 0.0
+    laid = replace(scene, initial=Initial.straight(direction=tuple(axis)), points=(), distributed=(), loads=(),
+                   gravity=(0.0, 0.0, 0.0), fluid=None, rod=replace(scene.rod, kappa0=NO_CURVATURE))  # fmt: skip
+    if (transverse := Transverse.of(laid)) is None:
+        return 0.0
+    tension = _tension(scene, axis / np.linalg.norm(axis), s, 0.0)
+    squares = np.linalg.eigvalsh(transverse.straight(s, 0.0 * s, 0.0 * s, tension))
+    swings = squares[squares > transverse.slow**2]
+    return float(2.0 * np.pi / np.sqrt(swings.min())) if len(swings) else 0.0
+
+
+def twisted_at_first(scene: Scene) -> float:
+    """By how much (rad) the end is turned against the start at t = 0."""
+    return float(np.diff(scene.initial.twist(np.array([0.0, scene.rod.length])))[0])
 
 
 def critical_twist(scene: Scene) -> float:
@@ -78,6 +105,8 @@ def _tension(scene: Scene, axis: Any, s: Any, t: float) -> Any:
     for load in scene.distributed:
         pull = pull + load.schedule.value(t) * sum(a * part(s) for a, part in zip(axis, load.force, strict=True))
     points = [(load.s, float(np.dot([curve.value(t) for curve in load.force], axis))) for load in scene.points]
+    weights = [end.mass * float(np.dot(scene.gravity, axis)) for end in (scene.start, scene.end)]
+    points += [(place, weight) for place, weight in zip((0.0, s[-1]), weights, strict=True) if weight]
     ends = [_given(_components(end, axis), t) for end in (scene.start, scene.end)]
     return _carried(s, pull, points, ends)
 
@@ -87,7 +116,8 @@ def _torque(scene: Scene, axis: Any, s: Any, torsion: Any, t: float) -> Any:
     ends = [_given([(1.0, end.rotation[2])], t) for end in (scene.start, scene.end)]
     if ends == [None, None]:
         turned = [travel(end.rotation[2][0], t) for end in (scene.start, scene.end)]
-        return np.full(len(s), (turned[1] - turned[0]) / float(np.trapezoid(1.0 / torsion, s)))
+        twist = turned[1] - turned[0] + twisted_at_first(scene)
+        return np.full(len(s), twist / float(np.trapezoid(1.0 / torsion, s)))
     points = [(load.s, float(np.dot([curve.value(t) for curve in load.moment], axis))) for load in scene.points]
     return _carried(s, 0.0 * s, points, ends)
 

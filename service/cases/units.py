@@ -31,8 +31,13 @@ TURNED_OVER = 4.0 * pi
 """Rotation (rad) of an end about an axis across the rod, beyond which it is likely to be in degrees."""
 WATER = (0.95, 1.1)
 """g/cm³"""
+GAS, RAPID, CREEPING = 100.0, 30.0, 5e-6
+"""kg/m³ that no gas has; m/s of no current; and m, the diameter of a rod around which water flows at less than a
+Reynolds number of 1 as long as it is slower than .2 m/s."""
 EARTH = 9.81
 """m/s²; a gravity that is larger is doubted by itself."""
+MUCH_SHEAR = 0.01
+"""Shear strain of the surface by a twist, up to which turns are nothing special."""
 EIGHTH = 45.0
 """Degrees; multiples of it are likely to be degrees."""
 
@@ -40,7 +45,8 @@ EIGHTH = 45.0
 def units_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What is likely to be in another unit than it should."""
     return [*([] if spec.rod.density == 1.0 else _material(spec, scene)),  # 1: the unit is the rod's own density
-            *_water(spec), *_degrees(scene), *_twist(spec)]  # fmt: skip
+            *_water(spec), *_current(spec, scene), *_creeping(spec, scene), *_degrees(scene),
+            *_twist(spec, scene)]  # fmt: skip
 
 
 def _material(spec: CaseSpec, scene: Scene) -> list[FieldError]:
@@ -80,6 +86,21 @@ def _water(spec: CaseSpec) -> Iterator[FieldError]:
     if fluid and spec.rod.density != 1.0 and fluid.added_mass and WATER[0] <= fluid.density <= WATER[1]:
         rule = "is that of air, which adds next to no mass, and added_mass is given: is it in g/cm³?"
         yield FieldError("/fluid/density", fluid.density, rule)
+
+
+def _current(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    if scene.fluid and spec.rod.density != 1.0 and scene.fluid.density > GAS and scene.fluid.fastest > RAPID:
+        speed = scene.fluid.fastest
+        yield FieldError("/fluid/current", speed, f"is faster than any current of a liquid ({RAPID:g} m/s)")
+
+
+def _creeping(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """A rod so thin that a liquid creeps around it."""
+    fluid, diameter = scene.fluid, widest(scene)
+    if fluid and fluid.density > GAS and fluid.drag_normal > 0.0 and diameter < CREEPING:
+        rule = (f"is of u², and the liquid creeps around a rod of {diameter:.2g} m, whose drag is in proportion to u: "
+                "give it as loads.damping, which is per mass, 1/s")  # fmt: skip
+        yield FieldError("/fluid/drag_normal", fluid.drag_normal, rule)
 
 
 def _forces(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -124,10 +145,11 @@ def _degrees(scene: Scene) -> Iterator[FieldError]:
                 yield FieldError(f"/ends/{name}/theta{i + 1}", angle, rule)
 
 
-def _twist(spec: CaseSpec) -> Iterator[FieldError]:
+def _twist(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
+    """A round number of degrees, where so many rad are much for the rod: a long cable may have many turns."""
     twist = spec.initial.twist
     angle = max(map(abs, twist.value if isinstance(twist, ProfileTable) else (twist,)))
-    if _are_degrees(angle):
+    if _are_degrees(angle) and 0.5 * widest(scene) * angle > MUCH_SHEAR * spec.rod.length:
         rule = f"is an angle in rad, of {angle / (2 * pi):.3g} turns: is it in degrees?"
         yield FieldError("/initial/twist", angle, rule)
 

@@ -50,9 +50,22 @@ def axis_kept(scene: Scene) -> int | None:
         return None
     s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
     _, quaternion, kappa = nodes_at_rest(scene.initial, s)
-    across = tuple(law for law in scene.rod.laws if not getattr(law, "along", False))
-    alone, R = replace(scene, contact=None, rod=replace(scene.rod, laws=across)), rotation_of(quaternion[0])
+    alone, R = _by_itself(scene), rotation_of(quaternion[0])
     return next((p for p in (STRAIGHT, 0, 1) if alone.keeps(View(p, s, quaternion, kappa, R))), None)
+
+
+def stays_straight(scene: Scene) -> bool:
+    """Whether nothing bends a rod that is straight at t = 0."""
+    s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
+    _, quaternion, kappa = nodes_at_rest(scene.initial, s)
+    return _by_itself(scene).keeps(View(STRAIGHT, s, quaternion, kappa, rotation_of(quaternion[0])))
+
+
+def _by_itself(scene: Scene) -> Scene:
+    """Without bodies, contact and the laws of what is along the rod, which bend nothing."""
+    start, end = (replace(end, mass=0.0) for end in (scene.start, scene.end))
+    across = tuple(law for law in scene.rod.laws if not getattr(law, "along", False))
+    return replace(scene, contact=None, start=start, end=end, rod=replace(scene.rod, laws=across))
 
 
 @dataclass(frozen=True)

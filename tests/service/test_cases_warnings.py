@@ -198,7 +198,7 @@ def test_a_rod_that_loads_stretch_beyond_the_theory_is_pointed_out(pull: float, 
     """By 785 N of 2400 N."""
     jumper = {"preset": "pin", "frame": "lab", "f1": 0.0, "f2": 0.0, "f3": -pull}
     rod = PRESSED["rod"] | {"axial_stiffness": 2400.0}
-    warnings = _warned(PRESSED | {"rod": rod, "ends": {"start": "pin", "end": jumper}})
+    warnings = _warned(PRESSED | {"rod": rod, "ends": {"start": "pin", "end": jumper}, "output": {"interval": 1e-3}})
     assert [warning.pointer for warning in warnings] == ["/rod/axial_stiffness"] * warned
     assert all("by 0.33 of its length" in warning.rule for warning in warnings)
 
@@ -208,7 +208,7 @@ def test_rubber_whose_axial_stiffness_is_that_of_its_section_is_left_alone(pull:
     """EA = 78.5 N: by 3.8 and by 6.4 of its length, of which a run bears 4."""
     rod = PRESSED["rod"] | {"youngs_modulus": 1e6, "shear_modulus": 4e5, "axial_stiffness": 78.5}
     jumper = {"preset": "pin", "frame": "lab", "f1": 0.0, "f2": 0.0, "f3": pull}
-    warnings = _warned(PRESSED | {"rod": rod, "ends": {"start": "pin", "end": jumper}})
+    warnings = _warned(PRESSED | {"rod": rod, "ends": {"start": "pin", "end": jumper}, "output": {"interval": 1e-3}})
     assert [warning.pointer for warning in warnings] == ["/rod/axial_stiffness"] * warned
 
 

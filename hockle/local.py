@@ -1,4 +1,4 @@
-"""hockle run, cases, validate: the commands that need no server."""
+"""hockle run, cases, schema, validate: the commands that need no server."""
 
 from __future__ import annotations
 
@@ -25,23 +25,33 @@ FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def register(subparsers: Any) -> None:
-    """Add `hockle run`, `hockle cases` and `hockle validate`."""
+    """Add `hockle run`, `hockle validate`, `hockle cases` and `hockle schema`."""
     run_parser = subparsers.add_parser("run", help="simulate a case here and write its dataset")
     run_parser.add_argument("-o", "--output", type=Path, help="the dataset (default NAME.nc)")
     run_parser.set_defaults(run=run)
-    validate_parser = subparsers.add_parser("validate", help="check a case without running it")
+    run_parser.add_argument("case", metavar="CASE", help="a shipped name or a file")
+    validate_parser = subparsers.add_parser("validate", help="check cases without running them")
     validate_parser.set_defaults(run=validate)
+    validate_parser.add_argument("cases", nargs="+", metavar="CASE", help="a shipped name or a file")
     for parser in (run_parser, validate_parser):
-        parser.add_argument("case", metavar="CASE", help="a shipped name or a file")
         parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", dest="settings",
                             help="change a value of the case, as numerics.intervals=400")  # fmt: skip
-    subparsers.add_parser("cases", help="list the shipped cases").set_defaults(run=cases)
+    cases_parser = subparsers.add_parser("cases", help="list the shipped cases, or print one")
+    cases_parser.add_argument("name", nargs="?", metavar="SHIPPED", help="the case to print, as JSON")
+    cases_parser.set_defaults(run=cases)
+    subparsers.add_parser("schema", help="print the JSON schema of a case").set_defaults(run=schema)
 
 
-def cases(_: argparse.Namespace) -> int:
-    """Print the shipped cases."""
-    from service.cases import shipped_cases
+def cases(arguments: argparse.Namespace) -> int:
+    """Print the shipped cases, or the text of one."""
+    from service.cases import CaseError, shipped_case, shipped_cases
 
+    if arguments.name is not None:
+        try:
+            print(shipped_case(arguments.name))
+        except CaseError as error:
+            raise Failure(str(error)) from None
+        return 0
     titles = shipped_cases()
     width = max(map(len, titles))
     for name, title in titles.items():
@@ -49,11 +59,34 @@ def cases(_: argparse.Namespace) -> int:
     return 0
 
 
+def schema(_: argparse.Namespace) -> int:
+    """Print the JSON schema of a case."""
+    from json import dumps
+
+    from service.cases import case_schema
+
+    print(dumps(case_schema(), indent=2))
+    return 0
+
+
 def validate(arguments: argparse.Namespace) -> int:
-    """Print what a case would cost and what looks like a slip in it, or everything that is wrong with it."""
+    """Print what each case would cost and what looks like a slip in it, or everything that is wrong with it; 1 if any
+    cannot be run."""
+    refused = 0
+    for case in arguments.cases:
+        named = f"{case}: " if len(arguments.cases) > 1 else ""
+        try:
+            _validate(_spec(case, arguments.settings), named)
+        except Failure as failure:
+            print(f"hockle: {named}{failure}", file=sys.stderr)
+            refused = 1
+    return refused
+
+
+def _validate(spec: CaseSpec, named: str) -> None:
+    """Print what there is to say of a case; `named`: what its warnings begin with."""
     from service.cases import build_scene, estimate, warnings_of
 
-    spec = _spec(arguments)
     cost = estimate(spec)
     intervals, dt_max = spec.numerics.intervals, spec.numerics.dt_max
     if intervals is None or dt_max is None:
@@ -61,15 +94,15 @@ def validate(arguments: argparse.Namespace) -> int:
     else:
         steps = spec.frames - 1 if spec.analysis == "static" else spec.t_end / dt_max
         size = f"{intervals + 1} nodes, {spec.frames} frames, {steps:.0f} steps or more"
-    print(f"{spec.name} is valid: {size}; likely {cost.seconds:.2g} s of CPU, {cost.bytes / 1e6:.2g} MB")
+    print(f"{spec.name} is valid: {size}; likely {cost.seconds:.2g} s of CPU, {cost.bytes / 1e6:.2g} MB",
+          flush=True)  # before its warnings
     for warning in warnings_of(spec, build_scene(spec)):
-        print(f"warning: {warning}", file=sys.stderr)
-    return 0
+        print(f"{named}warning: {warning}", file=sys.stderr)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate a case, with a progress bar, and print a summary; 1 if the run failed, 130 if interrupted."""
-    spec = _spec(arguments)
+    spec = _spec(arguments.case, arguments.settings)
     path = arguments.output or Path(f"{spec.name}.nc")
     if path.is_dir():
         raise Failure(f"{path} is a directory: -o takes the name of a file")
@@ -136,11 +169,11 @@ def _directions(many: int) -> str:
     return "direction" if many == 1 else "directions"
 
 
-def _spec(arguments: argparse.Namespace) -> CaseSpec:
+def _spec(case: str, settings: list[str]) -> CaseSpec:
     from hockle.settings import read_case
     from service.cases import CaseError, parse_case
 
-    raw = read_case(arguments.case, arguments.settings)
+    raw = read_case(case, settings)
     try:
         return parse_case(raw)
     except CaseError as error:

@@ -14,7 +14,7 @@ from service.cases.build import build_scene
 from service.cases.case import CaseSpec
 from service.cases.errors import CaseError, FieldError
 from service.cases.slips import Slip
-from service.cases.suggestions import suggested
+from service.cases.suggestions import did_you_mean, suggested
 
 RESOLUTION = ("intervals", "dt_max", "increment_tolerance")
 DEEPEST = 20
@@ -28,6 +28,14 @@ def shipped_cases() -> dict[str, str]:
     return {name: load_case(name)["title"] for name in sorted(names)}
 
 
+def shipped_case(name: str) -> str:
+    """The text of a shipped case. Raises CaseError where there is none of that name."""
+    if name not in (names := shipped_cases()):
+        rule = f"must be one of {', '.join(names)}{did_you_mean(name, list(names))}"
+        raise CaseError([FieldError("", name, rule)])
+    return (_SHIPPED / f"{name}.json").read_text(encoding="utf-8").rstrip()
+
+
 def load_case(name_or_path: str | Path) -> dict[str, Any]:
     """The raw case of a shipped name or of a JSON file.
 
@@ -39,8 +47,10 @@ def load_case(name_or_path: str | Path) -> dict[str, Any]:
         return _read(shipped.read_text(encoding="utf-8"), str(name_or_path))
     path = Path(name_or_path)
     if not path.is_file():
-        names = ", ".join(shipped_cases())
-        raise CaseError([FieldError("", str(name_or_path), f"must be a file or one of {names}")])
+        names = shipped_cases()
+        hint = did_you_mean(path.name.removesuffix(".json"), list(names))
+        rule = f"must be a file that is there, or one of {', '.join(names)}{hint}"
+        raise CaseError([FieldError("", str(name_or_path), rule)])
     try:
         return _read(path.read_text(encoding="utf-8-sig"), str(path))
     except UnicodeDecodeError as error:

@@ -40,9 +40,49 @@ OTHER_NAMES = (
     ("fields", "variables", ""),
     ("t_end", "t time duration", ""),
     ("t", "s time times", ""),
-    ("s", "t x position arclength", ""),
+    ("s", "x position arclength", ""),
+    ("s", "t time", ", along the rod, for it stays the same in time"),
 )
 """A field, its other names in small letters, and what is to be said besides."""
+NOT_THERE = (
+    ("fluid", "drag_linear linear_drag drag_viscous stokes viscosity",
+     "drag in a fluid is of u²; one in proportion to u is loads.damping"),
+    ("contact", "friction mu", "strands slide on each other without friction; floors and obstacles have it"),
+    ("start end", "stiffness spring spring_stiffness k damping",
+     "an end is held, or its load is given: it has no spring"),
+    ("start end", "inertia moment_of_inertia", "a body at an end is a point: it has a mass alone"),
+    ("", "rods", "a case has one rod"),
+    ("", "walls wall", "a wall is the floor, with its normal, or a row of obstacles"),
+)
+"""What some look for and hockle does not have: the last part of the place (nothing: the case itself), names in small
+letters, and what there is instead."""
+OTHER_ENDS = (
+    ("clamp", "fixed clamped encastre built-in cantilever rigid"),
+    ("pin", "pinned hinge hinged ball joint simply_supported simple"),
+    ("an object, a pin with frame lab and a force of 0 along its way, as f1", "roller roll rolling"),
+    ("an object, a clamp with frame lab and a force of 0 along its way, as f1", "guided guide sliding slide"),
+)
+"""Kinds of ends, and what others call them."""
+TABLES = ("t", "value")
+"""Fields of a function of time."""
+WAVES = "sin sine cos cosine amplitude frequency omega period phase"
+
+
+def end_named_otherwise(name: object) -> str:
+    """The kind of end that goes by this name elsewhere, in words; or nothing."""
+    called = str(name).lower().replace(" ", "_")
+    return next((kind for kind, others in OTHER_ENDS if called in others.split()), "")
+
+
+def not_there(name: str, path: Sequence[str], known: Sequence[str]) -> str:
+    """What there is instead of a field that hockle does not have, at a place with the fields that are `known`; or
+    nothing."""
+    if set(TABLES) <= set(known) and name.lower() in WAVES.split():
+        return "a function of time is a table of t and value: some 20 points a period, with interpolation cubic"
+    place = path[-1] if path else ""
+    words = (instead for places, names, instead in NOT_THERE
+             if place in (places.split() or [""]) and name.lower() in names.split())  # fmt: skip
+    return next(words, "")
 
 
 def named_otherwise(name: str, known: Sequence[str]) -> str:

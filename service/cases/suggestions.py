@@ -11,7 +11,7 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel
 
 from service.cases.errors import CaseError, FieldError
-from service.cases.other_names import named_otherwise
+from service.cases.other_names import end_named_otherwise, named_otherwise, not_there
 
 LIKE, ALIKE = 0.6, 0.8
 """How much of its letters a name shares with one that is like it; and with one that it is likely a slip of."""
@@ -49,6 +49,8 @@ def _wraps(fault: FieldError, whole: type[BaseModel]) -> bool:
 
 
 def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
+    if "'clamp'" in fault.rule and (kind := end_named_otherwise(fault.value)):
+        return FieldError(fault.pointer, fault.value, f"{fault.rule}: did you mean {kind}?")
     if not fault.pointer or not (fault.unknown or fault.no_list):  # what is named as a kind of value has no pointer
         return fault
     *path, name = (part.replace("~1", "/").replace("~0", "~") for part in fault.pointer.split("/")[1:])
@@ -58,6 +60,9 @@ def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
     known = fields_at(whole, path)
     if name in known:  # of the kinds that may stand there
         return FieldError(fault.pointer, fault.value, f"{fault.rule} of this kind of {path[-1]}, but of another")
+    instead = not_there(name, path, known)
+    if instead:
+        return FieldError(fault.pointer, fault.value, f"{fault.rule}: {instead}")
     meant = named_otherwise(name, known)
     if meant:
         return FieldError(fault.pointer, fault.value, f"{fault.rule}: did you mean {meant}?")

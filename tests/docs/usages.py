@@ -16,8 +16,8 @@ VALUES = {"--set": "t_end=0.2", "--label": "listed", "--status": "successful", "
           "--end": "omega3=0", "--sample": "sobol", "--size": "2", "--seed": "1", "--scalars": "Tw,Wr",
           "--scopes": "read", "--days": "1", "--host": platform.node()}  # fmt: skip
 """What stands behind an option."""
-NAMES = {"CASE": "quick.json", "KEY=V1,V2,": "loads.damping=0.1,0.2", "KEY=LOW:HIGH": "loads.damping=0:1",
-         "OWNER": "owner"}  # fmt: skip
+NAMES = {"CASE": "quick.json", "SHIPPED": "elastica", "KEY=V1,V2,": "loads.damping=0.1,0.2",
+         "KEY=LOW:HIGH": "loads.damping=0:1", "OWNER": "owner"}  # fmt: skip
 
 
 def usages() -> list[str]:

@@ -169,3 +169,20 @@ def test_a_command_computes_on_one_core():
 def test_validate_warns_of_a_slip_and_refuses_nothing(capsys: pytest.CaptureFixture[str]):
     assert main(["validate", "elastica", "--set", "rod.diameter=30"]) == 0
     assert "warning: /rod/diameter is more than 10 m, got 30.0: is it given in m?" in capsys.readouterr().err
+
+
+def test_validate_looks_at_several_cases_and_says_of_which_it_speaks(capsys: pytest.CaptureFixture[str]):
+    assert main(["validate", "elastica", "greenhil", "goyal-2003", "--set", "rod.diameter=30"]) == 1
+    told = capsys.readouterr()
+    assert [line.split()[0] for line in told.out.splitlines()] == ["elastica", "goyal-2003"]
+    assert "elastica: warning: /rod/diameter is more than 10 m" in told.err
+    assert "hockle: greenhil: the case must be a file that is there, or one of" in told.err
+
+
+def test_a_shipped_case_and_the_schema_can_be_read(capsys: pytest.CaptureFixture[str]):
+    assert main(["cases", "greenhill"]) == 0
+    assert json.loads(capsys.readouterr().out) == load_case("greenhill")
+    assert main(["cases", "grenhill"]) == 1
+    assert "did you mean greenhill?" in capsys.readouterr().err
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out) == service.cases.case_schema()

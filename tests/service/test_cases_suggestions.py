@@ -143,3 +143,25 @@ def test_an_unknown_field_in_angle_brackets_is_told_too(name: str, pointer: str)
     with pytest.raises(CaseError) as refused:
         parse_case({**load_case("elastica"), name: 1})
     assert [fault.pointer for fault in refused.value.errors] == [pointer]
+
+
+@pytest.mark.parametrize(("setting", "value", "instead"), [
+    ("fluid", {"density": 1e3, "drag_linear": 0.1}, "loads.damping"),
+    ("contact", {"friction": 0.3}, "without friction"), ("ends.end", {"preset": "free", "stiffness": 5.0}, "no spring"),
+    ("rods", [{}, {}], "a case has one rod"),
+    ("ends.end", {"preset": "free", "f3": {"amplitude": 1.0, "frequency": 2.0}}, "a table of t and value"),
+])  # fmt: skip
+def test_what_hockle_does_not_have_is_told_with_what_there_is_instead(setting: str, value: Any, instead: str):
+    assert any(instead in fault.rule for fault in refusal(setting, value).errors)
+
+
+@pytest.mark.parametrize(("end", "meant"), [("roller", "a pin with frame lab"), ("fixed", "clamp"), ("Hinged", "pin"),
+                                            ({"preset": "built-in"}, "clamp")])  # fmt: skip
+def test_an_end_by_another_name_is_told_as_that(end: Any, meant: str):
+    [fault] = refusal("ends.end", end).errors
+    assert f": did you mean {meant}" in str(fault) or f"did you mean an object, {meant}" in str(fault)
+
+
+def test_a_shipped_case_that_is_misspelt_is_told_as_that():
+    with pytest.raises(CaseError, match=r"a file that is there, or one of .*did you mean hanging-cable\?"):
+        load_case("hanging-cabel")

@@ -18,9 +18,6 @@ AGREEMENT = 0.6
 """Part of what order 2 would make the differences of successive meshes fall by, from which on it is believed."""
 CLEAN = 0.1
 """How far from what order 2 has it the differences may fall for order 2 to show without doubt."""
-UNLIKE = 0.2
-"""Of a column's own rms, the correction from which on the meshes show two states, as where on one of them the rod has
-buckled already: what lies between them is none."""
 LEFT, LEFT_IF_CLEAN = 1.0 / 3.0, 2.0 / 15.0
 """Part of the change from one extrapolated solution to the next that is left: as order 2 would leave it; and twice what
 order 4 would, where order 2 shows in the meshes. Three such errors are more than the third."""
@@ -40,8 +37,7 @@ def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, 
     `ratios`: how many times finer each mesh is than the one before it. Of one, nothing tells the error: NaN. Of two, u1
     and u2: u2 + (u2 - u1) / (k^2 - 1), and as its error that correction, taken `WARY`. Of three, the difference of the
     two such solutions tells their error; a part of it is taken, see `LEFT`. Where a column's differences do not fall as
-    order 2 has it, nothing is extrapolated, and the error is what a series of such differences would leave. Nor is
-    anything where meshes are `UNLIKE`.
+    order 2 has it, nothing is extrapolated, and the error is what a series of such differences would leave.
     """
     fine = meshes[-1]
     nodes, steps = fine.shape[1], [k if fine.shape[1] > 1 else 1 for k in ratios]
@@ -51,13 +47,12 @@ def extrapolate(meshes: Sequence[Array], ratios: Sequence[int]) -> tuple[Array, 
     corrections = [difference / (k**2 - 1.0) for difference, k in zip(apart, ratios, strict=True)]
     last = corrections[-1]
     spread = _spread(last, nodes)
-    one_state = _rms(spread) <= UNLIKE * _rms(fine)  # NaN is none
-    correction = np.where(one_state, spread, 0.0)
+    correction = np.where(np.isnan(spread), 0.0, spread)
     if len(meshes) == 2:
         return fine + correction, nowhere_small(WARY * np.abs(last), nodes)
     far = apart[1][:, :: steps[0]]
     fall = _rms(apart[0]) / np.maximum(_rms(far), 1e-300)
-    believed = one_state & (fall >= AGREEMENT * ratios[1] ** 2)
+    believed = fall >= AGREEMENT * ratios[1] ** 2
     change = far + last[:, :: steps[0]] - corrections[0]
     clean = np.abs(fall / ratios[1] ** 2 - 1.0) <= CLEAN
     settled = np.maximum(np.where(clean, LEFT_IF_CLEAN, LEFT) * np.abs(change),

@@ -43,14 +43,6 @@ def test_where_the_order_does_not_show_nothing_is_extrapolated_and_the_error_is_
     assert (3.0 * error >= np.abs(value - exact(64))).all()
 
 
-@pytest.mark.parametrize("meshes", [(0.001, 3.0), (5.0, 0.2), (0.001, 0.001, 3.0), (0.001, 3.0, 0.1), (9.0, 5.0, 0.2)])
-def test_where_one_mesh_has_buckled_and_another_has_not_nothing_lies_between_them(meshes: tuple[float, ...]) -> None:
-    """An energy would be negative there, or too large."""
-    value, error = extrapolate([np.full((1, 1, 1), energy) for energy in meshes], [2] * (len(meshes) - 1))
-    assert value[0, 0, 0] == meshes[-1]
-    assert 3.0 * error[0, 0, 0] >= abs(meshes[-1] - meshes[-2])
-
-
 def test_of_one_mesh_the_error_is_unknown() -> None:
     value, error = extrapolate([solution(16)], [])
     assert np.array_equal(value, solution(16))

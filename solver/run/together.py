@@ -14,15 +14,20 @@ from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, excess, sizes
 from solver.run.first_mesh import first_intervals
 from solver.run.plan import FAR_FROM_IT, WORTH, Excess
 from solver.run.recording import (
+    ADDED_MASS,
     BALANCE,
+    BENDING,
     CURVATURE,
     FORCE,
     JUDGED,
     KAPPA,
+    KINETIC,
     NUMBERS,
     OMEGA,
     ORIENTATION,
     STEP,
+    STRETCHING,
+    TORSION,
     WIDTH,
     WRITHE,
     Columns,
@@ -39,6 +44,8 @@ from solver.run.verify import VerifiedFrame, of_waves, unseen
 from solver.scene.scene import Scene
 
 UNVERIFIED = np.array([not output.verified for output in NUMBERS])
+NOT_NEGATIVE = np.isin(np.arange(len(NUMBERS)), [KINETIC, ADDED_MASS, BENDING, TORSION, STRETCHING, CURVATURE])
+"""Numbers that no state of a rod has below 0, and an extrapolation from two states that are not alike may have."""
 BESIDE = 3
 """Frames before and after one whose errors count for it."""
 UNFOLLOWED = 0.02
@@ -218,11 +225,11 @@ class Together:
         combine = extrapolate if grade_of(self.finest.steps) is None else unextrapolated
         values, errors = zip(*(combine(series, ratios) for series in zip(*meshes, strict=True)), strict=True)
         along = finest.along + (values[0] - meshes[-1].along)
-        numbers = finest.numbers + (values[1] - meshes[-1].numbers)
+        numbers = possible(finest.numbers + (values[1] - meshes[-1].numbers), finest.numbers)
         if not judged:
             turned = along[..., ORIENTATION]
             turned /= np.sqrt(np.sum(turned**2, axis=-1))[..., None]
-        return Columns(along, np.where(UNVERIFIED, finest.numbers, numbers)), Columns(*errors)
+        return Columns(along, numbers), Columns(*errors)
 
     def _of_steps(self, series: Sequence[int], here: slice, judged: bool) -> Columns:
         """The error by the steps, as a series of attempts with different ones tells it; none where nothing tells it."""
@@ -235,6 +242,11 @@ class Together:
         longer = self.finest.steps - self._attempts[series[-1]].steps
         part = FALL ** -max(longer, 0) * alike(*(self._attempts[i].work for i in series[-2:]))
         return Columns(*(part * error_of_steps(values, longer < 0, n) for values, n in ((along, nodes), (numbers, 1))))
+
+
+def possible(numbers: Array, finest: Array) -> Array:
+    """Extrapolated `NUMBERS`, or those of the finest mesh where nothing is extrapolated or no rod has them."""
+    return np.where(UNVERIFIED | (NOT_NEGATIVE & (numbers < 0.0)), finest, numbers)
 
 
 def _aligned(columns: Columns, fine: Columns, judged: bool) -> Columns:

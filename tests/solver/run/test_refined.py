@@ -25,10 +25,22 @@ from solver.run import plan
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN, first_intervals
 from solver.run.plan import Excess
-from solver.run.recording import BALANCE, NUMBERS, WIDTH, Columns, R, columns_of, number_of, row_of
+from solver.run.recording import (
+    BALANCE,
+    BENDING,
+    CURVATURE,
+    NUMBERS,
+    TWIST,
+    WIDTH,
+    Columns,
+    R,
+    columns_of,
+    number_of,
+    row_of,
+)
 from solver.run.refined import Refined
 from solver.run.series import Attempt
-from solver.run.together import Together
+from solver.run.together import Together, possible
 from solver.run.trial import FIRST_INTERVALS, Trial
 from solver.run.under_way import UnderWay
 from solver.scene.ends import FREE
@@ -281,3 +293,12 @@ def test_energies_are_as_uncertain_as_what_went_nowhere() -> None:
     for row in together._recorded[together._chosen.finest]:
         row[1 + BALANCE] = 0.5 * largest  # as if it had lost so much
     assert run._together.errors()[-1, ENERGIES] >= 0.4 * run._together._unfollowed
+
+
+def test_what_no_rod_has_is_not_extrapolated() -> None:
+    """As where one mesh has buckled and the next has not: an energy below zero."""
+    finest, numbers = np.full((1, 1, len(NUMBERS)), 0.5), np.full((1, 1, len(NUMBERS)), -2.0)
+    told = possible(numbers, finest)[0, 0]
+    assert told[BENDING] == told[CURVATURE] == 0.5
+    assert told[TWIST] == told[BALANCE] == -2.0
+    assert (possible(-numbers, finest)[0, 0, [BENDING, CURVATURE, TWIST]] == 2.0).all()

@@ -54,8 +54,15 @@ class FieldError:
         fault = f"{self.pointer or 'the case'} {self.rule}"
         if self.value is None:
             return fault
-        told, colon, question = fault.rpartition(": ") if fault.endswith("?") else (fault, "", "")
-        return f"{told}, got {short(self.value)}{colon}{question}"
+        hint = self._hint
+        return f"{fault.removesuffix(hint)}, got {short(self.value)}{hint}"
+
+    @property
+    def _hint(self) -> str:
+        """What the rule says beyond the rule: what was meant, or what there is instead."""
+        if self.rule.startswith(RULES["extra_forbidden"]):
+            return "".join(self.rule.partition(": ")[1:])
+        return "".join(self.rule.rpartition(": ")[1:]) if self.rule.endswith("?") else ""
 
 
 class CaseError(ValueError):

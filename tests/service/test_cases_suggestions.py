@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from service.cases import CaseError, CaseSpec, apply_settings, load_case, parse_case
-from service.cases.other_names import OTHER_NAMES, named_otherwise
+from service.cases.other_names import OTHER_NAMES, named_otherwise, not_there
 from service.cases.suggestions import fields_at
 
 
@@ -44,6 +44,11 @@ def test_an_unknown_field_is_told_with_the_one_that_was_meant(setting: str, mean
 def test_a_field_by_another_name_or_in_another_place_is_told_as_that(setting: str, hint: str):
     [fault] = [fault for fault in refusal(setting, 1.0).errors if fault.pointer == "/" + setting.replace(".", "/")]
     assert fault.rule == "is not a known field" + hint
+
+
+def test_a_value_is_quoted_before_what_there_is_instead():
+    told = str(refusal("fluid.viscosity", 0.001))
+    assert told == "/fluid/viscosity is not a known field, got 0.001: " + not_there("viscosity", ["fluid"], [])
 
 
 def test_a_case_within_another_object_is_told_as_that():

@@ -208,6 +208,9 @@ class FluidSpec(TypedDict):
     drag_tangential: NotRequired[float]
     """Cdt: force ½ ρ_w π D Cdt |u_3| u_3; a plain number; default 0.0"""
 
+    viscosity: NotRequired[float]
+    """μ, where it creeps past: force ζ_n u_n + ζ_t u_3, moment π μ D² ω3; in Pa s; default 0.0"""
+
     current: NotRequired[Sequence[float]]
     """vector, lab; in m/s; default [0.0, 0.0, 0.0]"""
 
@@ -239,7 +242,7 @@ class LoadsSpec(TypedDict):
     """
 
     damping: NotRequired[float]
-    """c: force −c ρ_c A v and moment −c I ω per length; in 1/s; default 0.0"""
+    """c: force −c ρ_c A v and moment −c I ω per length: c / 2ω of critical; in 1/s; default 0.0"""
 
 
 class NumericsSpec(TypedDict):
@@ -783,6 +786,7 @@ Setting = Literal[
     "fluid.shear.height",
     "fluid.shear.interpolation",
     "fluid.shear.normal",
+    "fluid.viscosity",
     "initial",
     "initial.a1",
     "initial.angular_velocity",

@@ -34,7 +34,7 @@ def _swings(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     if scene.at_rest or driven or not held or stays_straight(scene):
         return
     period = slowest_swing(scene)
-    if spec.output.interval > period > scene.t_end / LONG_RUN and scene.damping * period < STILL:
+    if spec.output.interval > period > scene.t_end / LONG_RUN and scene.damping_rate * period < STILL:
         rule = (f"is longer than {period:.2g} s, in which the rod swings to and fro once by itself: the frames cannot "
                 "show how")  # fmt: skip
         yield FieldError("/output/interval", spec.output.interval, rule)

@@ -25,6 +25,7 @@ OTHER_NAMES = (
     ("added_mass", "ca", ""),
     ("drag_normal", "cd cdn drag drag_coefficient", ""),
     ("drag_tangential", "cdt", ""),
+    ("viscosity", "mu eta dynamic_viscosity linear_drag drag_linear drag_viscous stokes", ""),
     ("current", "velocity flow", ""),
     ("moment", "torque", ""),
     ("f3", "force", ", f1 or f2"),
@@ -45,8 +46,6 @@ OTHER_NAMES = (
 )
 """A field, its other names in small letters, and what is to be said besides."""
 NOT_THERE = (
-    ("fluid", "drag_linear linear_drag drag_viscous stokes viscosity",
-     "drag in a fluid is of u²; one in proportion to u is loads.damping"),
     ("contact", "friction mu", "strands slide on each other without friction; floors and obstacles have it"),
     ("start end", "stiffness spring spring_stiffness k damping",
      "an end is held, or its load is given: it has no spring"),

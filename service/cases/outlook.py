@@ -138,10 +138,10 @@ def _at_rest(scene: Scene) -> float:
 
 def kind_of(scene: Scene) -> str:
     """What moves the rod, of `SECONDS`."""
-    driven, frequency = Driven.of(scene), _frequency(scene)
+    driven, frequency, damping = Driven.of(scene), _frequency(scene), scene.damping_rate
     urged = Urged.of(scene, driven)
-    heavily, held = scene.damping > HEAVILY * frequency, _is_held(scene.start) or _is_held(scene.end)
-    overdamped = scene.damping > MUCH * frequency or (heavily and not driven.moved and urged.weight_across < LIGHT)
+    heavily, held = damping > HEAVILY * frequency, _is_held(scene.start) or _is_held(scene.end)
+    overdamped = damping > MUCH * frequency or (heavily and not driven.moved and urged.weight_across < LIGHT)
     if can_stretch(scene.rod) and any(_lets_go(end) for end in (scene.start, scene.end)):
         return "let go and stretching"
     if _is_still(scene, driven, urged):
@@ -153,11 +153,11 @@ def kind_of(scene: Scene) -> str:
     if scene.contact is not None and (urged.stress_at_free_end > BOWED or (urged.bent > BOWED and urged.force > SMALL)):
         return "may spring onto itself"
     on_solids = any(isinstance(load, solids.Given) for load in scene.loads)
-    rings = urged.struck > STRUCK * frequency and scene.damping < DEADENED * frequency
+    rings = urged.struck > STRUCK * frequency and damping < DEADENED * frequency
     if rings and not on_solids and (not has_to_stretch(scene) or urged.struck > HARD * frequency):
         return "struck in water" if scene.fluid is not None else "struck"
     if has_to_stretch(scene):
-        if overdamped and not driven.turned and (not driven.moved or scene.damping > MUCH * frequency):
+        if overdamped and not driven.turned and (not driven.moved or damping > MUCH * frequency):
             return "overdamped"
         if _come_apart(scene) or (urged.weight_across > SMALL and not overdamped):
             return "taut"
@@ -184,19 +184,19 @@ def kind_of(scene: Scene) -> str:
         if driven.moved and urged.stress < SMALL and scene.fluid is None:
             if urged.bent > COILED:
                 return "a coil that is moved"
-            if scene.damping > frequency:
+            if damping > frequency:
                 return "moved and settling in space"
-        if urged.inertia > DRIVEN or springs_back or (urging and scene.damping == 0.0):
+        if urged.inertia > DRIVEN or springs_back or (urging and damping == 0.0):
             limp = urged.weight > LIMP or urged.inertia > WHIPPED
             return "limp and moved" if limp else "in space and moved or let go"
         if not (urging or held):
             return "flying freely"
         if driven.spun - driven.turned > SPINS:
             return "spun"
-        if scene.damping > IN_SPACE * frequency:
+        if damping > IN_SPACE * frequency:
             limp = urged.weight_across > (FALLS if heavily else HANGS)
             return "limp in space" if limp else "settling in space"
-        swings = urged.weight_across > SWINGS or scene.damping < HARDLY * frequency
+        swings = urged.weight_across > SWINGS or damping < HARDLY * frequency
         return "swinging in space" if urged.at_once and swings else "slow in space"
     if scene.fluid is not None:
         if urged.weight > LIMP:
@@ -209,7 +209,7 @@ def kind_of(scene: Scene) -> str:
     if not held and max(urged.stress, urged.force) < SMALL:
         return "flying freely"
     if urged.at_once:
-        gentle = max(urged.stress, urged.force) < SMALL and urged.weight < GENTLE and scene.damping > DAMPED * frequency
+        gentle = max(urged.stress, urged.force) < SMALL and urged.weight < GENTLE and damping > DAMPED * frequency
         if gentle:
             return "let go gently"
         if max(urged.stress, urged.force) < SMALL and urged.weight < STICK:
@@ -217,14 +217,14 @@ def kind_of(scene: Scene) -> str:
         between_holds = distances(scene) is not None
         if between_holds and not (_is_turned(scene.start) or _is_turned(scene.end)):
             return "let go between pins"
-        if scene.damping > SETTLING * frequency:
+        if damping > SETTLING * frequency:
             return "let go and settling between holds" if between_holds else "let go and settling"
         return "let go or loaded at once"
     if distances(scene) is not None and urged.pushed > SNAPS * urged.bent:
         return "snapping through"
-    if driven.spun and scene.damping < UNDAMPED * frequency:
+    if driven.spun and damping < UNDAMPED * frequency:
         return "twisted to and fro"
-    if scene.damping < UNDAMPED * frequency:
+    if damping < UNDAMPED * frequency:
         return "moved and ringing" if urged.inertia > DRIVEN else RINGING
     return "followed by the frames"
 

@@ -34,7 +34,7 @@ def growth(scene: Scene, axis: Any) -> float:
     if transverse is None or transverse.p != STRAIGHT:
         return 0.0
     s, (dt, *_) = np.linspace(0.0, scene.rod.length, PLACES), np.diff(np.linspace(0.0, scene.t_end, TIMES))
-    torsion, disturbance = scene.rod.stiffness[2](s) + 0.0 * s, Disturbance(transverse, scene.damping)
+    torsion, disturbance = scene.rod.stiffness[2](s) + 0.0 * s, Disturbance(transverse, scene.damping_rate)
     for t in dt * np.arange(1, TIMES):
         torque = _torque(scene, axis, s, torsion, t)
         stiffness = transverse.straight(s, torque / torsion, torque, _tension(scene, axis, s, t))

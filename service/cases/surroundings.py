@@ -124,7 +124,9 @@ class LoadsSpec(Spec):
         Field(max_length=MOST_OBSTACLES),
         means("bars and balls in the way: a list of objects with `start`, `end`, `radius`, `stiffness`, `friction`"),
     ] = ()
-    damping: Annotated[NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length", "1/s")] = 0.0
+    damping: Annotated[
+        NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length: c / 2ω of critical", "1/s")
+    ] = 0.0
 
 
     def others(self) -> tuple[object, ...]:
@@ -165,6 +167,9 @@ class FluidSpec(Spec):
     ] = 0.0
     drag_normal: Annotated[NotNegative, means("Cdn: force ½ ρ_w D Cdn |u_n| u_n", "1")] = 0.0
     drag_tangential: Annotated[NotNegative, means("Cdt: force ½ ρ_w π D Cdt |u_3| u_3", "1")] = 0.0
+    viscosity: Annotated[
+        NotNegative, means("μ, where it creeps past: force ζ_n u_n + ζ_t u_3, moment π μ D² ω3", "Pa s")
+    ] = 0.0
     current: Annotated[Triple, means("vector, lab", "m/s")] = NOTHING
     shear: Annotated[ShearSpec | None, means("factor of the current by height; without it 1 everywhere")] = None
     schedule: Annotated[Schedule, means("factor of the current in time", "1")] = 1.0
@@ -173,7 +178,7 @@ class FluidSpec(Spec):
         """The solver's fluid."""
         shear = self.shear.build() if self.shear else None
         return Fluid(self.density, self.added_mass, self.drag_normal, self.drag_tangential, self.current, shear,
-                     curve(self.schedule))  # fmt: skip
+                     curve(self.schedule), self.viscosity)  # fmt: skip
 
 
 class ContactSpec(Spec):

@@ -99,7 +99,7 @@ def _creeping(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     fluid, diameter = scene.fluid, widest(scene)
     if fluid and fluid.density > GAS and fluid.drag_normal > 0.0 and diameter < CREEPING:
         rule = (f"is of u², and the liquid creeps around a rod of {diameter:.2g} m, whose drag is in proportion to u: "
-                "give it as loads.damping, which is per mass, 1/s")  # fmt: skip
+                "give viscosity instead, in Pa s (water: .001)")  # fmt: skip
         yield FieldError("/fluid/drag_normal", fluid.drag_normal, rule)
 
 

@@ -112,8 +112,8 @@ def _idle(scene: Scene) -> Iterator[FieldError]:
             rule = "has neither a force nor a moment until t_end: it does nothing"
             yield FieldError(f"/loads/distributed/{i}", None, rule)
     fluid = scene.fluid
-    if fluid and any(fluid.current) and not (fluid.drag_normal or fluid.drag_tangential):
-        rule = "drags at nothing: drag_normal and drag_tangential are 0"
+    if fluid and any(fluid.current) and not (fluid.drag_normal or fluid.drag_tangential or fluid.viscosity):
+        rule = "drags at nothing: drag_normal, drag_tangential and viscosity are 0"
         yield FieldError("/fluid/current", float(np.linalg.norm(fluid.current)), rule)
     if fluid and fluid.varies and fluid.fastest == 0.0:
         name = "shear" if fluid.shear else "schedule"

@@ -48,7 +48,7 @@ def has_waves(scene: Scene, intervals: int) -> bool:
     s = np.linspace(0.0, float(scene.rod.length), 101)
     stiffness = np.sqrt(scene.rod.stiffness[0](s) * scene.rod.stiffness[1](s))
     k = pi * intervals / float(scene.rod.length)
-    return bool(scene.damping < DAMPED_ALREADY * k**2 * np.sqrt(np.max(stiffness / scene.rod.mass(s))))
+    return bool(scene.damping_rate < DAMPED_ALREADY * k**2 * np.sqrt(np.max(stiffness / scene.rod.mass(s))))
 
 
 def highest_grade(intervals: int) -> int:

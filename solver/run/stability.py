@@ -20,7 +20,7 @@ class Stability:
 
     def __init__(self, scene: Scene) -> None:
         self._transverse, self._t = None if scene.at_rest else Transverse.of(scene), 0.0
-        self._disturbance = Disturbance(self._transverse, scene.damping)
+        self._disturbance = Disturbance(self._transverse, scene.damping_rate)
 
     def growth_until(self, s: Array, frame: Frame) -> float:
         """The logarithm of the growth until the next frame, whose nodes are at `s` (n,), m; 0 if it is not MUCH."""

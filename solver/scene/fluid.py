@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 
@@ -39,8 +40,9 @@ class Fluid:
 
     Relative velocity u = v - R^T U. Normal added mass `added_mass` rho_w A; normal drag
     0.5 rho_w D `drag_normal` |u_n| u_n; tangential 0.5 rho_w pi D `drag_tangential` |u_3| u_3.
-    With gravity it also bears the rod up by rho_w A g. U is `current` times `schedule`(t), and times the factor of
-    `shear`.
+    A `viscosity` mu (Pa s) drags in proportion to u, as a fluid that creeps past (`creeping_drag`), and at a spin of
+    the rod by pi mu D^2 omega_3. With gravity it also bears the rod up by rho_w A g. U is `current` times
+    `schedule`(t), and times the factor of `shear`.
     """
 
     density: float
@@ -50,9 +52,10 @@ class Fluid:
     current: tuple[float, float, float] = (0.0, 0.0, 0.0)
     shear: Shear | None = None
     schedule: Curve = UNIFORM
+    viscosity: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("density", "added_mass", "drag_normal", "drag_tangential"):
+        for name in ("density", "added_mass", "drag_normal", "drag_tangential", "viscosity"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value >= 0):
                 raise ValueError(f"fluid {name} must be >= 0, got {value}")
@@ -69,6 +72,16 @@ class Fluid:
         curves = (self.schedule, (self.shear or EVERYWHERE).factor)
         factors = (np.abs(curve(np.array([0.0, *curve.corners]))).max() for curve in curves)
         return float(np.prod([*factors, np.linalg.norm(self.current)]))
+
+    def creeping_drag(self, diameter: Array, length: float) -> Array:
+        """Drag per length and velocity (n, 2), across and along, kg/(m s), of a slender rod past which it creeps.
+
+        4 pi mu / (ln(L/D) + .84) and 2 pi mu / (ln(L/D) - .21): of a long cylinder that moves as a whole, Tirado &
+        Garcia de la Torre, J. Chem. Phys. 71 (1979) 2581. A rod is taken to be no shorter than two diameters.
+        """
+        slenderness = np.log(np.maximum(length / diameter, 2.0))
+        factors = 4.0 * pi / (slenderness + 0.84), 2.0 * pi / (slenderness - 0.21)
+        return self.viscosity * np.stack(factors, axis=-1)
 
     def keeps(self, view: View) -> bool:
         """Whether the current is the same everywhere and always, and flows along the motion about an axis."""

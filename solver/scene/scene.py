@@ -83,6 +83,16 @@ class Scene:
             raise ValueError("velocity and angular_velocity must be 0 in a static analysis")
 
     @property
+    def damping_rate(self) -> float:
+        """How fast (1/s) a motion across the rod is damped, in the mean along it: c, and by a viscous fluid."""
+        if self.fluid is None or self.fluid.viscosity == 0.0:
+            return self.damping
+        length = float(self.rod.length)
+        s = np.linspace(0.0, length, 101)
+        drag = self.fluid.creeping_drag(self.rod.diameter(s) + 0.0 * s, length)[:, 0]
+        return self.damping + float(drag.mean() / np.mean(self.rod.mass(s)))
+
+    @property
     def at_rest(self) -> bool:
         """Whether it asks for equilibria, not for motion."""
         return self.analysis == "static"

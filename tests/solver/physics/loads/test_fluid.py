@@ -40,7 +40,8 @@ def tangent_by_rotation() -> Array:
 
 
 NONE = np.zeros((1, 3))
-DRAG = drag_law.Record(True, np.array([NORMAL]), np.array([TANGENTIAL]), NONE)
+DRAG = drag_law.Record(True, np.array([NORMAL]), np.array([TANGENTIAL]), NONE, np.zeros((1, 2)))
+CREEPING = DRAG._replace(creeping=np.array([[2.5, 1.4]]))
 ADDED_MASS = mass_law.Record(True, np.array([MASS]), NONE)
 
 
@@ -65,9 +66,9 @@ def act(load: Any, at: Point) -> Any:
     return force(load, 0, 0, at)[0], tangents(load, 0, 0, at)
 
 
-def drag(u: Array, T: Array) -> tuple[Array, Array, Array]:
+def drag(u: Array, T: Array, load: drag_law.Record = DRAG) -> tuple[Array, Array, Array]:
     """The force against the motion, and its derivatives by the velocity and by a rotation from R0."""
-    load, at = DRAG, point(u, np.zeros(3), T)
+    at = point(u, np.zeros(3), T)
     lab, by = act(load, at)
     return -np.array(lab), -np.array(by.C), -np.array(by.by_T) @ tangent_by_rotation()
 
@@ -103,17 +104,18 @@ def test_still_water_exerts_nothing_on_a_rod_at_rest() -> None:
         assert_allclose(array, 0.0, atol=0.0)
 
 
+@pytest.mark.parametrize("load", [DRAG, CREEPING], ids=["Morison", "creeping"])
 @pytest.mark.parametrize("u", SPEEDS)
-def test_the_tangents_of_drag_are_its_derivatives(u: tuple[float, float, float]) -> None:
+def test_the_tangents_of_drag_are_its_derivatives(u: tuple[float, float, float], load: drag_law.Record) -> None:
     velocity, still = np.array(u), np.zeros(3)
-    _, P_V, P_w = drag(velocity, tangent(still))
+    _, P_V, P_w = drag(velocity, tangent(still), load)
     speed = float(np.linalg.norm(velocity))
     # third derivatives of |u| u are some 1 / |u|: with a step of 1e-4 |u| the differences are good to 1e-8 |u|
     tolerance = 1e-7 * NORMAL * speed
     if np.linalg.norm(np.cross(velocity, tangent(still))) > 1e-3 * speed:
-        difference = by_differences(lambda x: drag(x, tangent(still))[0], velocity, 1e-4 * speed)
+        difference = by_differences(lambda x: drag(x, tangent(still), load)[0], velocity, 1e-4 * speed)
         assert_allclose(P_V, difference, atol=tolerance)
-    difference = by_differences(lambda psi: drag(velocity, tangent(psi))[0], still, 1e-4)
+    difference = by_differences(lambda psi: drag(velocity, tangent(psi), load)[0], still, 1e-4)
     assert_allclose(P_w, difference, atol=tolerance * speed)
 
 
@@ -146,8 +148,8 @@ def fluid_power(mass: float, normal: float, tangential: float, V: Array, current
     absent = AppliedLoads(alone, sample(ROD, np.array([0.0, 1.0])), np.array([0.0, 1.0])).records
     turning = R.T @ T_t  # = omega x a3
     omega = np.array([-turning[1], turning[0], 0.0])
-    loads = absent._replace(drag=drag_law.Record(True, np.array([normal]), np.array([tangential]), current[None]),
-                            added_mass=mass_law.Record(mass > 0.0, np.array([mass]), current[None]))  # fmt: skip
+    morison = DRAG._replace(normal=np.array([normal]), tangential=np.array([tangential]), current=current[None])
+    loads = absent._replace(drag=morison, added_mass=mass_law.Record(mass > 0.0, np.array([mass]), current[None]))
     motion = Motion(np.zeros((1, 3)), V[None], A[None], np.stack([R] * 3), np.stack([omega] * 3))
     powers = np.zeros(2)
     sum_powers(loads, motion, powers)

@@ -23,6 +23,7 @@ from solver.run.trial import AT_REST, DAMPED, LOOSEST, OVERHEAD, Trial, grade_of
 MADE, LOST = (tuple(Outcome).index(outcome) for outcome in (Outcome.ENERGY_MADE, Outcome.EQUILIBRIUM_LOST))
 """The outcome of a run whose steps, rather than its mesh, are the reason that it failed; and of a static analysis on
 what may be too coarse a mesh."""
+CROSSED = tuple(Outcome).index(Outcome.ROD_CROSSED_ITSELF)
 WAVES = tuple(tuple(Outcome).index(outcome) for outcome in (Outcome.MESH_TOO_COARSE, Outcome.STEP_TOO_SMALL))
 """Outcomes of a run whose waves may be too short for its mesh."""
 STEP_SHARE = 0.4
@@ -235,7 +236,8 @@ def _second_damped(history: Sequence[Attempt], finest: Attempt, most_intervals: 
     complete = {(attempt.mesh, attempt.steps) for attempt in history if attempt.complete}
     if _is_for(history, Trial(finest.mesh + 1, finest.steps), most_intervals):
         yield Trial(finest.mesh + 1, finest.steps)
-    for mesh in (finest.mesh - 1, finest.mesh + 1):
+    crossed = {attempt.mesh for attempt in history if attempt.outcome == CROSSED}
+    for mesh in (mesh for mesh in (finest.mesh - 1, finest.mesh + 1) if mesh not in crossed):
         for trial in _with_grades(mesh, finest.steps, most_intervals):
             yield trial
             if trial in complete:
@@ -297,6 +299,8 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int, t_en
     last = history[-1]
     if last.slow and last.steps > LOOSEST:
         return Trial(last.mesh, max(last.steps - 2, LOOSEST))
+    if _is_damped(last) and last.outcome == CROSSED and intervals_of(last.mesh + 1) <= most_intervals:
+        return Trial(last.mesh + 1, DAMPED)  # nodes were too far apart to press on each other as strands do
     if last.slow or _is_damped(last):
         return _more_damped(last, t_end)
     failed = [attempt for attempt in history if not attempt.slow]

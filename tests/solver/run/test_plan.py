@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from solver.run.plan import (
+    CROSSED,
     FAR_FROM_IT,
     FIRST_PART,
     MADE,
@@ -217,3 +218,12 @@ def test_shorter_steps_are_tried_again_on_the_first_mesh_that_shows_the_motion()
 def test_a_damped_run_that_was_slow_but_nearly_there_gets_a_little_more_viscosity(t: float, grades: int) -> None:
     history = [failed(6, 0.1), slow(6, DAMPED - 1)._replace(t=t)]
     assert next_trial(history, [Excess()], 10_000, t_end=1.0) == Trial(6, DAMPED - 1 - grades)
+
+
+def test_a_damped_run_that_crossed_itself_is_tried_on_a_finer_mesh_and_not_again() -> None:
+    """Two knots of 1 m crossed themselves on 32 intervals with any viscosity, and came to their end on 64."""
+    crossed = failed(1, 0.7, steps=DAMPED - 2)._replace(outcome=CROSSED)
+    history = [slow(1, 0), slow(1, LOOSEST), slow(1, DAMPED), crossed]
+    assert next_trial(history, [Excess()], 10_000) == Trial(2, DAMPED)
+    assert next_trial(history, [Excess()], 32) is None
+    assert next_trial([*history, ran(2, DAMPED)], [Excess()], 10_000) == Trial(3, DAMPED)

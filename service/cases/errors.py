@@ -21,6 +21,8 @@ MOST_ERRORS = 100
 """Faults of a case that are listed one by one."""
 LONGEST_POINTER = 300
 _LONGEST_VALUE = 60
+_DIGITS = 15
+"""A float has so many decimal digits, and no more."""
 _JSON = (bool, list, tuple, dict)
 """What Python writes in other words than JSON."""
 _LARGEST_INTEGER = 10**15
@@ -115,6 +117,8 @@ def short(value: object) -> str:
     """A value as a message quotes it: large integers as 1e300, lists and objects as JSON, long texts by their start."""
     told = plain(value)
     text = repr(told)
+    if isinstance(told, float) and len(text) > _DIGITS:  # 40.00000000000001
+        text = f"{told:.{_DIGITS}g}"
     if isinstance(told, _JSON):
         text = json.dumps(told, ensure_ascii=not text.isprintable(), default=repr)
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 3] + "..."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
 from service.cases.extents import widest
 from solver import Scene
+from solver.arrays import Array
 from solver.physics.loads.solids import Floor, Given
 from solver.physics.section import sample
 from solver.scene.layout import nodes_at_rest
@@ -18,12 +20,14 @@ SOFT, HARD = 10.0, 0.1
 """Of its diameter, by how much its weight may press a rod in; and by how much where a floor is hard."""
 BESIDE, WITHIN = 8.0, 0.9
 """In D: how far along the rod places are neighbours; and how near others overlap."""
+PLACES, NEIGHBOURS = 161, 3
+"""Along a rod that may lie across itself; and how many links apart those are that cross for their bend alone."""
 
 
 def touching_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What is wrong with what the rod touches."""
     return [*_obstacles(spec), *_begins_inside(scene), *_sinks(scene), *_friction_at_rest(spec),
-            *_touches_itself(scene)]  # fmt: skip
+            *_touches_itself(scene), *_lies_across_itself(scene)]  # fmt: skip
 
 
 def solids_of(scene: Scene) -> Iterator[tuple[str, Given]]:
@@ -100,3 +104,30 @@ def _touches_itself(scene: Scene) -> Iterator[FieldError]:
         rule = (f"lays the places at s = {s[one]:.3g} and {s[other]:.3g} m nearer to each other than the diameter, "
                 f"{D:.3g} m: with contact the rod must not begin within itself")  # fmt: skip
         yield FieldError("/initial", float(f"{apart[one, other]:.6g}"), rule)
+
+
+def _lies_across_itself(scene: Scene) -> Iterator[FieldError]:
+    """Without contact: a loop or a knot that is under stress, as one that is pulled, or bent by hand and let go."""
+    s = np.linspace(0.0, scene.rod.length, PLACES)
+    if scene.contact is not None or any(np.any(kappa(s)) for kappa in scene.rod.kappa0[:2]):
+        return
+    r, _, _ = nodes_at_rest(scene.initial, s)
+    if many := _crossings(r):
+        rule = f"is not given, but the rod lies across itself at first ({many} x): it would pass through itself"
+        yield FieldError("/contact", None, rule)
+
+
+def _crossings(r: Array) -> int:
+    """How often a polygon (n, 3) crosses itself in the plane that it is nearest to; neighbours do not count."""
+    arms = r - r.mean(axis=0)
+    x, y = np.linalg.svd(arms, full_matrices=False)[2][:2] @ arms.T
+
+    def apart(i: Any, j: Any) -> Any:
+        """Whether the ends of links j lie on two sides of the line along links i."""
+        dx, dy = x[i + 1] - x[i], y[i + 1] - y[i]
+        one, other = (dx * (y[k] - y[i]) - dy * (x[k] - x[i]) for k in (j, j + 1))
+        return one * other < 0.0
+
+    i, j = np.triu_indices(len(r) - 1, NEIGHBOURS)
+    ring = j - i > len(r) - 1 - NEIGHBOURS
+    return int(np.sum(apart(i, j) & apart(j, i) & ~ring))

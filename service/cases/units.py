@@ -23,6 +23,8 @@ OTHER_UNITS = {
 """From what value on to which, below those of all materials, it is likely to be given in which unit."""
 METAL, SLOWEST = 2500.0, 6.0
 """kg/m³ of the lightest metals and glass; and m/s at which sound runs in them, if their modulus is in MPa."""
+SOFTEST = 1.0
+"""Pa; a rope whose yarns slide on each other may bend a thousand times more easily than a gel."""
 FOAM, SOLID = 25.0, 1e8
 """kg/m³ of foams, and Pa that no foam has."""
 SWAPPED, FAR_APART = 1.5, 300.0
@@ -51,10 +53,10 @@ def units_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
 
 def _material(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """One doubt about the material is enough: others may follow from it."""
-    return [*_range(spec)] or [*_moduli(spec)] or [*_forces(spec, scene), *_weight(spec, scene)]
+    return [*_range(spec, scene)] or [*_moduli(spec)] or [*_forces(spec, scene), *_weight(spec, scene)]
 
 
-def _range(spec: CaseSpec) -> Iterator[FieldError]:
+def _range(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
     for name, (least, most) in MATERIALS.items():
         value = getattr(spec.rod, name)
         if value is not None and not least <= value <= most:
@@ -62,6 +64,11 @@ def _range(spec: CaseSpec) -> Iterator[FieldError]:
             asked = [f": is it in {other}?" for low, high, other in OTHER_UNITS[name] if low <= value < high]
             rule = "".join([f"is that of no material ({least:g} to {most:g} {unit})", *asked])
             yield FieldError(f"/rod/{name}", value, rule)
+    if isinstance(stiffness := spec.rod.bending_stiffness, float):
+        modulus = stiffness / (pi * widest(scene) ** 4 / 64.0)
+        if not SOFTEST <= modulus <= MATERIALS["youngs_modulus"][1]:
+            rule = f"needs a modulus of {modulus:.1g} Pa, which nothing has, for a diameter of {widest(scene):.3g} m"
+            yield FieldError("/rod/bending_stiffness", stiffness, rule)
 
 
 def _moduli(spec: CaseSpec) -> Iterator[FieldError]:

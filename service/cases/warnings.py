@@ -53,7 +53,8 @@ def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
         rule += "; is it given in mm?" if diameter > spec.rod.length else ""
         yield FieldError("/rod/diameter", diameter, rule)
     if diameter > WIDEST:
-        yield FieldError("/rod/diameter", diameter, f"is more than {WIDEST:g} m: is it given in m?")
+        asked = "" if diameter > spec.rod.length else ": is it given in m?"
+        yield FieldError("/rod/diameter", diameter, f"is more than {WIDEST:g} m{asked}")
 
 
 def _gravity(spec: CaseSpec) -> Iterator[FieldError]:

@@ -111,3 +111,40 @@ def test_a_floor_that_is_far_too_soft_is_told_with_what_would_be_hard(stiffness:
 def test_what_no_fluid_and_no_rod_does_is_told(change: dict[str, Any], pointer: str):
     assert pointer in pointers(change)
     assert pointers({"fluid": {"density": 1.2, "drag_normal": 1.2, "current": [50.0, 0, 0]}}) == []
+
+
+def lying(points: np.ndarray, **others: Any) -> dict[str, Any]:
+    """A rope that lies along points (n, 3)."""
+    length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    return {"rod": CABLE["rod"] | {"length": length} | others, "ends": {"start": "pin", "end": "free"}, "loads": {},
+            "initial": {"shape": "centreline", "points": points.tolist()}}  # fmt: skip
+
+
+A = np.linspace(-2.6, 2.6, 301)
+KNOT = np.column_stack([A**3 - 3.0 * A, A**4 - 4.0 * A**2, 0.2 * A**5 - 2.0 * A])
+WAVE = np.column_stack([A, np.sin(A), 0.0 * A])
+RADIUS, PITCH = 0.1, 0.01
+COIL = np.column_stack([RADIUS * np.cos(5.0 * A), RADIUS * np.sin(5.0 * A), PITCH * 5.0 * A])
+WOUND = [0.0, RADIUS / (RADIUS**2 + PITCH**2), PITCH / (RADIUS**2 + PITCH**2)]
+
+
+@pytest.mark.parametrize(("points", "others", "warns"), [
+    (KNOT, {}, True), (WAVE, {}, False), (COIL, {}, True), (COIL, {"kappa0": WOUND}, False)
+], ids=["knot", "wave", "coil", "spring"])  # fmt: skip
+def test_a_rod_that_lies_across_itself_needs_contact(points: np.ndarray, others: dict[str, Any], warns: bool):
+    rope = lying(points, **others)
+    assert ("/contact" in pointers(rope)) == warns
+    assert "/contact" not in pointers(rope | {"contact": {}})
+
+
+@pytest.mark.parametrize(("stiffness", "warns"), [(1.9e-28, False), (1.9e-10, True), (1.9e-38, True)])
+def test_a_bending_stiffness_is_looked_at_beside_the_diameter(stiffness: float, warns: bool):
+    dna = {"length": 1e-7, "diameter": 2e-9, "mass_per_length": 5e-15, "bending_stiffness": stiffness,
+           "torsional_stiffness": stiffness}  # fmt: skip
+    assert ("/rod/bending_stiffness" in pointers({"rod": dna, "loads": {}})) == warns
+
+
+def test_a_unit_is_asked_for_once_and_a_value_is_told_in_digits_that_it_has():
+    found = [str(warning) for warning in warned({"rod": STEEL | {"diameter": 21.8}})]
+    assert sum("is it given" in text for text in found) == 1
+    assert str(FieldError("/x", 40.00000000000001, "is much")) == "/x is much, got 40"

@@ -236,8 +236,9 @@ def _second_damped(history: Sequence[Attempt], finest: Attempt, most_intervals: 
     complete = {(attempt.mesh, attempt.steps) for attempt in history if attempt.complete}
     if _is_for(history, Trial(finest.mesh + 1, finest.steps), most_intervals):
         yield Trial(finest.mesh + 1, finest.steps)
-    crossed = {attempt.mesh for attempt in history if attempt.outcome == CROSSED}
-    for mesh in (mesh for mesh in (finest.mesh - 1, finest.mesh + 1) if mesh not in crossed):
+    coarser = finest.mesh - 1
+    crossed = any(attempt.mesh == coarser and attempt.outcome == CROSSED for attempt in history)
+    for mesh in (finest.mesh + 1,) if crossed else (coarser, finest.mesh + 1):
         for trial in _with_grades(mesh, finest.steps, most_intervals):
             yield trial
             if trial in complete:

@@ -53,8 +53,7 @@ def _thickness(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
         rule += "; is it given in mm?" if diameter > spec.rod.length else ""
         yield FieldError("/rod/diameter", diameter, rule)
     if diameter > WIDEST:
-        asked = "" if diameter > spec.rod.length else ": is it given in m?"
-        yield FieldError("/rod/diameter", diameter, f"is more than {WIDEST:g} m{asked}")
+        yield FieldError("/rod/diameter", diameter, f"is more than {WIDEST:g} m: is it given in m?")
 
 
 def _gravity(spec: CaseSpec) -> Iterator[FieldError]:

@@ -209,7 +209,7 @@ class FluidSpec(TypedDict):
     """Cdt: force ½ ρ_w π D Cdt |u_3| u_3; a plain number; default 0.0"""
 
     viscosity: NotRequired[float]
-    """μ, where it creeps past: force ζ_n u_n + ζ_t u_3, moment π μ D² ω3; in Pa s; default 0.0"""
+    """μ: force ζ_n u_n + ζ_t u_3 of slow flow past a thin rod, moment π μ D² ω3; in Pa s; default 0.0"""
 
     current: NotRequired[Sequence[float]]
     """vector, lab; in m/s; default [0.0, 0.0, 0.0]"""
@@ -242,7 +242,7 @@ class LoadsSpec(TypedDict):
     """
 
     damping: NotRequired[float]
-    """c: force −c ρ_c A v and moment −c I ω per length: c / 2ω of critical; in 1/s; default 0.0"""
+    """c: force −c ρ_c A v and moment −c I ω per length; twice ζ ω of a mode; in 1/s; default 0.0"""
 
 
 class NumericsSpec(TypedDict):

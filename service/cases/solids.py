@@ -113,7 +113,8 @@ def _lies_across_itself(scene: Scene) -> Iterator[FieldError]:
         return
     r, _, _ = nodes_at_rest(scene.initial, s)
     if many := _crossings(r):
-        rule = f"is not given, but the rod lies across itself at first ({many} x): it would pass through itself"
+        places = f"{many} places" if many > 1 else "a place"
+        rule = f"is not given, but the rod lies across itself in {places} at first: it would pass through itself"
         yield FieldError("/contact", None, rule)
 
 

@@ -125,7 +125,7 @@ class LoadsSpec(Spec):
         means("bars and balls in the way: a list of objects with `start`, `end`, `radius`, `stiffness`, `friction`"),
     ] = ()
     damping: Annotated[
-        NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length: c / 2ω of critical", "1/s")
+        NotNegative, means("c: force −c ρ_c A v and moment −c I ω per length; twice ζ ω of a mode", "1/s")
     ] = 0.0
 
 
@@ -168,7 +168,7 @@ class FluidSpec(Spec):
     drag_normal: Annotated[NotNegative, means("Cdn: force ½ ρ_w D Cdn |u_n| u_n", "1")] = 0.0
     drag_tangential: Annotated[NotNegative, means("Cdt: force ½ ρ_w π D Cdt |u_3| u_3", "1")] = 0.0
     viscosity: Annotated[
-        NotNegative, means("μ, where it creeps past: force ζ_n u_n + ζ_t u_3, moment π μ D² ω3", "Pa s")
+        NotNegative, means("μ: force ζ_n u_n + ζ_t u_3 of slow flow past a thin rod, moment π μ D² ω3", "Pa s")
     ] = 0.0
     current: Annotated[Triple, means("vector, lab", "m/s")] = NOTHING
     shear: Annotated[ShearSpec | None, means("factor of the current by height; without it 1 everywhere")] = None

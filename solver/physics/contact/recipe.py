@@ -201,7 +201,8 @@ def _largest_pull(scene: Scene, t: Array) -> float:
     forces += [along(np.linalg.norm([p(s) + np.zeros_like(s) for p in load.force], axis=0))
                * np.abs(load.schedule(t)).max() for load in scene.distributed]  # fmt: skip
     if scene.fluid:
-        drag = 0.5 * scene.fluid.density * (scene.fluid.drag_normal + pi * scene.fluid.drag_tangential)
-        forces.append(drag * scene.fluid.fastest**2 * along(np.asarray(scene.rod.diameter(s))))
+        fluid, speed, diameter = scene.fluid, scene.fluid.fastest, scene.rod.diameter(s) + 0.0 * s
+        drag = 0.5 * fluid.density * (fluid.drag_normal + pi * fluid.drag_tangential) * speed**2 * diameter
+        forces.append(along(drag + fluid.creeping_drag(diameter, float(scene.rod.length))[:, 0] * speed))
     weight = along(np.asarray(scene.rod.mass(s))) * float(np.linalg.norm(scene.gravity))
     return float(max([*forces, weight]))

@@ -42,7 +42,7 @@ def about(record: Record, axis: Any) -> Record:
 
 @inner
 def force(load: Record, i: int, j: int, at: Point) -> Any:
-    """By the velocities."""
+    """B = -c rho_c A V, Q = -c I omega - pi mu D^2 omega_3 a3."""
     return times(load.by_velocity[j], at.V), times_each(vector(load.by_omega, j), at.omega)
 
 

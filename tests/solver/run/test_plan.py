@@ -221,7 +221,7 @@ def test_a_damped_run_that_was_slow_but_nearly_there_gets_a_little_more_viscosit
 
 
 def test_a_damped_run_that_crossed_itself_is_tried_on_a_finer_mesh_and_not_again() -> None:
-    """Two knots of 1 m crossed themselves on 32 intervals with any viscosity, and came to their end on 64."""
+    """Two knots (.37 and .11 m) crossed themselves on 32 intervals with any viscosity, and came to their end on 64."""
     crossed = failed(1, 0.7, steps=DAMPED - 2)._replace(outcome=CROSSED)
     history = [slow(1, 0), slow(1, LOOSEST), slow(1, DAMPED), crossed]
     assert next_trial(history, [Excess()], 10_000) == Trial(2, DAMPED)

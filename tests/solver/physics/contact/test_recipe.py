@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf, pi
+from math import inf, log, pi
 
 import numpy as np
 import pytest
@@ -99,6 +99,9 @@ def test_a_load_along_the_rod_and_a_current_pull_as_well() -> None:
     stream = Fluid(1000.0, drag_normal=1.0, current=(3.0, 0.0, 4.0))
     area = scene.rod.length * float(scene.rod.diameter(0.0))
     assert foreseen(replace(scene, fluid=stream)).pull == pytest.approx(12500.0 * area)
+    syrup = Fluid(1000.0, viscosity=20.0, current=(3.0, 0.0, 4.0))
+    per_length = 5.0 * 4.0 * pi * 20.0 / (log(scene.rod.length / float(scene.rod.diameter(0.0))) + 0.84)
+    assert foreseen(replace(scene, fluid=syrup)).pull == pytest.approx(per_length * scene.rod.length)
 
 
 def test_a_ring_goes_on_from_its_end_to_its_start() -> None:

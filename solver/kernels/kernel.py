@@ -183,12 +183,18 @@ def _good_for() -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
 
 
+@cache
+def _make(folder: str) -> None:
+    """Make one of the cache's folders, once; of those that it is asked for for each kernel there are some thirty."""
+    Path(folder).mkdir(parents=True, exist_ok=True)
+
+
 class _Folder(UserProvidedCacheLocator):
     """The cache's folder, which may be one that can only be read."""
 
     def ensure_cache_path(self) -> None:
         with suppress(OSError):
-            super().ensure_cache_path()  # type: ignore[no-untyped-call]
+            _make(self.get_cache_path())  # type: ignore[no-untyped-call]
 
 
 class _Results(CompileResultCacheImpl):

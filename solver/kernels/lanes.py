@@ -31,6 +31,7 @@ import ast
 import inspect
 import textwrap
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any, NamedTuple, get_args, get_type_hints
 
 from solver.kernels.kernel import inner
@@ -204,34 +205,36 @@ class _Loop:
             return _SERIES.get(self.known.get(value.func.id))
         return None
 
-    def _names(self, lines: Sequence[str]) -> tuple[set[str], set[str]]:
-        """The names that are read in these lines before they are written, and all that are written."""
-        read, written = set[str](), set[str]()
-        for line in lines:
-            names = [node for node in ast.walk(ast.parse(line)) if isinstance(node, ast.Name)]
-            read |= {node.id for node in names if isinstance(node.ctx, ast.Load)} - written
-            written |= {node.id for node in names if isinstance(node.ctx, ast.Store)}
-        return read, written
-
     def _kept(self) -> set[str]:
         """The names of numbers that are needed in another phase than the one that computes them, or to mend."""
         kept, written = set[str](), set[str]()
         for at, phase in enumerate(self.phases):
-            read, new = self._names(phase)
+            read, new = _names(tuple(phase))
             kept |= read & written
             written |= new
             if at < len(self.mends):
-                mended, _ = self._names(["\n".join(self.mends[at])])
+                mended, _ = _names(("\n".join(self.mends[at]),))
                 kept |= {name for name in written if f"_{name}" in mended}
         return kept
 
     def _loaded(self, at: int, kept: set[str]) -> list[str]:
-        read, _ = self._names(self.phases[at])
+        read, _ = _names(tuple(self.phases[at]))
         return [f"{name} = _{name}[0, __m]" for name in sorted(read & kept) if at > 0]
 
     def _stored(self, at: int, kept: set[str]) -> list[str]:
-        _, written = self._names(self.phases[at])
+        _, written = _names(tuple(self.phases[at]))
         return [f"_{name}[0, __m] = {name}" for name in sorted(written & kept)]
+
+
+@cache
+def _names(lines: tuple[str, ...]) -> tuple[frozenset[str], frozenset[str]]:
+    """The names that are read in these lines before they are written, and all that are written."""
+    read, written = set[str](), set[str]()
+    for line in lines:
+        names = [node for node in ast.walk(ast.parse(line)) if isinstance(node, ast.Name)]
+        read |= {node.id for node in names if isinstance(node.ctx, ast.Load)} - written
+        written |= {node.id for node in names if isinstance(node.ctx, ast.Store)}
+    return frozenset(read), frozenset(written)
 
 
 class _Number(ast.NodeTransformer):

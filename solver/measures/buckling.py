@@ -17,8 +17,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.linalg import LinAlgError, cholesky, eigh
-from scipy.linalg import null_space, solve_triangular
+from numpy.linalg import LinAlgError, cholesky, eigh, matrix_rank, solve, svd
 
 from solver.arrays import Array
 from solver.kernels.rotation import rotate, rotation_of
@@ -94,10 +93,10 @@ class Transverse:
         middles = 0.5 * (at[1:] + at[:-1])
         K = np.stack([scene.rod.stiffness[i](middles) + 0.0 * middles for i in _axes(p)], axis=1)
         M, ends = _mass(scene, p, at), _ends(scene, p, at)
-        free = null_space(ends) if len(ends) else np.eye(len(M))
+        free = svd(ends)[2][matrix_rank(ends) :].T if len(ends) else np.eye(len(M))
         EJ = min(float(np.min(profile(at))) for profile in scene.rod.stiffness[:2])
         slow = SLOW * np.sqrt(EJ / float(np.mean(scene.rod.mass(at)))) / float(at[-1]) ** 2
-        return cls(p, at, K, solve_triangular(cholesky(free.T @ M @ free), free.T, lower=True).T, float(slow))
+        return cls(p, at, K, solve(cholesky(free.T @ M @ free), free.T).T, float(slow))
 
     def stiffness(self, s: Array, state: Fields) -> Array:
         """(r, r), in 1/s^2, at a state whose nodes are at arclengths `s` (n,)."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from math import inf
 
 import numpy as np
-from scipy.linalg import solveh_banded
 
 from solver.arrays import Array
 from solver.kernels.handed import Handed, Reference
@@ -314,6 +313,8 @@ def _follow_tangents(start: Array, quaternion: Array, s: Array) -> Array:
 
 def _kappa_correction(quaternion: Array, kappa: Array, s: Array) -> Array:
     """The smallest change of kappa (n, 3) that makes its means those of the nodes' relative rotations."""
+    from scipy.linalg import solveh_banded  # a fifth of a second
+
     missing = _turns(quaternion) / np.diff(s)[:, None] - 0.5 * (kappa[1:] + kappa[:-1])
     bands = np.full((2, len(missing)), 0.25)
     bands[1] = 0.5

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from solver.physics.seed import seeded
-from solver.run.equilibria import Equilibria
 from solver.run.refined import Refined
 from solver.run.run import Run
 from solver.run.simulation import Simulation
@@ -16,5 +17,7 @@ def simulate(scene: Scene) -> Run:
     scene = seeded(scene)
     if scene.numerics.tolerance is not None:
         return Refined(scene)
-    kind = Equilibria if scene.at_rest else Simulation
+    kind: Callable[..., Run] = Simulation
+    if scene.at_rest:
+        from solver.run.equilibria import Equilibria as kind  # with scipy.linalg, a fifth of a second
     return Verified(scene, kind) if scene.numerics.verify else kind(scene)

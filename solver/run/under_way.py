@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from solver.measures.frame import Frame, Statistics
 from solver.run.artificial_viscosity import has_waves, retardation_time, with_viscosity
 from solver.run.checkpoint import Saved, restore, saved
-from solver.run.equilibria import Equilibria
 from solver.run.first_mesh import first_intervals
 from solver.run.simulation import Simulation
 from solver.run.trial import (
+    AT_REST,
     Trial,
     grade_of,
     intervals_of,
@@ -23,6 +23,9 @@ from solver.run.trial import (
     work_of_iteration,
 )
 from solver.scene.scene import Scene
+
+if TYPE_CHECKING:
+    from solver.run.equilibria import Equilibria
 
 SMALL_MOTION = 1e-3
 """See `Numerics`: of the waves that a start excites those below it are not followed step by step."""
@@ -51,10 +54,13 @@ class UnderWay:
         resolved, grade = replace(scene, numerics=numerics), grade_of(trial.steps)
         if grade is not None:
             resolved = replace(resolved, rod=with_viscosity(scene.rod, intervals, grade))
-        self.run: Simulation | Equilibria = (
-            Equilibria(resolved, self.statistics) if scene.at_rest
-            else Simulation(resolved, self.statistics, goes_on=True)
-        )  # fmt: skip
+        self.run: Simulation | Equilibria
+        if scene.at_rest:
+            from solver.run.equilibria import Equilibria  # with scipy.linalg, a fifth of a second
+
+            self.run = Equilibria(resolved, self.statistics)
+        else:
+            self.run = Simulation(resolved, self.statistics, goes_on=True)
         if grade is not None:
             self.run.remarks.retardation_time = retardation_time(resolved.rod)
 
@@ -64,7 +70,7 @@ class UnderWay:
         frame = self.run.advance()
         pressing = self.run.pressing
         self.pressed = self.pressed or pressing > 0
-        of_iteration = work_at_rest if isinstance(self.run, Equilibria) else work_of_iteration
+        of_iteration = work_at_rest if self.trial.steps == AT_REST else work_of_iteration
         per_iteration = of_iteration(self.trial.mesh, pressing)
         self.work += (self.statistics.newton_iterations - before) * per_iteration
         return frame

@@ -5,13 +5,17 @@ Where the loads have a potential it is symmetric at equilibrium, F being the mul
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import bsr_array, csr_array
 
 from solver.arrays import Array
 from solver.methods.space.segments.balances import Tangents
 from solver.statics.point import BLOCK, FORCE, PSI, X
+
+if TYPE_CHECKING:
+    from scipy.sparse import bsr_array, csr_array
 
 SOFTEST_PLACE = 1e-12
 """Of the largest stiffness of loads by place, given to every place: a rod that may slide along a floor has one state,
@@ -72,6 +76,8 @@ def node_moves(R: Array, h: float, units: Array, opens: Array | None = None) -> 
 def of_contact(S: Array, coupled: NDArray[np.bool_], moves: Array, opened: Array, per_moment: float) -> csr_array:
     """What contact adds to the tangent (9 (N + 2), 9 (N + 2)), dimensionless; `S`, `coupled`: see
     `StaticContact.stiffness`; `opened`: `moves` of the rod's own nodes; `per_moment`: 1/(N m)."""
+    from scipy.sparse import bsr_array, csr_array
+
     n = len(moves)
     one, other = np.nonzero(coupled)
     blocks = S[one, :, other] * per_moment, other, np.searchsorted(one, np.arange(n + 1))
@@ -81,6 +87,8 @@ def of_contact(S: Array, coupled: NDArray[np.bool_], moves: Array, opened: Array
 
 def _by_blocks(moves: Array) -> bsr_array:
     """What takes a displacement of all orientations to those of the nodes, of what does for each node."""
+    from scipy.sparse import bsr_array
+
     n = len(moves)
     columns = (np.arange(n)[:, None] + np.arange(2)).ravel()
     blocks = moves.reshape(2 * n, 3, BLOCK), columns, 2 * np.arange(n + 1)

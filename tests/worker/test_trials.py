@@ -103,7 +103,7 @@ def test_what_ends_its_first_attempt_because_strands_press_is_the_same_too(ran, 
     follower, computed = ran(tolerated("goyal-2003", **{"t_end": then, "output.interval": 0.5}), **told)
     alone, whole = ran(tolerated("goyal-2003", **{"t_end": then, "output.interval": 0.5}))
     assert_same(settings, follower, alone)
-    assert computed == whole - taken_over(follower) < 0.6 * whole
+    assert computed == whole - taken_over(follower) < 0.7 * whole
 
 
 def test_what_another_tolerance_computed_is_not_taken_over(ran):

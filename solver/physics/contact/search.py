@@ -1,7 +1,8 @@
 """Which pairs of points may touch, and when nobody need look.
 
 Three proofs, each cheaper than the next search: an arc of length l and total curvature K has a chord of at least
-l cos(K/2) (Schur), so while the rod's total curvature is small no pair can be near; neighbouring points are at most
+l cos(K/2) (Schur), so while the rod's total curvature is small no pair can be near, and while that of every arc of some
+length is, no pair can that is so near along the rod; neighbouring points are at most
 `longest_spacing` apart, so a search marches by (d - radius) / longest_spacing points, first from arc to arc of ARC
 points, each within a ball, as in a coil all points are near; and a gap once measured holds until somebody has moved by
 half of it.
@@ -43,6 +44,49 @@ class Pairs(NamedTuple):
 def harmless_bending(distance: float, law: Law) -> float:
     """The total curvature (rad) below which all pairs more than law.skip of arc apart are beyond `distance` (m)."""
     return 2.0 * acos(distance / law.skip) if distance < law.skip else 0.0
+
+
+@kernel
+def straight_intervals(r: Array, bending: float) -> int:
+    """How many intervals in succession, of those between the nodes at `r` (n, 3), bend by at most `bending` (rad), at
+    any place along the rod."""
+    bent, first, fewest = 0.0, 0, len(r) - 1
+    for last in range(len(r) - 1):
+        bent += _bend(r, last)
+        while bent > bending:
+            fewest = min(fewest, last - first)
+            bent -= _bend(r, first)
+            first += 1
+    return fewest
+
+
+@kernel
+def most_bent(r: Array, many: int) -> float:
+    """The largest bending (rad) of `many` intervals in succession, of those between the nodes at `r` (n, 3)."""
+    bent, largest = 0.0, 0.0
+    for last in range(len(r) - 1):
+        bent += _bend(r, last)
+        if last >= many:
+            bent -= _bend(r, last - many)
+        largest = max(largest, bent)
+    return largest
+
+
+@inner
+def _bend(r: Array, i: int) -> float:
+    """The bending (rad) of the arc from node i to the next: half of the angles of the chords at both."""
+    return 0.5 * (_angle(r, i) + _angle(r, i + 1))
+
+
+@inlined
+def _angle(r: Array, i: int) -> float:
+    """The angle (rad) between the chords at node i; none at the ends."""
+    if i == 0 or i == len(r) - 1:
+        return 0.0
+    before, after, square = _distance(r, i, i - 1), _distance(r, i + 1, i), 0.0
+    for k in range(3):
+        square += ((r[i + 1, k] - r[i, k]) / after - (r[i, k] - r[i - 1, k]) / before) ** 2
+    return 2.0 * np.arcsin(min(0.5 * np.sqrt(square), 1.0))  # type: ignore[no-any-return]
 
 
 @inner

@@ -19,16 +19,20 @@ from solver.physics.contact.search import (
     find_pairs,
     harmless_bending,
     largest_displacement,
+    most_bent,
     smallest_distance,
     smallest_gap,
+    straight_intervals,
 )
 from solver.scene.contact import Contact
 from solver.scene.rod import Rod
 
 SKIN = (0.1, 1.5)
 """In reaches: how much farther than what must be known a search looks, at least and at the most."""
-FORESEEN = 7.5
-"""Steps for which the fastest point may go on within what a search has looked at."""
+FORESEEN, FORESEEN_ALONE = 7.5, 40.0
+"""Steps for which the fastest point may go on within what a search has looked at; and where nobody is near."""
+BENT = 0.6
+"""Part of the harmless bending that arcs may have which a search leaves out."""
 LARGEST_PASSAGE = 0.35
 """Part of its distance that a pair may move in a step: too little to leap from where the force is weak to where the
 aperture hides it (points nearer to each other than they are spaced see each other along the rod)."""
@@ -53,7 +57,7 @@ class SelfContact:
                  hardness: Hardness = IN_MOTION) -> None:  # fmt: skip
         self.present = contact is not None
         """Whether the scene has contact at all."""
-        self._nodes, self._stages = len(s), stages
+        self._nodes, self._stages, self._interval = len(s), stages, float(s[1] - s[0])
         points, self._law = _points_and_law(contact, rod, s, ends, hardness) if contact else (Points.none(), NO_LAW)
         # pairs that press, and those whose links may meet
         self._reach = max(self._law.cutoff, links_reach(points))
@@ -62,7 +66,13 @@ class SelfContact:
         self._not_to_be_searched, self._not_to_be_checked, self._without_a_gap = (
             harmless_bending(distance, self._law) if contact else inf for distance in distances
         )
-        self._slack = 0.0
+        self._slack, self._checked = 0.0, np.zeros((len(s), 3))
+        """How far a point may move since the last search; and where the nodes were then. A point moves by `_share`
+        times as much as they do, at the most."""
+        self._share = float(np.abs(points.weights).sum(axis=1).max())
+        self._skip, self._straight = self._law.skip, 0
+        """The arc (m) up to which the last search has left out pairs; and the intervals in succession whose bending has
+        to stay harmless for that, none where it is the law's own."""
         self._looked = False
         self._make_room(points, 1024 if contact else 1)
         self.step_limit = inf
@@ -85,9 +95,13 @@ class SelfContact:
                 self.touch.pairs.counts[:] = 0
                 self._looked = False
             return
+        bent = anew or self._is_bent(r, 0.5 * (1.0 + BENT))
+        if self._alone and not bent and self._share * _largest(r - self._checked) <= 0.25 * self._slack:
+            return
         points = self.touch.points
         place_points(points, r, velocity)
-        if anew or not self._looked or largest_displacement(points, points.checked) > 0.25 * self._slack:
+        if bent or not self._looked or largest_displacement(points, points.checked) > 0.25 * self._slack:
+            self._checked[:] = r
             self._search(dt)
         points.start[:] = points.p
 
@@ -96,23 +110,41 @@ class SelfContact:
         self.step_limit = inf
         if bending < self._not_to_be_checked:
             return ""
+        r, velocity = nodes()
+        if self._is_bent(r, 1.0):
+            return "the rod bent more than the contact search foresaw"
+        if self._alone and self._share * _largest(r - self._checked) <= 0.5 * self._slack:
+            self._limit_steps(self._share * _largest(velocity[:, :3]))
+            return ""
         points, pairs = self.touch.points, self.touch.pairs
-        place_points(points, *nodes())
+        place_points(points, r, velocity)
         if not self._looked:
             near = smallest_distance(points, self._law.skip, self._farthest) <= self._reach
             return "the rod came near itself within one step" if near else ""
         if largest_displacement(points, points.checked) > 0.5 * self._slack:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
-        speed = fastest(points)
         self.step_limit = TIME_TO_TOUCH * time_to_touch
-        if speed > 0.0:
-            self.step_limit = min(self.step_limit, LARGEST_SHIFT * self._slack / speed)
+        self._limit_steps(fastest(points))
         if approach > LARGEST_PASSAGE:
             return "two parts of the rod could have passed through each other"
         if links_meet(points, pairs):
             return "two parts of the rod slipped into each other between contact points"
         return ""
+
+    @property
+    def _alone(self) -> bool:
+        """Whether the last search has found nobody near."""
+        return self._looked and not self.touch.pairs.counts[0]
+
+    def _is_bent(self, r: Array, part: float) -> bool:
+        """Whether an arc that the last search has left out bends by more than a part of what is harmless."""
+        return self._straight > 0 and most_bent(r, self._straight) > part * self._not_to_be_checked
+
+    def _limit_steps(self, speed: float) -> None:
+        """Let no point of the `speed` (m/s) outrun the last search."""
+        if speed > 0.0:
+            self.step_limit = min(self.step_limit, LARGEST_SHIFT * self._slack / speed)
 
     def smallest_gap(self, bending: float, r: Array, velocity: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
@@ -137,19 +169,30 @@ class SelfContact:
         links_meet(self.touch.points, self.touch.pairs)
         fastest(self.touch.points)
         largest_displacement(self.touch.points, self.touch.points.checked)
+        most_bent(self._checked, 1)
 
     def _search(self, dt: float) -> None:
         """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
-        points, skip, reach = self.touch.points, self._law.skip, self._reach
+        points, reach = self.touch.points, self._reach
         points.checked[:] = points.p
         self._looked = True
+        self._leave_out()
+        skip = self._skip
         self._slack = min(max(FORESEEN * fastest(points) * dt, SKIN[0] * reach), SKIN[1] * reach)
         find_pairs(points, skip, reach + self._slack, self.touch.pairs)
         if self.touch.pairs.counts[1] > 0:
             self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))
             find_pairs(points, skip, reach + self._slack, self.touch.pairs)
         if self.touch.pairs.counts[0] == 0:
-            self._slack = smallest_distance(points, skip, 2.0 * self._farthest) - reach
+            enough = max(2.0 * self._farthest, reach + FORESEEN_ALONE * fastest(points) * dt)
+            self._slack = smallest_distance(points, skip, enough) - reach
+
+    def _leave_out(self) -> None:
+        """See which arcs bend so little that their ends cannot be near. (Around a ring they are not looked at.)"""
+        straight = straight_intervals(self._checked, BENT * self._not_to_be_checked)
+        arc = (straight - 1) * self._interval  # one that lies between nodes is part of one interval more
+        further = arc > self._law.skip and self.touch.points.closing == inf
+        self._skip, self._straight = (arc, straight) if further else (self._law.skip, 0)
 
     def _make_room(self, points: Points, capacity: int) -> None:
         n, M = self._nodes, len(points.p)
@@ -168,6 +211,11 @@ def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen,
     points = contact_points(contact, rod, s, ends.closing)
     law = held(rod, ends, np.linspace(0.0, float(s[-1]), len(points.p)), hardness)
     return points._replace(mass=law.strength), Law.by_itself(contact, points.spacing, law.relaxation, hardness.pole)
+
+
+def _largest(vectors: Array) -> float:
+    """The length of the longest of some vectors (n, 3)."""
+    return float(np.sqrt(np.einsum("ij,ij->i", vectors, vectors).max()))
 
 
 @kernel

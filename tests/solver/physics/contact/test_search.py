@@ -20,8 +20,10 @@ from solver.physics.contact.search import (
     find_pairs,
     harmless_bending,
     largest_displacement,
+    most_bent,
     smallest_distance,
     smallest_gap,
+    straight_intervals,
 )
 from solver.scene.contact import Contact
 from solver.scene.rod import Rod
@@ -244,6 +246,33 @@ def test_the_largest_displacement_is_since_the_last_look(seed: int, amplitude: f
     assert largest_displacement(points, points.checked) == 0.0
     points.checked[7] += [0.3, 0.0, -0.4]
     assert largest_displacement(points, points.checked) == pytest.approx(0.5)
+
+
+@given(seeds, wildness, st.floats(0.3, 2.5))
+@settings(max_examples=60, deadline=None)
+def test_arcs_that_bend_little_are_as_long_as_brute_force_has_it(seed: int, amplitude: float, bending: float) -> None:
+    nodes = curve_of(tangents(S, seed, amplitude), S[1])
+    chords = np.diff(nodes, axis=0)
+    chords /= np.linalg.norm(chords, axis=1)[:, None]
+    angles = np.pad(np.arccos(np.clip(np.sum(chords[1:] * chords[:-1], axis=1), -1.0, 1.0)), 1)
+    bent = 0.5 * (angles[1:] + angles[:-1])
+    most = [np.convolve(bent, np.ones(many), "valid").max() for many in range(1, len(bent) + 1)]
+    straight = straight_intervals(nodes, bending)
+    assert straight == sum(each <= bending for each in most)
+    assert [most_bent(nodes, many) for many in range(1, len(bent) + 1)] == pytest.approx(most, abs=1e-6)
+
+
+@given(seeds, wildness)
+@settings(max_examples=60, deadline=None)
+def test_no_two_points_on_an_arc_that_bends_little_are_near(seed: int, amplitude: float) -> None:
+    """Schur's bound for each arc of the length that a search leaves out."""
+    law = Law.of(CONTACT, SPACING)
+    nodes = curve_of(tangents(S, seed, amplitude), S[1])
+    points = contact_points(CONTACT, ROD, S)
+    place_points(points, nodes, np.zeros_like(nodes))
+    arc = (straight_intervals(nodes, harmless_bending(CONTACT.cutoff, law)) - 1) * S[1]
+    near = {pair for pair, d in distances(points).items() if d < CONTACT.cutoff}
+    assert all((b - a) * points.spacing > arc for a, b in near)
 
 
 def ring(closing: float) -> Points:

@@ -29,6 +29,9 @@ BY_GRADE = 8.0
 rope's tension makes them run."""
 MOST = 0.25
 """Of the retardation time in L^2 sqrt(m / EJ)."""
+SETTLED, DENSE = 2.0, 0.05
+"""Damping (1/s) in that by which a motion falls to 1/e within a run; and a fluid's density, times its drag, in the
+rod's, from which on it brakes."""
 DAMPED_ALREADY = 2.0
 """Damping (1/s), in the angular frequency of a bending wave, with which that wave is none."""
 
@@ -49,6 +52,16 @@ def has_waves(scene: Scene, intervals: int) -> bool:
     stiffness = np.sqrt(scene.rod.stiffness[0](s) * scene.rod.stiffness[1](s))
     k = pi * intervals / float(scene.rod.length)
     return bool(scene.damping_rate < DAMPED_ALREADY * k**2 * np.sqrt(np.max(stiffness / scene.rod.mass(s))))
+
+
+def is_damped(scene: Scene) -> bool:
+    """Whether most of what moves at some time has come to rest long before the end, by damping or in a fluid."""
+    rod, fluid = scene.rod, scene.fluid
+    if scene.damping_rate * scene.t_end > SETTLED or fluid is None:
+        return scene.damping_rate * scene.t_end > SETTLED
+    s = np.linspace(0.0, float(rod.length), 101)
+    taken_along = 0.25 * pi * fluid.density * np.asarray(rod.diameter(s)) ** 2 * fluid.drag_normal
+    return bool(np.mean(taken_along) > DENSE * np.mean(rod.mass(s) + 0.0 * s))
 
 
 def highest_grade(intervals: int) -> int:

@@ -12,6 +12,7 @@ more and more of it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from math import ceil, inf, log
 from typing import NamedTuple
 
@@ -42,6 +43,9 @@ FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 TO_THE_END = 6.0
 """Part of MOST_WORK that a run with the longest steps may take which no viscosity makes faster, as it has no waves."""
+SETTLING, SETTLING_LATE = 1.0, 2.0
+"""Likewise of a rod whose strands may strike each other, and soon rest: a loop that collapses takes most of the work of
+a run that is calm before and after. Viscosity takes no less, and bends the rod elsewhere."""
 OVERDRAWN = 0.25
 """Part of MOST_WORK that an attempt may take beyond what was left for it, lest all of it be lost near its end."""
 PATIENCE, MOST_PATIENCE = 8.0, 2.5
@@ -92,15 +96,35 @@ def _is_damped(attempt: Attempt | Trial) -> bool:
     return grade_of(attempt.steps) is not None
 
 
-def allowance(history: Sequence[Attempt], trial: Trial, waves: bool = True) -> float:
+@dataclass(frozen=True)
+class Patience:
+    """How long a run with the longest steps is waited for as long as there is no answer.
+
+    `waves`: whether the rod may have such as viscosity damps; `settles`: whether strands that rattle soon rest;
+    `t_end` (s): of the run.
+    """
+
+    waves: bool = True
+    settles: bool = False
+    t_end: float = inf
+
+    def part(self, calm_until: float) -> float:
+        """Of MOST_WORK. `calm_until`: the time (s) at which it had taken SETTLING of it, infinite before. (This falls
+        but once: what is not given up now was not given up before.)"""
+        if self.settles:
+            return SETTLING if calm_until < NEARLY * self.t_end else SETTLING_LATE
+        return FIRST_PART if self.waves else TO_THE_END
+
+
+def allowance(history: Sequence[Attempt], trial: Trial, longest: float = FIRST_PART) -> float:
     """The work that an attempt may take before it is given up as slow. With viscosity those without it do not count.
-    `waves`: whether the rod may have such as viscosity damps."""
+    `longest`: see `Patience`."""
     complete = [attempt for attempt in history if attempt.complete and _is_damped(attempt) == _is_damped(trial)]
     if trial.steps == AT_REST and all(trial.mesh < attempt.mesh for attempt in complete):
         return MOST_WORK_AT_REST
     if not complete:
         if not _is_damped(trial):
-            return MOST_WORK * (FIRST_PART if waves or trial.steps > LOOSEST else TO_THE_END)
+            return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else longest)
         last = any(attempt.slow and _is_damped(attempt) for attempt in history)
         last = last or grade_of(trial.steps) == highest_grade(intervals_of(trial.mesh))
         return MOST_WORK * (LAST_PART if last else DAMPED_PART)
@@ -171,6 +195,11 @@ def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_inter
         return
     if len(complete) == 1 and complete[0].steps != AT_REST:
         mesh, steps = complete[0].mesh, complete[0].steps
+        if steps == LOOSEST and complete[0].work > FIRST_PART * MOST_WORK:
+            # strands rattle: the meshes differ by far more than shorter steps would change
+            if expected(complete, Trial(mesh + 1, steps)) <= (1.0 + OVERDRAWN) * MOST_WORK - _work(history):
+                yield Trial(mesh + 1, steps)
+            yield Trial(max(mesh - 1, 0), steps)
         if _is_for(history, Trial(mesh, steps + 1), most_intervals):
             yield Trial(mesh, steps + 1)
         yield Trial(max(mesh - 1, 0), max(steps - 1, LOOSEST))  # if it can, the last one is to tell all

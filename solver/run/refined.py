@@ -205,7 +205,7 @@ class Refined(Run):
             return Outcome.MESH_TOO_COARSE
         if self._scene.at_rest and not self._rows and attempt.work > LETTING_GO * MOST_WORK:
             return Outcome.EQUILIBRIUM_LOST
-        if attempt.work > allowance(self._attempts, attempt.trial, attempt.waves):
+        if attempt.work > allowance(self._attempts, attempt.trial, attempt.patience):
             return Outcome.TOLERANCE_NOT_REACHED
         return None
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 from solver.measures.frame import Frame, Statistics
-from solver.run.artificial_viscosity import has_waves, retardation_time, with_viscosity
+from solver.run.artificial_viscosity import has_waves, is_damped, retardation_time, with_viscosity
 from solver.run.checkpoint import Saved, restore, saved
 from solver.run.first_mesh import first_intervals
+from solver.run.plan import MOST_WORK, SETTLING, Patience
 from solver.run.simulation import Simulation
 from solver.run.trial import (
     AT_REST,
@@ -34,18 +36,19 @@ SMALL_MOTION = 1e-3
 class UnderWay:
     """The `run` of a trial, with what it has taken so far: its own `statistics`, and `work` as `plan` counts it.
 
-    `pressed`: whether strands have pressed on each other; `waves`: whether the rod may have short ones. It depends on
-    nothing but the scene and the trial, so another run whose scene begins alike passes through the same states; and it
-    holds no frames.
+    `pressed`: whether strands have pressed on each other; `calm_until`: see `plan.Patience`. Its states depend on
+    nothing but the scene and the trial, so another run whose scene begins alike passes through the same; and it holds
+    no frames.
     """
 
     def __init__(self, scene: Scene, trial: Trial) -> None:
         self.trial = trial
         self.statistics = Statistics()
-        self.work, self.pressed = 0.0, False
+        self.work, self.calm_until, self.pressed = 0.0, inf, False
         tolerance = scene.numerics.tolerance or 1.0
         intervals = intervals_of(trial.mesh, first_intervals(scene))
-        self.waves = has_waves(scene, intervals)
+        settles = scene.contact is not None and is_damped(scene)
+        self._patience = Patience(has_waves(scene, intervals), settles, scene.t_end)
         numerics = replace(
             scene.numerics, tolerance=None, verify=False, intervals=intervals,
             dt_max=longest_step(trial.steps, scene.output_interval), strides=strides_of(tolerance, trial.steps),
@@ -73,7 +76,14 @@ class UnderWay:
         of_iteration = work_at_rest if self.trial.steps == AT_REST else work_of_iteration
         per_iteration = of_iteration(self.trial.mesh, pressing)
         self.work += (self.statistics.newton_iterations - before) * per_iteration
+        if self.work > SETTLING * MOST_WORK:
+            self.calm_until = min(self.calm_until, self.run.t)
         return frame
+
+    @property
+    def patience(self) -> float:
+        """The part of MOST_WORK that it may take if its steps are the longest, as long as there is no answer."""
+        return self._patience.part(self.calm_until)
 
     def checkpoint(self) -> Saved:
         """All that it remembers."""

@@ -14,9 +14,12 @@ from solver.run.plan import (
     MADE,
     MOST_PATIENCE,
     MOST_WORK,
+    SETTLING,
+    SETTLING_LATE,
     TO_THE_END,
     WAVES,
     Excess,
+    Patience,
     allowance,
     expected,
     next_trial,
@@ -187,11 +190,28 @@ def test_where_what_is_to_tell_the_error_takes_far_too_long_nothing_else_is_trie
 
 def test_what_has_no_waves_and_is_slow_may_go_on_to_its_end() -> None:
     first, last = Trial(3, 0), Trial(3, LOOSEST)
-    assert allowance([], first) == allowance([], first, waves=False) == allowance([], last) == FIRST_PART * MOST_WORK
-    assert allowance([slow(3, 0)], last, waves=False) == TO_THE_END * MOST_WORK
+    patience = Patience(waves=False).part(inf)
+    assert allowance([], first) == allowance([], first, patience) == allowance([], last) == FIRST_PART * MOST_WORK
+    assert allowance([slow(3, 0)], last, patience) == TO_THE_END * MOST_WORK
     for work, more in ((0.9, True), (1.1, False)):
         history = [slow(3, 0), ran(3, LOOSEST, work * MOST_PATIENCE * MOST_WORK)]
         assert (next_trial(history, [Excess()], 2000) is not None) == more
+
+
+def test_strands_that_strike_each_other_and_soon_rest_are_waited_for() -> None:
+    """Twice as long where half of the time was behind them when they had taken what is waited for in any case."""
+    patience = Patience(waves=True, settles=True, t_end=10.0)
+    assert patience.part(inf) == patience.part(5.0) == SETTLING_LATE
+    assert patience.part(4.9) == SETTLING
+    assert Patience(waves=True).part(inf) == FIRST_PART
+
+
+def test_the_error_of_strands_that_rattled_is_told_by_another_mesh_rather_than_by_shorter_steps() -> None:
+    """A finer one if there is work left for it, else a coarser one."""
+    for part, mesh in ((0.4, 3), (0.9, 1)):
+        history = [slow(2, 0), ran(2, LOOSEST, part * MOST_WORK)]
+        assert next_trial(history, [Excess()], 2000) == Trial(mesh, LOOSEST)
+    assert next_trial([ran(2, LOOSEST, 0.05 * MOST_WORK)], [Excess()], 2000) == Trial(2, LOOSEST + 1)
 
 
 def test_an_attempt_that_is_begun_is_not_given_up_as_soon_as_nothing_is_left() -> None:

@@ -31,8 +31,9 @@ class Points(NamedTuple):
     position and in its tangent; `mass` (M,), rho_c A in kg/m, or P in N/m^2 where the law is automatic;
     `diameter` (M,); `spacing` (m); `closing` (m), the way from the last point on to the first, infinite but for a
     ring. At the current iterate, lab: `p` position, `t` tangent, `w` velocity, each (M, 3).
-    `start` and `checked` (M, 3): positions at the start of the step, and at the last search. Of a search, for each arc
-    of ARC points: `balls` (arcs, 4), centre and radius of one that holds it, and the arcs `near` (arcs,) another.
+    `start` and `checked` (M, 3): positions at the start of the step, and at the last search, and `slack` (M,) how far
+    (m) each may go from there. Of a search, for each arc of ARC points: `balls` (arcs, 4), centre and radius of one
+    that holds it, and the arcs `near` (arcs,) another.
     """
 
     first: Array
@@ -46,6 +47,7 @@ class Points(NamedTuple):
     w: Array
     start: Array
     checked: Array
+    slack: Array
     balls: Array
     near: Array
     closing: float = inf
@@ -56,7 +58,7 @@ class Points(NamedTuple):
         (weights, slopes), (mass, diameter) = np.zeros((2, 1, REACH)), np.zeros((2, 1))
         p, t, w, start, checked = np.zeros((5, 1, 3))
         return cls(np.zeros(1, dtype=np.int64), weights, slopes, mass, diameter, 1.0, p, t, w, start, checked,
-                   *no_arcs(1))  # fmt: skip
+                   *unsearched(1))  # fmt: skip
 
 
 @inlined
@@ -85,13 +87,13 @@ def contact_points(contact: Contact, rod: Rod, s: Array, closing: float = inf) -
     weights, slopes = (_shares(interval, first, last, *hermite) for hermite in (place, along))
     p, t, w, start, checked = (np.zeros((count, 3)) for _ in range(5))
     return Points(first, weights, slopes / h, np.asarray(rod.mass(at)), np.asarray(rod.diameter(at)), float(at[1]),
-                  p, t, w, start, checked, *no_arcs(count), closing)  # fmt: skip
+                  p, t, w, start, checked, *unsearched(count), closing)  # fmt: skip
 
 
-def no_arcs(count: int) -> tuple[Array, Array]:
-    """`balls` and `near` of `count` points."""
+def unsearched(count: int) -> tuple[Array, Array, Array]:
+    """`slack`, `balls` and `near` of `count` points."""
     arcs = -(-count // ARC)
-    return np.zeros((arcs, 4)), np.zeros(arcs, dtype=np.int64)
+    return np.zeros(count), np.zeros((arcs, 4)), np.zeros(arcs, dtype=np.int64)
 
 
 def _shares(interval: Array, first: Array, last: int, start: Array, leave: Array, end: Array, arrive: Array) -> Array:

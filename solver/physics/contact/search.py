@@ -165,32 +165,80 @@ def largest_displacement(points: Points, since: Array) -> float:
 
 
 @kernel
-def find_pairs(points: Points, skip: float, radius: float, pairs: Pairs) -> None:
-    """List the pairs nearer than `radius`; counts[1] says how many did not fit."""
-    largest, pitch = _enclose(points), longest_spacing(points)
-    apart = neighbours(points, skip)
+def foresee(points: Points, steps: float, least: float, most: float) -> None:
+    """Let each point go as far as it comes within `steps` (s) at its speed, but at `least` and at the `most` (m)."""
+    for i in range(len(points.p)):
+        points.slack[i] = min(max(steps * _speed(points, i), least), most)
+
+
+@kernel
+def used(points: Points) -> float:
+    """The largest part of its slack that a point has used up since the last search."""
+    largest = 0.0
+    for i in range(len(points.p)):
+        square = 0.0
+        for k in range(3):
+            square += (points.p[i, k] - points.checked[i, k]) ** 2
+        largest = max(largest, square / points.slack[i] ** 2)
+    return float(np.sqrt(largest))
+
+
+@kernel
+def soonest(points: Points) -> float:
+    """The shortest time (s) in which a point, at its speed, uses up all of its slack."""
+    fastest = 0.0
+    for i in range(len(points.p)):
+        fastest = max(fastest, _speed(points, i) / points.slack[i])
+    return 1.0 / fastest if fastest > 0.0 else np.inf
+
+
+@inlined
+def _speed(points: Points, i: int) -> float:
+    return np.sqrt(points.w[i, 0] ** 2 + points.w[i, 1] ** 2 + points.w[i, 2] ** 2)  # type: ignore[no-any-return]
+
+
+@kernel
+def find_pairs(points: Points, skip: float, reach: float, pairs: Pairs) -> None:
+    """List the pairs that may come nearer than `reach` by using up their slack; counts[1] says how many did not fit."""
+    pitch, apart = longest_spacing(points), neighbours(points, skip)
+    _enclose(points)
+    largest, widest = _widen(points)
     count = 0
     for arc in range(len(points.balls)):
-        near = _arcs_near(points, arc, radius, largest, ARC * pitch)
+        near = _arcs_near(points, arc, reach, largest, ARC * pitch)
         for a in range(ARC * arc, min(ARC * (arc + 1), len(points.p))):
+            radius = reach + points.slack[a]
             for k in range(near):
                 b = min(farthest(points, skip, a), ARC * (points.near[k] + 1) - 1)
                 while b >= max(a + apart, ARC * points.near[k]):
                     d = _distance(points.p, a, b)
-                    if d < radius:
+                    if d < radius + points.slack[b]:
                         if count < len(pairs.first):
                             pairs.first[count] = a
                             pairs.second[count] = b
                         count += 1
                         b -= 1
                     else:
-                        b -= max(1, int((d - radius) / pitch))
+                        b -= max(1, int((d - radius - widest) / pitch))
     pairs.counts[0] = min(count, len(pairs.first))
     pairs.counts[1] = count - pairs.counts[0]
     dismiss(pairs.members)
     for pair in range(pairs.counts[0]):
         take_in(pairs.members, points, pairs.first[pair])
         take_in(pairs.members, points, pairs.second[pair])
+
+
+@inner
+def _widen(points: Points) -> tuple[float, float]:
+    """Have each ball hold also where its points may go. Returns the largest radius (m), and the largest slack (m)."""
+    largest, widest = 0.0, 0.0
+    for arc in range(len(points.balls)):
+        most = 0.0
+        for i in range(ARC * arc, min(ARC * (arc + 1), len(points.p))):
+            most = max(most, points.slack[i])
+        points.balls[arc, 3] += most
+        largest, widest = max(largest, points.balls[arc, 3]), max(widest, most)
+    return largest, widest
 
 
 @inner

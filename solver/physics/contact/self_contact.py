@@ -17,27 +17,32 @@ from solver.physics.contact.recipe import IN_MOTION, NOTHING, Foreseen, Hardness
 from solver.physics.contact.search import (
     Pairs,
     find_pairs,
+    foresee,
     harmless_bending,
-    largest_displacement,
     most_bent,
     smallest_distance,
     smallest_gap,
+    soonest,
     straight_intervals,
+    used,
 )
 from solver.scene.contact import Contact
 from solver.scene.rod import Rod
 
-SKIN = (0.1, 1.5)
-"""In reaches: how much farther than what must be known a search looks, at least and at the most."""
-FORESEEN, FORESEEN_ALONE = 7.5, 40.0
-"""Steps for which the fastest point may go on within what a search has looked at; and where nobody is near."""
+SKIN = (0.05, 0.75, 4.0)
+"""In reaches: how far each point may go until the next search, at least; as far as the fastest will; and where it is
+itself so fast, at the most."""
+FORESEEN, FORESEEN_ALONE = 3.75, 20.0
+"""Steps for which a point may go on within what a search has looked at; and where nobody is near."""
+FARTHEST = 2.5
+"""In reaches: how near the rod has to be to itself for a search to begin."""
 BENT = 0.6
 """Part of the harmless bending that arcs may have which a search leaves out."""
 LARGEST_PASSAGE = 0.35
 """Part of its distance that a pair may move in a step: too little to leap from where the force is weak to where the
 aperture hides it (points nearer to each other than they are spaced see each other along the rod)."""
-LARGEST_SHIFT = 0.2
-"""Part of the search's slack that a point may move in a step at its present speed; 0.25 is left before each step."""
+LARGEST_SHIFT = 0.4
+"""Part of its slack that a point may go in a step at its present speed; 0.5 is left before each step."""
 TIME_TO_TOUCH = 0.2
 """Part of the time to closure, gap / closing speed, that the next step may take; a gap below half the distance counts
 as that much, for what is held by a stiff force does not close at its speed."""
@@ -61,14 +66,14 @@ class SelfContact:
         points, self._law = _points_and_law(contact, rod, s, ends, hardness) if contact else (Points.none(), NO_LAW)
         # pairs that press, and those whose links may meet
         self._reach = max(self._law.cutoff, links_reach(points))
-        self._farthest = (1.0 + SKIN[1]) * self._reach
+        self._farthest = FARTHEST * self._reach
         distances = (self._farthest, self._reach, self._law.cutoff)
         self._not_to_be_searched, self._not_to_be_checked, self._without_a_gap = (
             harmless_bending(distance, self._law) if contact else inf for distance in distances
         )
         self._slack, self._checked = 0.0, np.zeros((len(s), 3))
-        """How far a point may move since the last search; and where the nodes were then. A point moves by `_share`
-        times as much as they do, at the most."""
+        """How far (m) all points may go since the last search where nobody is near, else 0; and where the nodes were
+        then. A point goes `_share` times as far as they do, at the most."""
         self._share = float(np.abs(points.weights).sum(axis=1).max())
         self._skip, self._straight = self._law.skip, 0
         """The arc (m) up to which the last search has left out pairs; and the intervals in succession whose bending has
@@ -93,14 +98,14 @@ class SelfContact:
         if bending < self._not_to_be_searched:
             if self._looked:
                 self.touch.pairs.counts[:] = 0
-                self._looked = False
+                self._looked, self._slack, self._straight = False, 0.0, 0
             return
         bent = anew or self._is_bent(r, 0.5 * (1.0 + BENT))
-        if self._alone and not bent and self._share * _largest(r - self._checked) <= 0.25 * self._slack:
+        if not bent and self._share * _largest(r - self._checked) < 0.5 * self._slack:
             return
         points = self.touch.points
         place_points(points, r, velocity)
-        if bent or not self._looked or largest_displacement(points, points.checked) > 0.25 * self._slack:
+        if bent or not self._looked or used(points) > 0.5:
             self._checked[:] = r
             self._search(dt)
         points.start[:] = points.p
@@ -113,38 +118,28 @@ class SelfContact:
         r, velocity = nodes()
         if self._is_bent(r, 1.0):
             return "the rod bent more than the contact search foresaw"
-        if self._alone and self._share * _largest(r - self._checked) <= 0.5 * self._slack:
-            self._limit_steps(self._share * _largest(velocity[:, :3]))
+        if self._share * _largest(r - self._checked) < self._slack:
+            speed = self._share * _largest(velocity[:, :3])
+            self.step_limit = LARGEST_SHIFT * self._slack / speed if speed > 0.0 else inf
             return ""
         points, pairs = self.touch.points, self.touch.pairs
         place_points(points, r, velocity)
         if not self._looked:
             near = smallest_distance(points, self._law.skip, self._farthest) <= self._reach
             return "the rod came near itself within one step" if near else ""
-        if largest_displacement(points, points.checked) > 0.5 * self._slack:
+        if used(points) > 1.0:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
-        self.step_limit = TIME_TO_TOUCH * time_to_touch
-        self._limit_steps(fastest(points))
+        self.step_limit = min(TIME_TO_TOUCH * time_to_touch, LARGEST_SHIFT * soonest(points))
         if approach > LARGEST_PASSAGE:
             return "two parts of the rod could have passed through each other"
         if links_meet(points, pairs):
             return "two parts of the rod slipped into each other between contact points"
         return ""
 
-    @property
-    def _alone(self) -> bool:
-        """Whether the last search has found nobody near."""
-        return self._looked and not self.touch.pairs.counts[0]
-
     def _is_bent(self, r: Array, part: float) -> bool:
         """Whether an arc that the last search has left out bends by more than a part of what is harmless."""
         return self._straight > 0 and most_bent(r, self._straight) > part * self._not_to_be_checked
-
-    def _limit_steps(self, speed: float) -> None:
-        """Let no point of the `speed` (m/s) outrun the last search."""
-        if speed > 0.0:
-            self.step_limit = min(self.step_limit, LARGEST_SHIFT * self._slack / speed)
 
     def smallest_gap(self, bending: float, r: Array, velocity: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
@@ -167,8 +162,7 @@ class SelfContact:
         smallest_gap(self.touch.points, self._law.skip)
         approaches(self.touch.points, self.touch.pairs)
         links_meet(self.touch.points, self.touch.pairs)
-        fastest(self.touch.points)
-        largest_displacement(self.touch.points, self.touch.points.checked)
+        used(self.touch.points), soonest(self.touch.points)
         most_bent(self._checked, 1)
 
     def _search(self, dt: float) -> None:
@@ -178,14 +172,17 @@ class SelfContact:
         self._looked = True
         self._leave_out()
         skip = self._skip
-        self._slack = min(max(FORESEEN * fastest(points) * dt, SKIN[0] * reach), SKIN[1] * reach)
-        find_pairs(points, skip, reach + self._slack, self.touch.pairs)
+        self._slack = 0.0
+        least = min(max(FORESEEN * fastest(points) * dt, SKIN[0] * reach), SKIN[1] * reach)
+        foresee(points, FORESEEN * dt, least, SKIN[2] * reach)
+        find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[1] > 0:
             self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))
-            find_pairs(points, skip, reach + self._slack, self.touch.pairs)
+            find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[0] == 0:
-            enough = max(2.0 * self._farthest, reach + FORESEEN_ALONE * fastest(points) * dt)
-            self._slack = smallest_distance(points, skip, enough) - reach
+            enough = max(2.0 * self._farthest, reach + 2.0 * FORESEEN_ALONE * fastest(points) * dt)
+            slack = 0.5 * (smallest_distance(points, skip, enough) - reach)
+            self._slack = slack if slack >= points.slack.max() else 0.0
 
     def _leave_out(self) -> None:
         """See which arcs bend so little that their ends cannot be near. (Around a ring they are not looked at.)"""

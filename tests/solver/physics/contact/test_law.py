@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from solver.arrays import Array
 from solver.physics.contact.law import LINEAR_BELOW, PAPER_SPACING, TAPER, Law, pair_force
-from solver.physics.contact.points import Points, no_arcs
+from solver.physics.contact.points import Points, unsearched
 from solver.scene.contact import Contact
 
 D, MASS = 0.01, 0.12
@@ -31,7 +31,7 @@ def two_points(d: float, tilt_a: float = 0.1, tilt_b: float = -0.2, closing: flo
     w = np.array([-0.5 * closing * AXIS + 0.3 * other, 0.5 * closing * AXIS - 0.1 * normal])
     return Points(
         np.zeros(2, np.int64), np.zeros((2, 4)), np.zeros((2, 4)), np.full(2, MASS), np.full(2, D), 1e-3,
-        p, t, w, *np.zeros((2, 2, 3)), *no_arcs(2),
+        p, t, w, *np.zeros((2, 2, 3)), *unsearched(2),
     )  # fmt: skip
 
 
@@ -195,7 +195,7 @@ def line_density(spacing: float, kind: str) -> float:
     t = np.tile([0.0, 0.0, 1.0], (M, 1))
     points = Points(
         np.zeros(M, np.int64), np.zeros((M, 4)), np.zeros((M, 4)), np.full(M, MASS), np.full(M, D), spacing,
-        p, t, *np.zeros((3, M, 3)), *no_arcs(M),
+        p, t, *np.zeros((3, M, 3)), *unsearched(M),
     )  # fmt: skip
     total = 0.0
     for b in range(1, M):

@@ -43,7 +43,7 @@ FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 TO_THE_END = 6.0
 """Part of MOST_WORK that a run with the longest steps may take which no viscosity makes faster, as it has no waves."""
-SETTLING, SETTLING_LATE = 1.0, 2.0
+SETTLING, SETTLING_LATE = 1.0, 3.0
 """Likewise of a rod whose strands may strike each other, and soon rest: a loop that collapses takes most of the work of
 a run that is calm before and after. Viscosity takes no less, and bends the rod elsewhere."""
 OVERDRAWN = 0.25
@@ -116,15 +116,21 @@ class Patience:
         return FIRST_PART if self.waves else TO_THE_END
 
 
+def _was_waited_for(attempt: Attempt) -> bool:
+    """See `Patience`."""
+    return attempt.steps == LOOSEST and attempt.work > 2.0 * FIRST_PART * MOST_WORK
+
+
 def allowance(history: Sequence[Attempt], trial: Trial, longest: float = FIRST_PART) -> float:
     """The work that an attempt may take before it is given up as slow. With viscosity those without it do not count.
-    `longest`: see `Patience`."""
+    `longest`: see `Patience`; it is waited for once."""
     complete = [attempt for attempt in history if attempt.complete and _is_damped(attempt) == _is_damped(trial)]
     if trial.steps == AT_REST and all(trial.mesh < attempt.mesh for attempt in complete):
         return MOST_WORK_AT_REST
     if not complete:
         if not _is_damped(trial):
-            return MOST_WORK * (FIRST_PART if trial.steps > LOOSEST else longest)
+            once = trial.steps > LOOSEST or any(map(_was_waited_for, history))
+            return MOST_WORK * (FIRST_PART if once else longest)
         last = any(attempt.slow and _is_damped(attempt) for attempt in history)
         last = last or grade_of(trial.steps) == highest_grade(intervals_of(trial.mesh))
         return MOST_WORK * (LAST_PART if last else DAMPED_PART)

@@ -18,10 +18,9 @@ STRIDES = 5
 smooth, which such steps are for, their error is of order 5."""
 OVERHEAD = 60
 """Intervals that take as long as all else in a Newton iteration."""
-IN_CONTACT = 6.0
-"""How many times more work an iteration is where strands press on each other."""
-PAIR = 2.0
-"""What each pair of points that press on each other adds: a coil's are many more than its intervals."""
+IN_CONTACT, PAIR = 2.3, 0.021
+"""How many times more work an iteration is where strands press on each other; and what each pair of points that do adds
+to that: of many, more directions have to be searched."""
 DEAR_AT_REST, PRESSED_AT_REST, COUPLED_AT_REST = 20.0, 4.0, 0.5
 """How many times more work an iteration of a static analysis is, with all that goes with it; of that how many times
 more where strands press on each other; and what the square of its intervals adds there, for all rotations are counted
@@ -63,7 +62,7 @@ def strides_of(tolerance: float, steps: int = 0) -> int:
 
 def work_of_iteration(mesh: int, pressing: int) -> float:
     """Of a motion; `pressing`: how many pairs of points press on each other."""
-    return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT if pressing else 1.0) + PAIR * pressing
+    return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT + PAIR * pressing if pressing else 1.0)
 
 
 def work_at_rest(mesh: int, pressing: int) -> float:

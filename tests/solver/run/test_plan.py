@@ -204,6 +204,9 @@ def test_strands_that_strike_each_other_and_soon_rest_are_waited_for() -> None:
     assert patience.part(inf) == patience.part(5.0) == SETTLING_LATE
     assert patience.part(4.9) == SETTLING
     assert Patience(waves=True).part(inf) == FIRST_PART
+    last, once = Trial(3, LOOSEST), slow(2, LOOSEST)._replace(work=MOST_WORK)
+    assert allowance([slow(2, 0)], last, SETTLING) == SETTLING * MOST_WORK
+    assert allowance([slow(2, 0), once], last, SETTLING) == FIRST_PART * MOST_WORK
 
 
 def test_the_error_of_strands_that_rattled_is_told_by_another_mesh_rather_than_by_shorter_steps() -> None:

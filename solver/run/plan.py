@@ -335,7 +335,8 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int, t_en
     last = history[-1]
     if last.slow and last.steps > LOOSEST:
         return Trial(last.mesh, max(last.steps - 2, LOOSEST))
-    if _is_damped(last) and last.outcome == CROSSED and intervals_of(last.mesh + 1) <= most_intervals:
+    crossed = last.outcome == CROSSED and (_is_damped(last) or _was_waited_for(last))
+    if crossed and intervals_of(last.mesh + 1) <= most_intervals:
         return Trial(last.mesh + 1, DAMPED)  # nodes were too far apart to press on each other as strands do
     if last.slow or _is_damped(last):
         return _more_damped(last, t_end)

@@ -254,5 +254,7 @@ def test_a_damped_run_that_crossed_itself_is_tried_on_a_finer_mesh_and_not_again
 
 def test_a_finer_mesh_on_which_it_crossed_itself_gets_more_viscosity() -> None:
     """As that of a coil of 16 intervals whose run on 32 did."""
+    waited_for = failed(1, 0.7, 1.1 * MOST_WORK, LOOSEST)._replace(outcome=CROSSED)
+    assert next_trial([slow(1, 0), waited_for], [Excess()], 2000, 1.0) == Trial(2, DAMPED)
     history = [slow(0, 0), slow(0, LOOSEST), ran(0, DAMPED), failed(1, 0.1, steps=DAMPED)._replace(outcome=CROSSED)]
     assert next_trial(history, [Excess()], 10_000) == Trial(1, DAMPED - 1)

@@ -52,10 +52,6 @@ def _call(method: str, path: str, operation: dict[str, Any]) -> tuple[str, ...]:
     return f"`{method.upper()} {path}`", ", ".join(query), ", ".join(good), first
 
 
-def _by_frames(kind: str) -> str:
-    return f" for {outlook.FRAMES} frames, and by their number for more" if kind == outlook.RINGING else ""
-
-
 def _at_rest() -> str:
     dearer = ", ".join(f"{times:g} {what}" for what, times in outlook.DEARER.items())
     return (f"{outlook.STATIC:g} (frames + {outlook.STATIC_START}) {outlook.STATIC_DOUBLED:g}^m, with a first mesh of "
@@ -67,7 +63,8 @@ def costs() -> str:
     def micro(rate: float) -> str:
         return f"{rate * 1e6:g}"
 
-    least = "; ".join(f"{kind}: {seconds:g}{_by_frames(kind)}" for kind, seconds in outlook.SECONDS.items())
+    more = f"frames / {outlook.FRAMES}"
+    least = "; ".join(f"{kind}: {seconds:g}" for kind, seconds in outlook.SECONDS.items())
     rows = [
         ("a step", f"{micro(cost.STEP)} + {micro(cost.STEP_NODE)} nodes"),
         ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes, {cost.ON_SOLIDS} times on solids"),
@@ -78,6 +75,9 @@ def costs() -> str:
         ("steps with an `increment_tolerance` below the usual one", "(usual / given)^(1/2) times, `staggered` ^(1/4)"),
         ("all of it with a `tolerance` below 1e-3", "(1e-3 / given)^(1/2) times, up to 10 s"),
         ("and no less, by what sets the rod moving, than so many seconds", least),
+        (f"these, with more than {outlook.FRAMES} frames",
+         f"{more} times below {outlook.FOLLOWED:g} s, else ({more})^{outlook.BY_FRAMES:g} times, "
+         f"up to {outlook.MOST:g} s"),
         ("a static analysis with a tolerance of 1e-3, in seconds", _at_rest()),
         ("all of it with `verify` and no tolerance", f"{cost.VERIFIED} times"),
     ]

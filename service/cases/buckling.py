@@ -16,7 +16,7 @@ from service.cases.errors import FieldError
 from service.cases.extents import times, widest
 from service.cases.initial import Straight
 from service.cases.solids import solids_of
-from service.cases.stability import critical_twist, growth, twisted_at_first
+from service.cases.stability import critical_twist, growth, stiffness_and_mass, twisted_at_first
 from solver import End, Scene
 from solver.measures.buckling import MUCH, stays_straight
 from solver.physics.axial import distances, has_to_stretch
@@ -24,6 +24,8 @@ from solver.physics.ends import travel
 from solver.physics.seed import seed_of
 from solver.scene.layout import nodes_at_rest
 
+PUSHED = 100.0
+"""Push at an end, in pi^2 EJ/L^2, for which a pull is likely meant."""
 SHEARED = 0.5
 """Shear strain of a rod's surface beyond that of any material but rubber."""
 
@@ -31,7 +33,7 @@ SHEARED = 0.5
 def buckling_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What a rod that buckles calls for."""
     return [*_contact(spec, scene), *_sheared(spec, scene), *_column(scene), *_unstable(spec, scene),
-            *_pushed_in(spec, scene)]  # fmt: skip
+            *_pushed_in(spec, scene), *_pushed(scene)]  # fmt: skip
 
 
 def _contact(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
@@ -90,6 +92,20 @@ def _pushed_in(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
             rule = (f"has the rod pushed into it, end first, by {deepest:.3g} m: nothing is across the rod, which is "
                     "straight, so it goes in instead of bending; add a small load across it, which says to which side")
             yield FieldError(where, None, rule)
+
+
+def _pushed(scene: Scene) -> Iterator[FieldError]:
+    """A rod that an end pushes along itself with far more than it bears, where a pull was meant."""
+    critical = pi**2 * stiffness_and_mass(scene)[0] / float(scene.rod.length) ** 2
+    for where, end in (("start", scene.start), ("end", scene.end)):
+        condition = end.translation[2][0]
+        if end.frame == "lab" or condition.kind != "load":
+            continue
+        least = float(np.min(condition.curve(times(scene))))
+        if least < -PUSHED * critical:
+            rule = (f"pushes the rod along itself, {-least / critical:.2g} times as hard as it takes to buckle one "
+                    "that is pinned: a pull is positive")
+            yield FieldError(f"/ends/{where}/f3", least, rule)
 
 
 def _kept_straight(spec: CaseSpec, scene: Scene) -> Any:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from service.cases import apply_settings, build_scene, load_case, parse_case, shipped_cases, warnings_of
+from service.cases.buckling import PUSHED
 from service.cases.errors import FieldError
 
 DNA = {"rod.length": 3e-7, "rod.diameter": 2e-9, "rod.youngs_modulus": 3e8, "rod.shear_modulus": 1.5e8,
@@ -52,6 +53,18 @@ def test_a_slip_is_named_with_its_value(setting: str, value: Any, pointer: str, 
 
 def test_a_rod_of_30_m_diameter_is_told_to_be_wide_and_thick():
     assert [warning.value for warning in told({"rod.diameter": 30.0})] == [30.0, 30.0]
+
+
+@pytest.mark.parametrize("part", [50.0, 200.0])
+def test_a_push_that_was_meant_for_a_pull_is_told(part: float):
+    """Whether something is across the rod makes no difference."""
+    spec = parse_case(load_case("elastica"))
+    scene = build_scene(spec)
+    euler = pi**2 * float(scene.rod.stiffness[0](0.0)) / scene.rod.length**2
+    end = {"preset": "slider", "f3": -part * euler}
+    warned = [warning for warning in told({"ends.end": end}) if warning.pointer == "/ends/end/f3"]
+    assert len(warned) == (part > PUSHED)
+    assert not [w for w in told({"ends.end": end | {"f3": part * euler}}) if w.pointer == "/ends/end/f3"]
 
 
 @pytest.mark.parametrize(("turns", "end", "warned"), [(3.0, "slider", True), (3.0, "clamp", False),

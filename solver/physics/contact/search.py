@@ -157,44 +157,56 @@ def largest_displacement(points: Points, since: Array) -> float:
     """How far (m) some point has moved since the points lay at `since` (M, 3)."""
     largest = 0.0
     for i in range(len(points.p)):
-        square = 0.0
-        for k in range(3):
-            square += (points.p[i, k] - since[i, k]) ** 2
+        square = _between(points.p, since, i)
         largest = max(largest, square)
     return float(np.sqrt(largest))
 
 
 @kernel
-def foresee(points: Points, steps: float, least: float, most: float) -> None:
-    """Let each point go as far as it comes within `steps` (s) at its speed, but at `least` and at the `most` (m)."""
-    for i in range(len(points.p)):
-        points.slack[i] = min(max(steps * _speed(points, i), least), most)
+def foresee(w: Array, slack: Array, steps: float, least: float, most: float) -> None:
+    """Let each point go as far as it comes within `steps` (s) at its velocity w (M, 3), but at `least` and at the
+    `most` (m)."""
+    for i in range(len(slack)):
+        slack[i] = min(max(steps * np.sqrt(_square(w, i)), least), most)
 
 
 @kernel
-def used(points: Points) -> float:
-    """The largest part of its slack that a point has used up since the last search."""
+def used(p: Array, checked: Array, slack: Array) -> float:
+    """The largest part of its `slack` (M,) that a point at p (M, 3) has used up since it was `checked` (M, 3)."""
     largest = 0.0
-    for i in range(len(points.p)):
-        square = 0.0
-        for k in range(3):
-            square += (points.p[i, k] - points.checked[i, k]) ** 2
-        largest = max(largest, square / points.slack[i] ** 2)
+    for i in range(len(slack)):
+        square = _between(p, checked, i)
+        largest = max(largest, square / slack[i] ** 2)
     return float(np.sqrt(largest))
 
 
 @kernel
-def soonest(points: Points) -> float:
-    """The shortest time (s) in which a point, at its speed, uses up all of its slack."""
+def soonest(w: Array, slack: Array) -> float:
+    """The shortest time (s) in which a point, at its velocity w (M, 3), uses up all of its `slack` (M,)."""
     fastest = 0.0
-    for i in range(len(points.p)):
-        fastest = max(fastest, _speed(points, i) / points.slack[i])
-    return 1.0 / fastest if fastest > 0.0 else np.inf
+    for i in range(len(slack)):
+        fastest = max(fastest, _square(w, i) / slack[i] ** 2)
+    return 1.0 / np.sqrt(fastest) if fastest > 0.0 else np.inf
+
+
+@kernel
+def fastest(w: Array) -> float:
+    """The largest of some velocities (M, 3)."""
+    largest = 0.0
+    for i in range(len(w)):
+        largest = max(largest, _square(w, i))
+    return float(np.sqrt(largest))
 
 
 @inlined
-def _speed(points: Points, i: int) -> float:
-    return np.sqrt(points.w[i, 0] ** 2 + points.w[i, 1] ** 2 + points.w[i, 2] ** 2)  # type: ignore[no-any-return]
+def _square(w: Array, i: int) -> float:
+    return w[i, 0] ** 2 + w[i, 1] ** 2 + w[i, 2] ** 2  # type: ignore[no-any-return]
+
+
+@inlined
+def _between(p: Array, q: Array, i: int) -> float:
+    x, y, z = p[i, 0] - q[i, 0], p[i, 1] - q[i, 1], p[i, 2] - q[i, 2]
+    return x * x + y * y + z * z  # type: ignore[no-any-return]
 
 
 @kernel

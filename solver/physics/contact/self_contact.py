@@ -16,6 +16,7 @@ from solver.physics.contact.points import Points, contact_points, place_points
 from solver.physics.contact.recipe import IN_MOTION, NOTHING, Foreseen, Hardness, held, spaced
 from solver.physics.contact.search import (
     Pairs,
+    fastest,
     find_pairs,
     foresee,
     harmless_bending,
@@ -105,7 +106,7 @@ class SelfContact:
             return
         points = self.touch.points
         place_points(points, r, velocity)
-        if bent or not self._looked or used(points) > 0.5:
+        if bent or not self._looked or used(points.p, points.checked, points.slack) > 0.5:
             self._checked[:] = r
             self._search(dt)
         points.start[:] = points.p
@@ -127,10 +128,10 @@ class SelfContact:
         if not self._looked:
             near = smallest_distance(points, self._law.skip, self._farthest) <= self._reach
             return "the rod came near itself within one step" if near else ""
-        if used(points) > 1.0:
+        if used(points.p, points.checked, points.slack) > 1.0:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
-        self.step_limit = min(TIME_TO_TOUCH * time_to_touch, LARGEST_SHIFT * soonest(points))
+        self.step_limit = min(TIME_TO_TOUCH * time_to_touch, LARGEST_SHIFT * soonest(points.w, points.slack))
         if approach > LARGEST_PASSAGE:
             return "two parts of the rod could have passed through each other"
         if links_meet(points, pairs):
@@ -159,10 +160,10 @@ class SelfContact:
         points = self.touch.points
         place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
         self._search(0.0)
-        smallest_gap(self.touch.points, self._law.skip)
-        approaches(self.touch.points, self.touch.pairs)
-        links_meet(self.touch.points, self.touch.pairs)
-        used(self.touch.points), soonest(self.touch.points)
+        points, pairs = self.touch.points, self.touch.pairs
+        smallest_gap(points, self._law.skip)
+        approaches(points, pairs), links_meet(points, pairs)
+        used(points.p, points.checked, points.slack), soonest(points.w, points.slack)
         most_bent(self._checked, 1)
 
     def _search(self, dt: float) -> None:
@@ -173,14 +174,14 @@ class SelfContact:
         self._leave_out()
         skip = self._skip
         self._slack = 0.0
-        least = min(max(FORESEEN * fastest(points) * dt, SKIN[0] * reach), SKIN[1] * reach)
-        foresee(points, FORESEEN * dt, least, SKIN[2] * reach)
+        least = min(max(FORESEEN * fastest(points.w) * dt, SKIN[0] * reach), SKIN[1] * reach)
+        foresee(points.w, points.slack, FORESEEN * dt, least, SKIN[2] * reach)
         find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[1] > 0:
             self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))
             find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[0] == 0:
-            enough = max(2.0 * self._farthest, reach + 2.0 * FORESEEN_ALONE * fastest(points) * dt)
+            enough = max(2.0 * self._farthest, reach + 2.0 * FORESEEN_ALONE * fastest(points.w) * dt)
             slack = 0.5 * (smallest_distance(points, skip, enough) - reach)
             self._slack = slack if slack >= points.slack.max() else 0.0
 
@@ -213,15 +214,6 @@ def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen,
 def _largest(vectors: Array) -> float:
     """The length of the longest of some vectors (n, 3)."""
     return float(np.sqrt(np.einsum("ij,ij->i", vectors, vectors).max()))
-
-
-@kernel
-def fastest(points: Points) -> float:
-    """The largest speed (m/s) of a point."""
-    largest = 0.0
-    for i in range(len(points.p)):
-        largest = max(largest, points.w[i, 0] ** 2 + points.w[i, 1] ** 2 + points.w[i, 2] ** 2)
-    return float(np.sqrt(largest))
 
 
 @kernel

@@ -104,7 +104,7 @@ def test_the_pairs_found_are_those_of_brute_force(seed: int, amplitude: float) -
 def test_pairs_are_listed_that_may_come_near_as_their_points_go(seed: int, amplitude: float) -> None:
     points = points_of(tangents(S, seed, amplitude))
     points.w[:] = np.random.default_rng(seed).exponential(size=points.w.shape) ** 2
-    foresee(points, 0.01, 0.005, 0.08)
+    foresee(points.w, points.slack, 0.01, 0.005, 0.08)
     assert_allclose(points.slack, np.clip(0.01 * np.linalg.norm(points.w, axis=1), 0.005, 0.08))
     every, reach = distances(points), 0.03
     near = {(a, b) for (a, b), d in every.items() if d < reach + points.slack[a] + points.slack[b]}
@@ -114,10 +114,11 @@ def test_pairs_are_listed_that_may_come_near_as_their_points_go(seed: int, ampli
 def test_how_much_of_its_slack_a_point_has_used_and_how_soon_it_will() -> None:
     points = points_of(tangents(S, 1, 2.0))
     points.checked[:], points.slack[:], points.w[:] = points.p, 0.1, 0.0
-    assert used(points) == 0.0 and soonest(points) == inf
+    assert used(points.p, points.checked, points.slack) == 0.0 and soonest(points.w, points.slack) == inf
     points.slack[7], points.checked[7] = 0.02, points.p[7] + [0.003, 0.0, -0.004]
     points.w[9], points.slack[9] = [0.0, 3.0, 4.0], 0.2
-    assert used(points) == pytest.approx(0.25) and soonest(points) == pytest.approx(0.04)
+    assert used(points.p, points.checked, points.slack) == pytest.approx(0.25)
+    assert soonest(points.w, points.slack) == pytest.approx(0.04)
 
 
 @given(seeds, wildness)

@@ -49,7 +49,7 @@ def links_meet(points: Points, pairs: Pairs) -> bool:
     Those with no more than D of the rod between them are neighbours, and do not count.
     """
     M, pitch = len(points.p), longest_spacing(points)
-    moved = largest_displacement(points, points.start)
+    moved = largest_displacement(points.p, points.start)
     for pair in range(pairs.counts[0]):
         a, b = pairs.first[pair], pairs.second[pair]
         D = 0.5 * (points.diameter[a] + points.diameter[b])

@@ -153,11 +153,11 @@ def _smallest(points: Points, skip: float, enough: float, part: float) -> float:
 
 
 @kernel
-def largest_displacement(points: Points, since: Array) -> float:
-    """How far (m) some point has moved since the points lay at `since` (M, 3)."""
+def largest_displacement(p: Array, since: Array) -> float:
+    """How far (m) some point, or node, at p (n, 3) has moved since they lay at `since` (n, 3)."""
     largest = 0.0
-    for i in range(len(points.p)):
-        square = _between(points.p, since, i)
+    for i in range(len(since)):
+        square = _between(p, since, i)
         largest = max(largest, square)
     return float(np.sqrt(largest))
 
@@ -191,7 +191,7 @@ def soonest(w: Array, slack: Array) -> float:
 
 @kernel
 def fastest(w: Array) -> float:
-    """The largest of some velocities (M, 3)."""
+    """The largest of some velocities (n, >= 3)."""
     largest = 0.0
     for i in range(len(w)):
         largest = max(largest, _square(w, i))

@@ -20,6 +20,7 @@ from solver.physics.contact.search import (
     find_pairs,
     foresee,
     harmless_bending,
+    largest_displacement,
     most_bent,
     smallest_distance,
     smallest_gap,
@@ -102,7 +103,7 @@ class SelfContact:
                 self._looked, self._slack, self._straight = False, 0.0, 0
             return
         bent = anew or self._is_bent(r, 0.5 * (1.0 + BENT))
-        if not bent and self._share * _largest(r - self._checked) < 0.5 * self._slack:
+        if not bent and self._share * largest_displacement(r, self._checked) < 0.5 * self._slack:
             return
         points = self.touch.points
         place_points(points, r, velocity)
@@ -119,8 +120,8 @@ class SelfContact:
         r, velocity = nodes()
         if self._is_bent(r, 1.0):
             return "the rod bent more than the contact search foresaw"
-        if self._share * _largest(r - self._checked) < self._slack:
-            speed = self._share * _largest(velocity[:, :3])
+        if self._share * largest_displacement(r, self._checked) < self._slack:
+            speed = self._share * fastest(velocity)
             self.step_limit = LARGEST_SHIFT * self._slack / speed if speed > 0.0 else inf
             return ""
         points, pairs = self.touch.points, self.touch.pairs
@@ -164,7 +165,7 @@ class SelfContact:
         smallest_gap(points, self._law.skip)
         approaches(points, pairs), links_meet(points, pairs)
         used(points.p, points.checked, points.slack), soonest(points.w, points.slack)
-        most_bent(self._checked, 1)
+        most_bent(self._checked, 1), largest_displacement(self._checked, self._checked)
 
     def _search(self, dt: float) -> None:
         """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
@@ -209,11 +210,6 @@ def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen,
     points = contact_points(contact, rod, s, ends.closing)
     law = held(rod, ends, np.linspace(0.0, float(s[-1]), len(points.p)), hardness)
     return points._replace(mass=law.strength), Law.by_itself(contact, points.spacing, law.relaxation, hardness.pole)
-
-
-def _largest(vectors: Array) -> float:
-    """The length of the longest of some vectors (n, 3)."""
-    return float(np.sqrt(np.einsum("ij,ij->i", vectors, vectors).max()))
 
 
 @kernel

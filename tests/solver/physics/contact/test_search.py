@@ -268,9 +268,9 @@ def test_the_total_bending_counts_both_axes_and_not_the_twist() -> None:
 def test_the_largest_displacement_is_since_the_last_look(seed: int, amplitude: float) -> None:
     points = points_of(tangents(S, seed, amplitude))
     points.checked[:] = points.p
-    assert largest_displacement(points, points.checked) == 0.0
+    assert largest_displacement(points.p, points.checked) == 0.0
     points.checked[7] += [0.3, 0.0, -0.4]
-    assert largest_displacement(points, points.checked) == pytest.approx(0.5)
+    assert largest_displacement(points.p, points.checked) == pytest.approx(0.5)
 
 
 @given(seeds, wildness, st.floats(0.3, 2.5))

@@ -11,7 +11,7 @@
 With `verify` five times the seconds (the second run has twice the intervals and steps) and twice the bytes. With a
 `tolerance`, whose meshes are not known before: n of the usual mesh, a step a frame, twice the bytes; or the seconds
 that such scenes take (`outlook`) if these are more; a tolerance below the usual one makes it (usual/tolerance)^(1/2)
-times as much, up to the WORK after which it ends. Of statics with a tolerance the seconds are those that such scenes
+times as much, up to the MOST after which it ends. Of statics with a tolerance the seconds are those that such scenes
 take, (usual/tolerance)^(1/4) times as much.
 
 The rates are CPU seconds measured by `python -m benchmarks` on one core of the machine that its results name: those of
@@ -28,7 +28,7 @@ from math import ceil
 from service.cases.build import build_scene
 from service.cases.case import TOLERANCE, CaseSpec
 from service.cases.errors import CaseError, FieldError
-from service.cases.outlook import likely_seconds
+from service.cases.outlook import MOST, likely_seconds
 from service.cases.quantities import ScheduleTable
 from service.cases.size import contact_points, tables_in
 from solver.measures.frame import OUTPUTS
@@ -42,8 +42,6 @@ FRAME, FRAME_NODE = 100e-6, 4e-6
 WRITHE = 1.5e-9
 POINT, PAIR = 1e-7, 5e-9
 VERIFIED = 5
-WORK = 10.0
-"""Seconds that solver.run.plan spends on a tolerance (MOST_WORK)."""
 MOST_HALVED = 2.0**22
 """How often steps may be halved."""
 COMPONENTS = {output.name: output.components for output in OUTPUTS}
@@ -68,7 +66,7 @@ def estimate(spec: CaseSpec) -> Cost:
     likely = likely_seconds(build_scene(spec))
     if spec.analysis == "static":
         return replace(cost, seconds=likely * _finer(tolerance) ** 0.5)
-    return replace(cost, seconds=max(cost.seconds, min(likely * _finer(tolerance), max(likely, WORK))))
+    return replace(cost, seconds=max(cost.seconds, min(likely * _finer(tolerance), max(likely, MOST))))
 
 
 def by_size(spec: CaseSpec) -> Cost:
@@ -87,7 +85,7 @@ def by_size(spec: CaseSpec) -> Cost:
     frame = FRAME + FRAME_NODE * nodes + (WRITHE * nodes**2 if spec.output.topology else 0.0)
     seconds = steps * step + frames * frame
     if numerics.tolerance:
-        seconds = max(seconds, min(seconds * _finer(numerics.tolerance), WORK + frames * frame))
+        seconds = max(seconds, min(seconds * _finer(numerics.tolerance), MOST + frames * frame))
     elif numerics.verify:
         seconds *= VERIFIED
     components = sum(COMPONENTS[name] for name in spec.output.fields) * (2 if numerics.has_errors else 1)

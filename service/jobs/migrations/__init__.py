@@ -28,7 +28,7 @@ def migrate(connection: Connection, version: str = "head") -> None:
     if inspect(connection).has_table("schema_version"):
         raise WrongSchema("the registry was made by hockle 0.1.0, before there were migrations: "
                           "give this one another data directory")
-    if version == "head" and _version_of(connection) == newest():
+    if version == "head" and _version_of(connection) == _newest():
         return
     from alembic import command  # a sixth of a second
     from alembic.config import Config
@@ -46,7 +46,7 @@ def migrate(connection: Connection, version: str = "head") -> None:
         raise WrongSchema(f"the registry {rule}: {error}") from None
 
 
-def newest() -> str:
+def _newest() -> str:
     """The newest version that there is a file for."""
     return max((path.stem[:4] for path in Path(__file__).with_name("versions").glob("[0-9]*.py")), default="")
 

@@ -18,6 +18,7 @@ from service.cases.initial import Straight
 from service.cases.solids import solids_of
 from service.cases.stability import critical_twist, growth, stiffness_and_mass, twisted_at_first
 from solver import End, Scene
+from solver.kernels.rotation import rotate
 from solver.measures.buckling import MUCH, stays_straight
 from solver.physics.axial import distances, has_to_stretch
 from solver.physics.ends import travel
@@ -26,6 +27,8 @@ from solver.scene.layout import nodes_at_rest
 
 PUSHED = 100.0
 """Push at an end, in pi^2 EJ/L^2, for which a pull is likely meant."""
+ALONG = 0.9
+"""Cosine of the angle between a force and the rod up to which it pulls or pushes."""
 SHEARED = 0.5
 """Shear strain of a rod's surface beyond that of any material but rubber."""
 
@@ -97,15 +100,20 @@ def _pushed_in(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
 def _pushed(scene: Scene) -> Iterator[FieldError]:
     """A rod that an end pushes along itself with far more than it bears, where a pull was meant."""
     critical = pi**2 * stiffness_and_mass(scene)[0] / float(scene.rod.length) ** 2
-    for where, end in (("start", scene.start), ("end", scene.end)):
-        condition = end.translation[2][0]
-        if end.frame == "lab" or condition.kind != "load":
+    _, orientation, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, 2))
+    tangents = rotate(orientation, np.tile([0.0, 0.0, 1.0], (2, 1)))
+    for where, end, tangent in zip(("start", "end"), (scene.start, scene.end), tangents, strict=True):
+        along = tangent if end.frame == "lab" else np.array([0.0, 0.0, 1.0])
+        i = int(np.argmax(np.abs(along)))
+        held = all(component[0].kind != "load" for k, component in enumerate(end.translation) if k != i)
+        condition = end.translation[i][0]
+        if condition.kind != "load" or abs(along[i]) < ALONG or (end.frame == "lab" and not held):
             continue
-        least = float(np.min(condition.curve(times(scene))))
+        least = float(np.min(along[i] * condition.curve(times(scene))))
         if least < -PUSHED * critical:
             rule = (f"pushes the rod along itself, {-least / critical:.2g} times as hard as it takes to buckle one "
                     "that is pinned: a pull is positive")
-            yield FieldError(f"/ends/{where}/f3", least, rule)
+            yield FieldError(f"/ends/{where}/f{i + 1}", least, rule)
 
 
 def _kept_straight(spec: CaseSpec, scene: Scene) -> Any:

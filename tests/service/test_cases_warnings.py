@@ -61,10 +61,15 @@ def test_a_push_that_was_meant_for_a_pull_is_told(part: float):
     spec = parse_case(load_case("elastica"))
     scene = build_scene(spec)
     euler = pi**2 * float(scene.rod.stiffness[0](0.0)) / scene.rod.length**2
-    end = {"preset": "slider", "f3": -part * euler}
-    warned = [warning for warning in told({"ends.end": end}) if warning.pointer == "/ends/end/f3"]
-    assert len(warned) == (part > PUSHED)
-    assert not [w for w in told({"ends.end": end | {"f3": part * euler}}) if w.pointer == "/ends/end/f3"]
+    axis = int(np.argmax(np.abs(scene.initial.direction)))
+    guided = {"preset": "pin", "frame": "lab"}
+
+    def warned(preset: dict[str, Any], name: str, force: float) -> bool:
+        return f"/ends/end/{name}" in [warning.pointer for warning in told({"ends.end": preset | {name: force}})]
+
+    for preset, name in (({"preset": "slider"}, "f3"), (guided, f"f{axis + 1}")):
+        assert warned(preset, name, -part * euler) == (part > PUSHED)
+        assert not warned(preset, name, part * euler)
 
 
 @pytest.mark.parametrize(("turns", "end", "warned"), [(3.0, "slider", True), (3.0, "clamp", False),

@@ -17,11 +17,13 @@ from solver.scene.layout import nodes_at_rest
 PLACES = 401
 JERK = 1e-3
 """Part of the largest speed that an end which is held may have at first: that of a rod which begins to swing."""
+AT_ONCE = 0.1
+"""Part of its largest speed with which an end may begin to move a rod that is at rest."""
 
 
 def motion_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What is wrong with how the rod, or an end of it, is moved."""
-    return [*_held_back(scene), *_too_fast(spec, scene)]
+    return [*_held_back(scene), *_jerked(scene), *_too_fast(spec, scene)]
 
 
 def _held_back(scene: Scene) -> Iterator[FieldError]:
@@ -39,6 +41,22 @@ def _held_back(scene: Scene) -> Iterator[FieldError]:
                 still = ", ".join(f"{v:.5g}" for v in np.array(scene.initial.velocity) - moves[at] + 0.0)
                 rule += f"; it turns about its {name} with a velocity of [{still}]"
             yield FieldError(f"/initial/{field}", float(np.linalg.norm(getattr(scene.initial, field))), rule)
+
+
+def _jerked(scene: Scene) -> Iterator[FieldError]:
+    """An end that begins to move at once, where the rod is at rest."""
+    if scene.at_rest or any(scene.initial.velocity) or any(scene.initial.angular_velocity):
+        return
+    times = np.linspace(0.0, scene.t_end, PLACES)
+    for name, end in (("start", scene.start), ("end", scene.end)):
+        for i, component in enumerate(end.translation):
+            kind, curve = component[0].kind, component[0].curve
+            speed = {"rate": curve.value, "position": curve.derivative}.get(kind, lambda _: 0.0)
+            first = speed(0.0)
+            if first and abs(first) > AT_ONCE * max(abs(speed(t)) for t in times.tolist()):
+                rule = (f"begins at {first:.3g} m/s, and the rod is at rest: it begins with a jerk; let it begin at 0 "
+                        "and gain speed (smoothstep), or give the rod its initial.velocity")  # fmt: skip
+                yield FieldError(f"/ends/{name}/{'v' if kind == 'rate' else 'x'}{i + 1}", None, rule)
 
 
 def _moves(scene: Scene) -> Any:

@@ -297,6 +297,18 @@ def test_a_rod_that_begins_to_swing_about_its_pin_has_no_jerk(velocity: list[flo
     assert ("/initial/angular_velocity" in found) == warned
 
 
+@pytest.mark.parametrize(("component", "motion", "warned"), [
+    ("v1", 0.2, True), ("x2", {"t": [0.0, 1.0], "value": [0.0, 0.1], "interpolation": "linear"}, True),
+    ("v1", {"t": [0.0, 0.5], "value": [0.0, 0.2], "interpolation": "linear"}, False),
+    ("x2", {"t": [0.0, 1.0], "value": [0.0, 0.1], "interpolation": "smoothstep"}, False),
+])  # fmt: skip
+def test_an_end_that_moves_at_once_is_told_where_the_rod_is_at_rest(component: str, motion: Any, warned: bool):
+    case = PRESSED | {"ends": {"start": {"preset": "clamp", component: motion}, "end": "free"}}
+    assert [warning.pointer for warning in _warned(case)] == [f"/ends/start/{component}"] * warned
+    moving = {"initial": {"shape": "straight", "velocity": [0.2, 0.1, 0.0]}}
+    assert not any("at rest" in warning.rule for warning in _warned(case | moving))
+
+
 @pytest.mark.parametrize(("rise", "warned"), [(0.0, True), (0.03, False)])
 def test_a_shape_that_begins_within_itself_is_told_where_there_is_contact(rise: float, warned: bool):
     """Two turns of a helix of radius 1 / 4 pi, which lie in each other or above each other; a ring touches its end."""

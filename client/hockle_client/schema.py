@@ -373,7 +373,7 @@ class RodSpec(TypedDict):
     """L, along the centreline; in m"""
 
     diameter: Union[float, ProfileTable]
-    """profile; what fluid and contact see; in m"""
+    """profile; what fluid and contact see: of a tape its width or thickness; in m"""
 
     youngs_modulus: NotRequired[Union[float, None]]
     """E; this or `bending_stiffness`, not both; in Pa"""
@@ -382,10 +382,10 @@ class RodSpec(TypedDict):
     """G; this or `torsional_stiffness`, not both; in Pa"""
 
     density: NotRequired[Union[float, None]]
-    """of a solid section; this or `mass_per_length`, or one beside the other's inertia; in kg/m³"""
+    """of a solid section, whose mass and inertia it gives where they are not given themselves; in kg/m³"""
 
     bending_stiffness: NotRequired[Union[Union[Union[float, ProfileTable], Sequence[Union[float, ProfileTable]]], None]]
-    """EJ: one profile, or the two EJ1 and EJ2; in N m²"""
+    """EJ: one profile, or two, EJ1 about a1 and EJ2 about a2; in N m²"""
 
     torsional_stiffness: NotRequired[Union[Union[float, ProfileTable], None]]
     """GJ: profile; in N m²"""

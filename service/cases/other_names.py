@@ -55,22 +55,27 @@ NOT_THERE = (
 )
 """What some look for and hockle does not have: the last part of the place (nothing: the case itself), names in small
 letters, and what there is instead."""
-OTHER_ENDS = (
-    ("clamp", "fixed clamped encastre built-in cantilever rigid"),
-    ("pin", "pinned hinge hinged ball joint simply_supported simple"),
-    ("an object, a pin with frame lab and a force of 0 along its way, as f1", "roller roll rolling"),
-    ("an object, a clamp with frame lab and a force of 0 along its way, as f1", "guided guide sliding slide"),
+OTHER_KINDS = (
+    ("'clamp'", "clamp", "fixed clamped encastre built-in cantilever rigid"),
+    ("'clamp'", "pin", "pinned hinge hinged ball joint simply_supported simple bearing"),
+    ("'clamp'", "an object, a pin with frame lab and a force of 0 along its way, as f1", "roller roll rolling"),
+    ("'clamp'", "an object, a clamp with frame lab and a force of 0 along its way, as f1",
+     "guided guide sliding slide"),
+    ("centreline", "centreline, with points of that curve",
+     "arc catenary circle coil curve helix knot loop parabola polyline ring spiral spline"),
+    ("'smoothstep'", "cubic, with a table of some 20 points a period", "sine sin sinusoidal cosine cos harmonic"),
+    ("'smoothstep'", "linear, with two points close together where it jumps", "step constant previous jump"),
 )
-"""Kinds of ends, and what others call them."""
+"""A word by which the rule for a value is known, one that it may have, in words, and what others call that."""
 TABLES = ("t", "value")
 """Fields of a function of time."""
 WAVES = "sin sine cos cosine amplitude frequency omega period phase"
 
 
-def end_named_otherwise(name: object) -> str:
-    """The kind of end that goes by this name elsewhere, in words; or nothing."""
+def kind_named_otherwise(name: object, rule: str) -> str:
+    """What goes by this name elsewhere, of what the rule for a value allows, in words; or nothing."""
     called = str(name).lower().replace(" ", "_")
-    return next((kind for kind, others in OTHER_ENDS if called in others.split()), "")
+    return next((kind for word, kind, others in OTHER_KINDS if word in rule and called in others.split()), "")
 
 
 def not_there(name: str, path: Sequence[str], known: Sequence[str]) -> str:

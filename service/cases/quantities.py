@@ -81,7 +81,8 @@ def check_table(name: str, x: tuple[float, ...], value: tuple[float, ...], of: s
         raise refusal(of, len(value), f"must have as many entries as {name} ({len(x)})")
     for i in range(1, len(x)):
         if x[i] <= x[i - 1]:
-            raise refusal(f"{name}/{i}", x[i], f"must be greater than the entry before it ({x[i - 1]})")
+            jump = ": where it jumps, let two points be close together" if x[i] == x[i - 1] else ""
+            raise refusal(f"{name}/{i}", x[i], f"must be greater than the entry before it ({x[i - 1]}){jump}")
 
 
 def number_or_table(value: Any) -> str:

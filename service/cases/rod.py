@@ -53,14 +53,18 @@ class RodSpec(Spec):
     """
 
     length: Annotated[Positive, means("L, along the centreline", "m")]
-    diameter: Annotated[PositiveProfile, means("profile; what fluid and contact see", "m")]
+    diameter: Annotated[
+        PositiveProfile, means("profile; what fluid and contact see: of a tape its width or thickness", "m")
+    ]
     youngs_modulus: Annotated[Positive | None, means("E; this or `bending_stiffness`, not both", "Pa")] = None
     shear_modulus: Annotated[Positive | None, means("G; this or `torsional_stiffness`, not both", "Pa")] = None
     density: Annotated[
         Positive | None,
-        means("of a solid section; this or `mass_per_length`, or one beside the other's inertia", "kg/m³"),
+        means("of a solid section, whose mass and inertia it gives where they are not given themselves", "kg/m³"),
     ] = None
-    bending_stiffness: Annotated[Bending | None, means("EJ: one profile, or the two EJ1 and EJ2", "N m²")] = None
+    bending_stiffness: Annotated[
+        Bending | None, means("EJ: one profile, or two, EJ1 about a1 and EJ2 about a2", "N m²")
+    ] = None
     torsional_stiffness: Annotated[PositiveProfile | None, means("GJ: profile", "N m²")] = None
     coupling: Annotated[
         ProfileTriple,

@@ -11,7 +11,7 @@ from typing import Any, get_args, get_origin
 from pydantic import BaseModel
 
 from service.cases.errors import CaseError, FieldError
-from service.cases.other_names import end_named_otherwise, named_otherwise, not_there
+from service.cases.other_names import kind_named_otherwise, named_otherwise, not_there
 
 LIKE, ALIKE = 0.6, 0.8
 """How much of its letters a name shares with one that is like it; and with one that it is likely a slip of."""
@@ -49,7 +49,7 @@ def _wraps(fault: FieldError, whole: type[BaseModel]) -> bool:
 
 
 def _suggested(fault: FieldError, whole: type[BaseModel]) -> FieldError:
-    if "'clamp'" in fault.rule and (kind := end_named_otherwise(fault.value)):
+    if kind := kind_named_otherwise(fault.value, fault.rule):
         return FieldError(fault.pointer, fault.value, f"{fault.rule}: did you mean {kind}?")
     if not fault.pointer or not (fault.unknown or fault.no_list):  # what is named as a kind of value has no pointer
         return fault

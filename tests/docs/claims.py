@@ -19,11 +19,9 @@ from tests.solver.scenes import ROD
 def readme(page: Page) -> None:
     """The tips of its two rods; a picture, a film, and the file that curl got."""
     [tip] = re.findall(r"^-0\.\d{4,}$", page.printed, re.M)
-    # It still swings by about 1 mm, and its phase is the step control's.
-    assert float(tip) == pytest.approx(-0.0975, abs=1e-3)
+    assert float(tip) == pytest.approx(-0.09733, abs=2e-5)
     [*_, last] = re.findall(r"e1 = (-\d\.\d+) m", page.printed)
-    # The last two digits: the swing that is left after 4 s, and the error of 50 intervals.
-    assert float(last) == pytest.approx(-0.27610, abs=2e-4)
+    assert float(last) == pytest.approx(-0.27610, abs=1e-4)  # it still swings by 1.5e-5
     files = {path.name for path in page.folder.iterdir()}
     assert {"sagging-rod.mp4", "sagging-rod-snapshots.png"} <= files
     assert {f"{one}.nc" for one in page.ids.values()} & files

@@ -167,6 +167,21 @@ def test_an_end_by_another_name_is_told_as_that(end: Any, meant: str):
     assert f": did you mean {meant}" in str(fault) or f"did you mean an object, {meant}" in str(fault)
 
 
+@pytest.mark.parametrize(("setting", "value", "meant"), [
+    ("initial.shape", "helix", "centreline, with points of that curve"), ("ends.start", "bearing", "pin"),
+    ("ends.start", {"preset": "clamp", "v1": {"t": [0, 1], "value": [0, 1], "interpolation": "sine"}}, "cubic"),
+])  # fmt: skip
+def test_a_kind_by_another_name_is_told_as_that(setting: str, value: Any, meant: str):
+    [fault] = refusal(setting, value).errors
+    assert f": did you mean {meant}" in str(fault)
+
+
+def test_what_jumps_is_told_how_to_write_that():
+    [fault] = refusal("ends.start", {"preset": "clamp", "v1": {"t": [0, 1, 1], "value": [0, 1, 2],
+                                                             "interpolation": "linear"}}).errors  # fmt: skip
+    assert fault.rule.endswith("entry before it (1.0): where it jumps, let two points be close together")
+
+
 def test_a_shipped_case_that_is_misspelt_is_told_as_that():
     with pytest.raises(CaseError, match=r"a file that is there, or one of .*did you mean hanging-cable\?"):
         load_case("hanging-cabel")

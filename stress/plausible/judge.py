@@ -24,6 +24,7 @@ import numpy as np
 from service.cases import build_scene, parse_case
 from solver import Frame, Run, RunFailed, Scene
 from solver.arrays import Array
+from solver.physics.seed import seeded
 from solver.run import plan
 from solver.run.accuracy import errors_of, excess, sizes
 from solver.run.equilibria import Equilibria
@@ -69,7 +70,7 @@ class Verdict:
 
 def judge(kind: str, number: int) -> Verdict:
     """Run a scene, its truth and fixed runs."""
-    built = build_scene(parse_case(scene(kind, number)))
+    built = seeded(build_scene(parse_case(scene(kind, number))))  # as `simulate` runs it
     verdict = Verdict(kind, number)
     try:
         answer, verdict.cpu, _ = _refined(built)

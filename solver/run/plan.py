@@ -66,8 +66,9 @@ waves are faster there."""
 DEAR, FAR_OFF = 2.5, 10.0
 """How many times the work shorter steps took, and how many times the tolerance their error is, where the second mesh
 has the longer ones."""
-CHEAP = 0.1
-"""Part of MOST_WORK that an attempt may always take."""
+CHEAP, SAME = 0.1, 1.1
+"""Part of MOST_WORK that an attempt may always take, unless it has shorter steps than one that changed nothing: the
+error was the same to this."""
 ENOUGH = 0.5
 """Part of MOST_WORK after which runs that fail at the same time are no longer tried on finer meshes."""
 WORTH = {"kappa": 4.0}
@@ -79,7 +80,7 @@ LEAST_FALL = 1.3
 
 class Excess(NamedTuple):
     """The errors of a quantity in what there is, over the tolerance, infinite where nothing tells them: by the `mesh`
-    and by the `steps`; their sum `before` the last attempt; and see WORTH."""
+    and by the `steps`; their total `before` the last attempt; and see WORTH."""
 
     mesh: float = inf
     steps: float = inf
@@ -88,8 +89,8 @@ class Excess(NamedTuple):
 
     @property
     def total(self) -> float:
-        """Their sum."""
-        return self.mesh + self.steps
+        """Their sum; of what ran with no other steps that of the mesh."""
+        return self.mesh if self.steps == inf else self.mesh + self.steps
 
 
 def _is_damped(attempt: Attempt | Trial) -> bool:
@@ -218,6 +219,11 @@ def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_inter
     if not history[-1].complete:
         yield _beyond_failures(history, most_intervals)
         return
+    if _steps_are_untold(complete, errors):
+        mesh, steps, *_ = min(complete)
+        if _is_for(history, Trial(mesh, steps + 1), most_intervals):
+            yield Trial(mesh, steps + 1)
+        return
     for excess in sorted(errors, key=lambda excess: -excess.total):
         if excess.total <= 1.0:
             return
@@ -238,6 +244,11 @@ def _steps_again(complete: Sequence[Attempt]) -> Trial | None:
     return Trial(near[0].mesh, near[0].steps + 1)
 
 
+def _steps_are_untold(complete: Sequence[Attempt], errors: Sequence[Excess]) -> bool:
+    """Whether meshes are compared, and nothing tells what shorter steps would change, which may be far more."""
+    return all(excess.steps == inf for excess in errors) and not _is_damped(complete[0])
+
+
 def _finest(complete: Sequence[Attempt]) -> Attempt:
     return max(complete, key=lambda attempt: (attempt.mesh, attempt.steps))
 
@@ -245,11 +256,13 @@ def _finest(complete: Sequence[Attempt]) -> Attempt:
 def _second_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], errors: Sequence[Excess],
                  most_intervals: int) -> Iterator[Trial | None]:  # fmt: skip
     """A finer one, with the longer steps of two if their error is small enough, or if shorter ones cost several times
-    the work and are far from enough: the mesh, at least, is then told; else a coarser one."""
+    the work and are far from enough, or leave none for a third mesh: the mesh, at least, is then told; else a coarser
+    one."""
     mesh, steps = complete[0].mesh, sorted(attempt.steps for attempt in complete)
     # by two kinds of steps the error of the shorter is told as 2 / 3 of their difference, which is that of the longer
-    longer = len(steps) > 1 and 1.5 * max(excess.steps for excess in errors) <= STEP_SHARE
-    longer = longer or _steps_are_dear(complete, errors)
+    small = 1.5 * max(excess.steps for excess in errors) <= STEP_SHARE
+    dear = _steps_are_dear(complete, errors) or _no_third_mesh(history, complete, errors)
+    longer = len(steps) > 1 and (small or dear)
     finer_steps = steps[-2] if longer else steps[-1]
     finer = Trial(max(attempt.mesh for attempt in history) + 1, finer_steps)
     if not longer and len(steps) > 1 and not _is_for(history, finer, most_intervals):
@@ -316,6 +329,14 @@ def _steps_are_dear(complete: Sequence[Attempt], errors: Sequence[Excess]) -> bo
     return growth >= DEAR and any(excess.steps > FAR_OFF for excess in errors if excess.worth == inf)
 
 
+def _no_third_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], errors: Sequence[Excess]) -> bool:
+    """Whether shorter steps would leave no work for a third mesh, and what the longer ones are in error is bearable."""
+    mesh, steps = complete[0].mesh, max(attempt.steps for attempt in complete)
+    work = sum(expected(complete, Trial(mesh + finer, steps)) for finer in (1, 2))
+    bearable = all(excess.steps <= FAR_OFF for excess in errors if excess.worth == inf)
+    return bearable and _work(history) + work > MOST_WORK
+
+
 def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Trial]:
     """Finer resolutions than the finest there is, what is wanted most first. `chain`: meshes that tell its error; with
     other steps there would be two of them."""
@@ -362,9 +383,10 @@ def _may_do(history: Sequence[Attempt], excess: Excess, trial: Trial, most_inter
     if not _is_for(history, trial, most_intervals):
         return False
     complete = [attempt for attempt in history if attempt.complete]
-    if expected(complete, trial) <= CHEAP * MOST_WORK:
-        return True
     fall = excess.before / excess.total
+    if expected(complete, trial) <= CHEAP * MOST_WORK:
+        by_steps = len(complete) > 2 and trial.mesh == complete[-1].mesh == complete[-2].mesh
+        return not (by_steps and 1.0 / SAME < fall < SAME)
     return fall >= LEAST_FALL and _work(history) + _all_of(complete, excess, trial) <= excess.worth * MOST_WORK
 
 

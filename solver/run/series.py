@@ -32,13 +32,15 @@ class Chosen(NamedTuple):
     steps first, which tell the error of the steps; empty where `meshes` tells it or nothing does. `coarser`: where
     `meshes` are two, and longer steps were tried on the first of them and on the mesh before it, the attempts with
     these, the coarser one first. What the steps change on the one mesh they are taken to change on the other, which is
-    a third one then, and tells how the error falls.
+    a third one then, and tells how the error falls. `diagonal`: where the `series` have longer steps than the finest,
+    the attempts that end with one of its steps on a coarser mesh, and tell the error of these steps with that mesh's.
     """
 
     finest: int
     meshes: list[int]
     series: list[int]
     coarser: tuple[int, ...] = ()
+    diagonal: tuple[int, ...] = ()
 
     @property
     def many(self) -> int:
@@ -58,13 +60,15 @@ def chosen(attempts: Sequence[Attempt]) -> Chosen:
     by_steps = until[-3:] if len(until) > 1 else []
     same = _chain(attempts, finest, 0)
     if len(same) > 1:
-        return Chosen(finest, same, by_steps, _coarser(attempts, same))
+        below = _chain(attempts, same[-2], 1)
+        known = len(below) < 2 or attempts[series[-1]].steps >= attempts[finest].steps
+        return Chosen(finest, same, by_steps, _coarser(attempts, same), () if known else tuple(below))
     diagonal = _chain(attempts, finest, 1)
     on_mesh = [i for i in complete if attempts[i].mesh == attempts[finest].mesh]
     chains = [_chain(attempts, i, 0) for i in sorted(on_mesh, key=lambda i: -attempts[i].steps)]
     longer = next((chain for chain in chains if len(chain) > 1), [])
     if longer and finest in by_steps:
-        return Chosen(finest, longer, by_steps)
+        return Chosen(finest, longer, by_steps, _coarser(attempts, longer))
     if len(diagonal) > 1:
         return Chosen(finest, diagonal, [])
     return Chosen(finest, longer or [finest], by_steps)

@@ -37,9 +37,9 @@ from solver.run.recording import (
     number,
     number_of,
 )
-from solver.run.richardson import alike, error_of_steps, extrapolate, unextrapolated
+from solver.run.richardson import alike, error_of_steps, extrapolate, nowhere_small, unextrapolated
 from solver.run.series import Attempt, chosen, is_diagonal, step_series
-from solver.run.trial import grade_of, intervals_of, step_tolerance
+from solver.run.trial import LOOSEST, grade_of, intervals_of, step_tolerance
 from solver.run.verify import VerifiedFrame, of_waves, unseen
 from solver.scene.scene import Scene
 
@@ -153,10 +153,18 @@ class Together:
             of_steps = np.minimum(of_steps, 0.5 * of_mesh)
             of_mesh = of_mesh - of_steps
         worth = [WORTH.get(name, np.inf) for name in QUANTITIES]
-        # how an error falls says nothing as long as the meshes do not show the motion
-        totals = [np.inf if most == np.inf and target * max(previous.mesh, now) > FAR_FROM_IT else previous.total
-                  for previous, now, most in zip(before, of_mesh, worth, strict=True)]  # fmt: skip
+        # how an error falls says nothing as long as the meshes do not show the motion, or one part of it is untold
+        far = [most == np.inf and target * max(previous.mesh, now) > FAR_FROM_IT
+               for previous, now, most in zip(before, of_mesh, worth, strict=True)]  # fmt: skip
+        untold = [previous.steps == np.inf > now for previous, now in zip(before, of_steps, strict=True)]
+        totals = [np.inf if any(unknown) else previous.total
+                  for previous, *unknown in zip(before, far, untold, strict=True)]  # fmt: skip
         return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, worth, strict=True)]
+
+    @property
+    def _untold(self) -> bool:
+        """Whether nothing tells what the longest steps are in error: it is taken for as much as the mesh's."""
+        return self.finest.steps == LOOSEST and len(self._chosen.meshes) > 1 and len(self._chosen.series) < 2
 
     @cached_property
     def _unseen(self) -> Columns:
@@ -208,7 +216,7 @@ class Together:
     def _of_frames(self, here: slice, judged: bool = False) -> tuple[Columns, Columns]:
         """The values and their errors; here and below of all columns or of those that are `judged`."""
         value, mesh = self._of_mesh(here, judged)
-        steps = self._of_steps(self._chosen.series, here, judged)
+        steps = mesh if self._untold else self._of_steps(self._chosen.series, here, judged)
         return value, Columns(mesh.along + steps.along, mesh.numbers + steps.numbers)
 
     def _of_mesh(self, here: slice, judged: bool) -> tuple[Columns, Columns]:
@@ -221,15 +229,20 @@ class Together:
             along, numbers = (shorter - of for shorter, of in zip(meshes[0], beside, strict=True))
             meshes.insert(0, Columns(longer.along + along[:, ::2], longer.numbers + numbers))
             doubled.insert(0, doubled[0] - 1)
-        ratios = [2 ** (b - a) for a, b in pairwise(doubled)]
-        combine = extrapolate if grade_of(self.finest.steps) is None else unextrapolated
-        values, errors = zip(*(combine(series, ratios) for series in zip(*meshes, strict=True)), strict=True)
-        along = finest.along + (values[0] - meshes[-1].along)
-        numbers = possible(finest.numbers + (values[1] - meshes[-1].numbers), finest.numbers)
+        value, error = self._extrapolated(meshes, doubled)
+        along = finest.along + (value.along - meshes[-1].along)
+        numbers = possible(finest.numbers + (value.numbers - meshes[-1].numbers), finest.numbers)
         if not judged:
             turned = along[..., ORIENTATION]
             turned /= np.sqrt(np.sum(turned**2, axis=-1))[..., None]
-        return Columns(along, numbers), Columns(*errors)
+        return Columns(along, numbers), error
+
+    def _extrapolated(self, meshes: Sequence[Columns], doubled: Sequence[int]) -> tuple[Columns, Columns]:
+        """What meshes say together, and its error; `doubled`: their numbers."""
+        ratios = [2 ** (b - a) for a, b in pairwise(doubled)]
+        combine = extrapolate if grade_of(self.finest.steps) is None else unextrapolated
+        values, errors = zip(*(combine(series, ratios) for series in zip(*meshes, strict=True)), strict=True)
+        return Columns(*values), Columns(*errors)
 
     def _of_steps(self, series: Sequence[int], here: slice, judged: bool) -> Columns:
         """The error by the steps, as a series of attempts with different ones tells it; none where nothing tells it."""
@@ -241,7 +254,15 @@ class Together:
         along, numbers = zip(*(_aligned(attempt, columns[-1], judged) for attempt in columns), strict=True)
         longer = self.finest.steps - self._attempts[series[-1]].steps
         part = FALL ** -max(longer, 0) * alike(*(self._attempts[i].work for i in series[-2:]))
-        return Columns(*(part * error_of_steps(values, longer < 0, n) for values, n in ((along, nodes), (numbers, 1))))
+        error = Columns(*(part * error_of_steps(values, longer < 0, n) for values, n in ((along, nodes), (numbers, 1))))
+        return Columns(*map(np.minimum, error, self._of_diagonal(here, judged))) if self._chosen.diagonal else error
+
+    def _of_diagonal(self, here: slice, judged: bool) -> Columns:
+        """What the finest's steps are in error at the most: as much as with the mesh of the last on the diagonal."""
+        finest = self._columns(self._chosen.finest, here, judged)
+        meshes = [_aligned(self._columns(k, here, judged), finest, judged) for k in self._chosen.diagonal]
+        error = self._extrapolated(meshes, [self._attempts[k].mesh for k in self._chosen.diagonal])[1]
+        return Columns(nowhere_small(error.along, self._intervals + 1), error.numbers)
 
 
 def possible(numbers: Array, finest: Array) -> Array:

@@ -57,6 +57,9 @@ def slow(mesh: int, steps: int, work: float = SMALL) -> Attempt:
         ([ran(0, 0), ran(0, 1, 4.0 * SMALL)], Excess(inf, 12.0), Trial(1, 0)),  # shorter steps are dear
         ([ran(0, 0), ran(0, 1, 4.0 * SMALL)], Excess(inf, 2.0), Trial(1, 1)),  # and nearly enough
         ([ran(0, 0), ran(0, 1, 4.0 * SMALL)], Excess(inf, 12.0, worth=4.0), Trial(1, 1)),  # of what is given up soon
+        ([ran(0, 0, 0.1 * MOST_WORK), ran(0, 1, 0.2 * MOST_WORK)], Excess(inf, 2.0), Trial(1, 1)),
+        ([ran(0, 0, 0.2 * MOST_WORK), ran(0, 1, 0.3 * MOST_WORK)], Excess(inf, 2.0), Trial(1, 0)),  # none for a third
+        ([ran(0, 0, 0.2 * MOST_WORK), ran(0, 1, 0.3 * MOST_WORK)], Excess(inf, 20.0), Trial(1, 1)),  # and far off
         ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.1, 9.0), None),
         ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(2.0, 0.1, 9.0), Trial(2, 0)),
         ([ran(0, 0), ran(0, 1), ran(1, 0)], Excess(0.5, 0.9, 9.0), Trial(1, 1)),
@@ -118,6 +121,21 @@ def test_what_cannot_bring_the_tolerance_is_not_tried_unless_it_is_cheap(
     assert next_trial(history, [excess], 2000) == then
 
 
+def test_shorter_steps_that_changed_nothing_are_not_made_shorter_again() -> None:
+    history = [ran(0, 0), ran(0, 1), ran(1, 1), ran(1, 2)]
+    assert next_trial(history, [Excess(0.2, 16.0, 16.5)], 2000) is None
+    assert next_trial(history, [Excess(0.2, 16.0, 60.0)], 2000) == Trial(1, 3)
+    assert next_trial([*history[:3], ran(2, 1)], [Excess(0.2, 16.0, 16.5)], 2000) == Trial(2, 2)
+
+
+def test_what_shorter_steps_change_is_told_before_a_third_mesh() -> None:
+    rattled = [slow(0, 0, 0.1 * MOST_WORK), ran(0, -2, 0.12 * MOST_WORK), ran(1, -2, 0.15 * MOST_WORK)]
+    assert next_trial(rattled, [Excess(9.0, inf)], 2000) == Trial(0, -1)
+    assert next_trial([*rattled, ran(0, -1, 0.15 * MOST_WORK)], [Excess(90.0, 0.1)], 2000) == Trial(2, -2)
+    dear = [*rattled[:2], ran(1, -2, 0.8 * MOST_WORK)]
+    assert next_trial(dear, [Excess(9.0, inf)], 2000) is None
+
+
 def test_a_quantity_beyond_hope_does_not_keep_others_from_being_refined() -> None:
     history = [ran(0, 0, 0.1 * MOST_WORK), ran(0, 1), ran(1, 0, 0.25 * MOST_WORK)]
     curvature, place = Excess(900.0, 0.1, 910.0, 4.0), Excess(5.0, 0.1, 20.0)
@@ -143,6 +161,8 @@ def test_the_work_of_an_attempt_is_expected_to_grow_as_it_did() -> None:
         ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 2)], Chosen(3, [0, 2, 3], [])),  # a diagonal
         ([ran(0, 0), ran(0, 1), ran(1, 1), ran(1, 2), ran(1, 3)], Chosen(4, [1, 2], [2, 3, 4])),
         ([ran(0, 0), ran(0, 1), ran(1, 1), ran(1, 2), ran(2, 2)], Chosen(4, [3, 4], [2, 3], (1, 2))),
+        ([ran(0, 0), ran(0, 1), ran(1, 1), ran(1, 2), ran(2, 2), ran(2, 3)], Chosen(5, [3, 4], [4, 5], (1, 2))),
+        ([ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 2), ran(3, 2)], Chosen(4, [3, 4], [0, 1], (), (0, 2, 3))),
         ([ran(0, 0), slow(0, 1)], Chosen(0, [0], [])),
         ([slow(0, 0), failed(0, 0.2), failed(1, 0.3), failed(2, 0.3)], Chosen(3, [2, 3], [])),
     ],

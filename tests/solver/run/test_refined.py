@@ -21,6 +21,7 @@ from solver import (
     VerifiedFrame,
     simulate,
 )
+from solver.arrays import Array
 from solver.run import plan
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN, first_intervals
@@ -158,22 +159,49 @@ def test_how_the_error_falls_is_not_told_where_meshes_do_not_show_the_motion(off
     assert (of_r.before == 1.0) == is_told
 
 
+def on_meshes(scene: Scene, *intervals: int) -> list[Array]:
+    """The rows of its frames on meshes of so many intervals."""
+    return [np.array([row_of(frame) for frame in simulate(replace(scene, numerics=replace(NUMERICS, intervals=n)))])
+            for n in intervals]  # fmt: skip
+
+
+def ran(*trials: tuple[int, int]) -> list[Attempt]:
+    return [Attempt(*trial, 1.0, 4.0, complete=True, slow=False) for trial in trials]
+
+
 def test_two_meshes_with_new_steps_are_told_apart_as_three_are() -> None:
     """Once the error of two alone was told, tens of times too large, though a third had run with longer steps."""
     scene, start = tolerated(1e-3), 1 + len(NUMBERS)
-    meshes = [np.array([row_of(frame) for frame in simulate(replace(scene, numerics=replace(NUMERICS, intervals=n)))])
-              for n in (16, 32, 64)]  # fmt: skip
+    meshes = on_meshes(scene, 16, 32, 64)
     by_steps = [rows.copy() for rows in meshes[:2]]
     for rows in by_steps:
         rows[1:, start:] += 1e-3 * LENGTH * (np.arange(rows.shape[1] - start) % WIDTH == R.start)  # r_1 of all nodes
-    trials = [(0, 0), (1, 0), (1, 1), (2, 1)]
-    attempts = [Attempt(*trial, 1.0, 4.0, complete=True, slow=False) for trial in trials]
+    attempts, third = ran((0, 0), (1, 0), (1, 1), (2, 1)), ran((0, 1), (1, 1), (2, 1))
     none = [Excess()] * len(QUANTITIES)
     told = Together(scene, attempts, [*by_steps, *meshes[1:]]).excesses(none)
-    third = [Attempt(mesh, 1, 1.0, 4.0, complete=True, slow=False) for mesh in range(3)]
     assert [excess.mesh for excess in told] == pytest.approx(
         [excess.mesh for excess in Together(scene, third, meshes).excesses(none)]
     )
+
+
+def test_longest_steps_of_which_nothing_is_told_are_in_error_by_as_much_as_the_mesh() -> None:
+    scene = tolerated(1e-3)
+    rows = on_meshes(scene, 16, 32)
+    by_mesh, by_both = (Together(scene, ran((0, steps), (1, steps)), rows).errors() for steps in (0, -2))
+    assert by_mesh[-1, 0] > 0.0
+    assert by_both[:, 0] == pytest.approx(2.0 * by_mesh[:, 0])
+
+
+def test_steps_are_in_error_by_no_more_than_a_diagonal_that_ends_with_them_tells() -> None:
+    scene, start = tolerated(1e-3), 1 + len(NUMBERS)
+    rows = on_meshes(scene, 16, 16, 32, 64, 128)
+    rows[0][1:, start:] += 0.1 * LENGTH * (np.arange(rows[0].shape[1] - start) % WIDTH == R.start)  # r_1 of all nodes
+    trials, none = [(0, 0), (0, 1), (1, 1), (2, 2), (3, 2)], [Excess()] * len(QUANTITIES)
+    by_diagonal = Together(scene, ran(*trials[:-1]), rows[:-1]).excesses(none)[0].total
+    by_steps = Together(scene, ran(*trials[:2]), rows[:2]).excesses(none)[0].steps
+    then = Together(scene, ran(*trials), rows).excesses(none)[0].steps
+    assert by_steps / 3.0 > 2.0 * by_diagonal
+    assert then <= by_diagonal
 
 
 def test_a_run_that_fails_on_every_mesh_gives_the_frames_until_then_and_fails_by_name() -> None:

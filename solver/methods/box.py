@@ -152,10 +152,6 @@ class BoxMethod:
         for end, node in self._at_ends:
             end.switch(t, self._rates(end, node))
 
-    def velocity(self) -> Array:
-        """v (n, 3), material."""
-        return rotate_back(self.state.quaternion, self.state.Y[:, V : V + 3].copy())
-
     def relative_increment(self, dt: float) -> float:
         """The trial's local error relative to its motion, dt^2 max|dV/dt change| / max|displacement|; at the least by
         what it leaves an end behind, in LEFT_BEHIND."""
@@ -198,9 +194,9 @@ class BoxMethod:
         q = np.empty((len(Y), 3))
         moments(self._hand_over(), Y, q)
         return Fields(
-            v=self.velocity(), omega=Y[:, OMEGA : OMEGA + 3].copy(), f=rotate_back(quaternion, Y[:, F:].copy()),
-            kappa=Y[:, KAPPA : KAPPA + 3].copy(), q=q, strain=np.zeros(len(self.s)), r=self.state.r.copy(),
-            orientation=quaternion.copy(),
+            v=rotate_back(quaternion, Y[:, V : V + 3].copy()), omega=Y[:, OMEGA : OMEGA + 3].copy(),
+            f=rotate_back(quaternion, Y[:, F:].copy()), kappa=Y[:, KAPPA : KAPPA + 3].copy(), q=q,
+            strain=np.zeros(len(self.s)), r=self.state.r.copy(), orientation=quaternion.copy(),
         )  # fmt: skip
 
     def centreline(self) -> Shape:

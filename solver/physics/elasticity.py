@@ -65,8 +65,16 @@ class TwistStretch:
     """See `Stretch`."""
 
 
+class _AlongStrain:
+    """What a law is that adds a moment along the strain, or along its rate as K has it."""
+
+    def keeps(self, view: View) -> bool:
+        """About any axis."""
+        return True
+
+
 @dataclass(frozen=True)
-class Softening:
+class Softening(_AlongStrain):
     """Bending that softens: EJ (N m^2) along s, by which a rod is stiffer until its curvature is `kappa` (1/m).
 
     A law of the bend b: U = EJ kappa^2 (sqrt(1 + (b / kappa)^2) - 1), so the moment grows by EJ b at first, and in all
@@ -77,13 +85,9 @@ class Softening:
     EJ: Profile
     kappa: Profile
 
-    def keeps(self, view: View) -> bool:
-        """About any axis: the moment is along the strain."""
-        return True
-
 
 @dataclass(frozen=True)
-class Locking:
+class Locking(_AlongStrain):
     """Bending that locks: EJ (N m^2) along s, by which a rod is stiffer where its curvature is beyond `kappa` (1/m).
 
     A law of the bend b: U = EJ/2 (b - kappa)^2 beyond kappa. Bend restrictors do so, whose links come to lie on each
@@ -93,23 +97,15 @@ class Locking:
     EJ: Profile
     kappa: Profile
 
-    def keeps(self, view: View) -> bool:
-        """About any axis: the moment is along the strain."""
-        return True
-
 
 @dataclass(frozen=True)
-class Viscosity:
+class Viscosity(_AlongStrain):
     """A material that resists its own bending and twisting: the retardation time (s) along s.
 
     Kelvin's and Voigt's: K kappa_t times that time is added to q, with the linear law's K.
     """
 
     time: Profile
-
-    def keeps(self, view: View) -> bool:
-        """About any axis, as K does."""
-        return True
 
 
 class Elasticity(NamedTuple):
@@ -365,12 +361,6 @@ def _strain_energy(elastic: Elasticity, j: int, strain: Any) -> tuple[float, flo
 def is_viscous(elastic: Elasticity) -> bool:
     """Whether the rod resists the rates of bending and twisting."""
     return len(elastic.viscosity) > 0
-
-
-@inner
-def viscosity(elastic: Elasticity, j: int) -> Any:
-    """dq / d kappa_t, symmetric, of a rod that has it."""
-    return stiffness(elastic.viscosity, j)
 
 
 @inlined

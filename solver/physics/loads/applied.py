@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.given import nodes_act
 from solver.physics.loads.load import Samples
-from solver.physics.loads.registry import entrained_mass, records_about, records_of, sources_of
+from solver.physics.loads.registry import Loads, entrained_mass, records_about, sources_of
 from solver.physics.section import Section
 from solver.scene.scene import Scene
 
@@ -29,7 +29,8 @@ class AppliedLoads:
         acting = nodes_act(s) if segments is None else (s, segments)
         samples = Samples(s, section, *acting, times, rigid=segments is not None)
         self._sources, self._axis = sources_of(scene, samples), axis
-        self.records = records_of(self._sources) if axis is None else records_about(axis, self._sources)
+        self.records = (Loads(*(source.record for source in self._sources)) if axis is None
+                        else records_about(axis, self._sources))  # fmt: skip
         self._at_ends = tuple(load for load in scene.points if load.s in (0.0, scene.rod.length))
         self._weights = np.outer([scene.start.mass, scene.end.mass], scene.gravity)
         self.at_ends = bool(self._at_ends) or bool(self._weights.any())
@@ -39,11 +40,6 @@ class AppliedLoads:
         self._striking = tuple(source for source in self._sources if source.strikes and source.record.present)
         self.entrained = np.zeros(len(s)) + entrained_mass(self._sources)
         """Mass per length (n,) that the rod takes along across its tangent, kg/m."""
-
-    @property
-    def steady(self) -> bool:
-        """Whether the loads are the same at all times."""
-        return not self._moving
 
     def next_blow(self, motion: Array, mass: Array, tolerance: float) -> float:
         """In what time (s) the next step is to end: see `Source.next_blow`."""

@@ -34,7 +34,7 @@ class GivenLoads(Source):
         loads: list[DistributedLoad | PointLoad] = [*scene.distributed, *points_within(scene)]
         self._following = following
         acting = [load for load in loads if self._has_lever(load, samples)
-                  or any(not _is_zero(c) for c in self._part(load))]  # fmt: skip
+                  or not all(getattr(c, "is_zero", False) for c in self._part(load))]  # fmt: skip
         super().__init__(kind(bool(acting), *arrays))
         self._distributed = [(self._target(load), self._spread(load, samples), load.schedule)
                              for load in acting if isinstance(load, DistributedLoad)]
@@ -119,7 +119,3 @@ def is_steady(load: DistributedLoad | PointLoad) -> bool:
 
 def _schedules(load: DistributedLoad | PointLoad) -> Sequence[Curve]:
     return (load.schedule,) if isinstance(load, DistributedLoad) else (*load.force, *load.moment)
-
-
-def _is_zero(component: object) -> bool:
-    return isinstance(component, Curve) and component.is_zero

@@ -53,11 +53,6 @@ def sources_of(scene: Scene, samples: Samples) -> tuple[Source, ...]:
     return tuple(load.of(scene, samples) for load in LOADS)
 
 
-def records_of(sources: tuple[Source, ...]) -> Any:
-    """Their records, as kernels read them."""
-    return Loads(*(source.record for source in sources))
-
-
 def records_with_energy(records: Any) -> Any:
     """The same records, but only those of loads that store energy are present."""
     others = {name: record for name, record in records._asdict().items() if not has_energy(type(record))}

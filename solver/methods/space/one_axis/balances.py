@@ -18,7 +18,7 @@ from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Residuals, Stages
 from solver.methods.space.one_axis.motion import bend_joints
 from solver.methods.space.segments.chain import STAGES
-from solver.physics.elasticity import is_viscous, tangent, viscosity
+from solver.physics.elasticity import is_viscous, tangent
 from solver.physics.ends import LOAD, RATE, RATE_LAB, Kinds
 from solver.physics.loads.load import Point, add_forces, add_tangents, point, take_force, take_tangents
 from solver.physics.loads.load import Tangents as LoadTangent
@@ -204,7 +204,7 @@ def tangents_at(chain: Chain, loads: LoadsAbout, driven: Driven, stages: Stages,
     for j in range(N + 1):
         kappa = (stages.phi[i, j + 1] - stages.phi[i, j]) / chain.span[j]
         tangents.spring[j] = tangent(chain.elastic, j, kappa) / chain.span[j]
-        tangents.spring_t[j] = viscosity(chain.elastic, j) / chain.span[j] if is_viscous(chain.elastic) else 0.0
+        tangents.spring_t[j] = chain.elastic.viscosity[j] / chain.span[j] if is_viscous(chain.elastic) else 0.0
         tangents.stiff[j] += tangents.spring[j]
         tangents.stiff[j + 1] += tangents.spring[j]
     for j in range(N):

@@ -9,7 +9,7 @@ from solver.kernels.scratch import scratch
 from solver.measures.energies import Energies
 from solver.methods.space.one_axis.balances import Motion, along, end_velocity, motion_at
 from solver.methods.space.segments.chain import STAGES
-from solver.physics.elasticity import is_viscous, strain_energy, viscosity
+from solver.physics.elasticity import is_viscous, strain_energy
 from solver.physics.ends import LOAD, RATE
 from solver.physics.loads.load import add_energies, add_powers
 
@@ -59,4 +59,4 @@ def stage_powers(reference: Reference, weights: Array, moved: Array, out: Array)
         if is_viscous(chain.elastic):
             for j in range(N + 1):
                 rate = stages.omega[i, j + 1] - stages.omega[i, j]
-                out[i, 2] += viscosity(chain.elastic, j) * rate * rate / chain.span[j]
+                out[i, 2] += chain.elastic.viscosity[j] * rate * rate / chain.span[j]

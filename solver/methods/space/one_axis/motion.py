@@ -16,7 +16,7 @@ from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Stages, State
 from solver.methods.space.segments.chain import STAGES
 from solver.methods.space.segments.motion import differentiate
-from solver.physics.elasticity import is_viscous, moment, viscosity
+from solver.physics.elasticity import is_viscous, moment
 
 
 @kernel
@@ -91,7 +91,7 @@ def joint_moment(chain: Chain, phi: Array, omega: Array, i: int) -> float:
     """The moment of joint i for angles phi (N + 2,) and their rates omega."""
     q = moment(chain.elastic, i, (phi[i + 1] - phi[i]) / chain.span[i])
     if is_viscous(chain.elastic):
-        q += viscosity(chain.elastic, i) * (omega[i + 1] - omega[i]) / chain.span[i]
+        q += chain.elastic.viscosity[i] * (omega[i + 1] - omega[i]) / chain.span[i]
     return float(q)
 
 

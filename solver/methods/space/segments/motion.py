@@ -24,7 +24,17 @@ from solver.kernels.copying import copy
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.kernels.lanes import abreast
-from solver.kernels.rotation import angle_by_sine, cosine_and_sinc, cross, dot, entries, product, turned_back, unit
+from solver.kernels.rotation import (
+    angle_by_sine,
+    cosine_and_sinc,
+    cross,
+    dot,
+    entries,
+    matrices_of,
+    product,
+    turned_back,
+    unit,
+)
 from solver.kernels.vectors import matrix, plus, tangent_acceleration, tangent_rate, times, vector
 from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
 from solver.methods.space.segments.opening import open_joints
@@ -45,13 +55,6 @@ def _series(square: float) -> tuple[float, float, float, float]:
     return 0.5 * a, (1 / 6) * b, 0.5 * da, (1 / 6) * db
 
 
-@abreast("quaternion: 4 -> R: 3x3")
-@no_type_check
-def _matrices(quaternion):
-    """The rotation matrix of a segment."""
-    return entries(*quaternion)
-
-
 @abreast("omega: 3 -> quaternion: 4, R: 3x3")
 @no_type_check
 def _spin(omega, node, dt):
@@ -66,7 +69,7 @@ def _spin(omega, node, dt):
 @kernel
 def spin_steadily(state: State, nodes: Array, dt: float, stages: Stages) -> None:
     """Write R_n, and exp([omega_n tau]) as quaternions and matrices at the stages, tau = nodes[i] dt."""
-    _matrices(state.quaternion, stages.start)
+    matrices_of(state.quaternion, stages.start)
     for i in range(STAGES):
         _spin(state.omega, nodes[i], dt, stages.steady[i], stages.S[i])
 
@@ -96,14 +99,6 @@ def _turn(theta, theta_t, theta_tt, omega_n, start, steady, S):
     rate = turned_back(*S, *g)
     gyration = cross(*omega_n, *gained)
     return turned, entries(*turned), gained + omega_n, rate - gyration, square
-
-
-@inner
-def turn_segments(state: State, stages: Stages, i: int) -> float:
-    """Write quaternion, R, omega and alpha of stage i; return the largest |theta|^2."""
-    return float(_turn(stages.theta[i], stages.theta_t[i], stages.theta_tt[i], state.omega, state.quaternion,
-                       stages.steady[i], stages.S[i], stages.quaternion[i], stages.R[i], stages.omega[i],
-                       stages.alpha[i]))  # fmt: skip
 
 
 @kernel
@@ -143,7 +138,10 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
         for k in range(3):
             stages.base[i, 2, k] = (inverse[i, 0] * stages.base[0, 1, k] + inverse[i, 1] * stages.base[1, 1, k]
                                     + inverse[i, 2] * stages.base[2, 1, k] - total * state.base[1, k]) / dt  # fmt: skip
-        largest = max(largest, turn_segments(state, stages, i))
+        square = _turn(stages.theta[i], stages.theta_t[i], stages.theta_tt[i], state.omega, state.quaternion,
+                       stages.steady[i], stages.S[i], stages.quaternion[i], stages.R[i], stages.omega[i],
+                       stages.alpha[i])  # fmt: skip
+        largest = max(largest, square)
         follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], chain.h,
                         stages.r[i], stages.V[i], stages.A[i])  # fmt: skip
     if stretches(chain.elastic):

@@ -11,10 +11,9 @@ from typing import Any
 
 from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
-from solver.kernels.vectors import add_matrix, add_vector, dot, minus, scale, times, transform, vector
+from solver.kernels.vectors import add_matrix, add_vector, dot, minus, scale, stiffness, times, transform, vector
 from solver.methods.space.segments.chain import Chain
 from solver.methods.space.segments.joints import add_moment, directions_on, on_neighbours
-from solver.physics.elasticity import viscosity
 
 
 @inner
@@ -29,7 +28,7 @@ def _rate(chain: Chain, omega: Array, bend: Array, a: int) -> Any:
 def resist_rates(chain: Chain, omega: Array, bend: Array, moment: Array, left: Array, right: Array) -> None:
     """Add what the rates of bending and twisting add to q to what `bend_joints` wrote of it."""
     for a in range(len(bend)):
-        q = transform(viscosity(chain.elastic, a), _rate(chain, omega, bend, a))
+        q = transform(stiffness(chain.elastic.viscosity, a), _rate(chain, omega, bend, a))
         add_moment(q, a, bend, moment, left, right)
 
 
@@ -38,7 +37,7 @@ def resist_at_nodes(chain: Chain, omega: Array, bend: Array, q: Array) -> None:
     """Add what they add to q (N + 1, 3) in the frames of the nodes: see `fields.bending_at_nodes`."""
     last = len(bend) - 1
     for a in range(last + 1):
-        resisting = transform(viscosity(chain.elastic, a), _rate(chain, omega, bend, a))
+        resisting = transform(stiffness(chain.elastic.viscosity, a), _rate(chain, omega, bend, a))
         on_left, on_right = on_neighbours(vector(bend, a), resisting)
         add_vector(1.0, on_left if a == 0 else on_right if a == last else resisting, q[a])
 
@@ -49,7 +48,7 @@ def dissipated(chain: Chain, omega: Array, bend: Array) -> float:
     power = 0.0
     for a in range(len(bend)):
         kappa_t = _rate(chain, omega, bend, a)
-        power += chain.span[a] * dot(kappa_t, transform(viscosity(chain.elastic, a), kappa_t))
+        power += chain.span[a] * dot(kappa_t, transform(stiffness(chain.elastic.viscosity, a), kappa_t))
     return power
 
 
@@ -62,7 +61,7 @@ def rate_tangents(chain: Chain, bend: Array, stiff: Array, before: Array, behind
     """
     stiff[:], before[:], behind[:] = 0.0, 0.0, 0.0
     for a in range(len(bend)):
-        S = scale(1.0 / chain.span[a], viscosity(chain.elastic, a))
+        S = scale(1.0 / chain.span[a], stiffness(chain.elastic.viscosity, a))
         B, B_t = directions_on(vector(bend, a))
         add_matrix(1.0, _between(B, S, B_t), stiff[a])
         add_matrix(-1.0, _between(B, S, B), behind[a])

@@ -33,8 +33,8 @@ def _number(value: float) -> str:
 
 def writhe_cost(intervals: int) -> dict[str, float]:
     """CPU time (us) of the writhe of one frame."""
-    curve, e3 = np.ascontiguousarray(open_curve(intervals)), np.array([0.0, 0.0, 1.0])
-    cost = kernels.best(lambda: writhe(curve, e3, e3))
+    curve, tangents = np.ascontiguousarray(open_curve(intervals)), np.array([[0.0, 0.0, 1.0]] * 2)
+    cost = kernels.best(lambda: writhe(curve, tangents))
     return {"intervals": float(intervals), "writhe": cost, "aim": kernels.WRITHE_AIM_US.get(intervals, nan)}
 
 

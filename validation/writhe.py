@@ -6,13 +6,28 @@ Klenin & Langowski, Biopolymers 54 (2000) 307; the curves and their values from 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from solver.arrays import Array
-from solver.measures.topology import writhe, writhe_closed
+from solver.measures import topology
 from validation.row import Row, against, observed_order
 
 OPEN, TREFOIL = 0.120679172516, -3.518239231
 TREFOIL_POLYGONS = {200: -3.516726147, 400: -3.517860454, 800: -3.518144505}
+
+
+def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> float:
+    """Writhe of an open polygon (n, 3), continued by rays along tangents of any length."""
+    tangents = np.array([start_tangent, end_tangent], dtype=float)
+    tangents /= np.linalg.norm(tangents, axis=1)[:, None]
+    return float(topology.writhe(np.ascontiguousarray(r, dtype=float), tangents))
+
+
+def writhe_closed(r: ArrayLike) -> float:
+    """Writhe of the closed polygon with vertices (n >= 3, 3), the last joined to the first."""
+    vertices = np.array(r, dtype=float)
+    columns = np.ascontiguousarray(np.vstack([vertices, vertices[:1]]).T)
+    return float(-topology.segment_pairs(columns, True) / np.pi)
 
 
 def open_curve(intervals: int) -> Array:

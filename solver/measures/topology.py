@@ -18,7 +18,6 @@ from math import isnan, pi, sqrt
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from solver.arrays import Array
 from solver.kernels.kernel import allocating, inlined, inner, kernel
@@ -40,33 +39,25 @@ SMALL_TANGENT = 0.1
 """Below it eight terms of the arctangent's series are exact to rounding: 0.1^16 / 17 = 6e-18."""
 
 
-def writhe(r: ArrayLike, start_tangent: ArrayLike, end_tangent: ArrayLike) -> float:
-    """Writhe (turns) of an open polygon continued by straight rays to infinity.
-
-    `r` (n >= 2, 3): the vertices, lab frame, m. The rays leave r[0] along -`start_tangent` and r[-1]
-    along `end_tangent` (3,), of any length > 0. Right-handed crossings count positive. Where two
-    parts of the curve touch exactly the writhe jumps by 2; of a curve in a plane, where parts of it and
-    rays may cross, the value is that in the middle of the jumps, 0. A curve that is smoothly closed, as a ring is, has
-    no rays: they would lie on each other and on the curve.
-
-    Raises ValueError for another shape or a zero tangent; NaN in gives NaN out.
-    """
-    tangents = np.array([_unit(start_tangent), _unit(end_tangent)])
-    return float(_writhe(np.ascontiguousarray(_columns(r, 2).T), tangents))
-
-
 @allocating
-def _writhe(r: Array, tangents: Array) -> float:
-    """Writhe (turns) of a polygon `r` (n, 3) with unit `tangents` (2, 3) at its ends, or NO_RAYS."""
+def writhe(r: Array, tangents: Array) -> float:
+    """Writhe (turns) of an open polygon continued by straight rays to infinity; or, of NO_RAYS, closed by a line.
+
+    `r` (n >= 2, 3): the vertices, lab frame, m. The rays leave r[0] along -tangents[0] and r[-1] along tangents[1], of
+    unit `tangents` (2, 3). Right-handed crossings count positive. Where two parts of the curve touch exactly the writhe
+    jumps by 2; of a curve in a plane, where parts of it and rays may cross, the value is that in the middle of the
+    jumps, 0. A curve that is smoothly closed, as a ring is, has no rays: they would lie on each other and on the curve.
+    NaN in gives NaN out.
+    """
     if is_plane(r, tangents):
         return 0.0
     columns, kind = _transposed(r), kind_of(r, tangents)
     if kind == JOINED:
-        return -(_segment_pairs(columns, False) + _gap(r)) / pi
+        return -(segment_pairs(columns, False) + _gap(r)) / pi
     if kind != OPEN:
-        return -(_segment_pairs(columns, True) + _rays(r, tangents)) / pi
+        return -(segment_pairs(columns, True) + _rays(r, tangents)) / pi
     shorter, quarter = shorten(columns, vector(tangents, 0), vector(tangents, 1))
-    return -(quarter + (_segment_pairs(shorter, False) + _rays(_transposed(shorter), tangents))) / pi
+    return -(quarter + (segment_pairs(shorter, False) + _rays(_transposed(shorter), tangents))) / pi
 
 
 @allocating
@@ -86,7 +77,7 @@ def writhe_shares(r: Array, tangents: Array) -> tuple[float, float]:
     if is_plane(r, tangents):
         return 0.0, 0.0
     touching = kind_of(r, tangents) in (KINKED, CLOSED)
-    return -_segment_pairs(_columns(r, 2), touching) / pi, share_of_rays(r, tangents)
+    return -segment_pairs(_transposed(r), touching) / pi, share_of_rays(r, tangents)
 
 
 @allocating
@@ -152,7 +143,7 @@ def _beside(r: Array, tangents: Array, size: float, i: int) -> Any:
 def writhe_of_rod(r: Array, orientation: Array, ring: bool = False) -> float:
     """Writhe (turns) of a rod's centreline `r` (n, 3), continued along a3 of the `orientation` (n, 4) of its ends; or
     of a ring, closed by a straight line."""
-    return float(_writhe(r, NO_RAYS if ring else tangents_of_ends(orientation)))
+    return float(writhe(r, NO_RAYS if ring else tangents_of_ends(orientation)))
 
 
 @allocating
@@ -167,27 +158,6 @@ def tangents_of_ends(orientation: Array) -> Array:
         for k in range(3):
             tangents[side, k] = tangent[k] / length
     return tangents
-
-
-def writhe_closed(r: ArrayLike) -> float:
-    """Writhe (turns) of the closed polygon with vertices `r` (n >= 3, 3), the last joined to the first."""
-    columns = _columns(r, 3)
-    return -_segment_pairs(np.hstack([columns, columns[:, :1]]), True) / pi
-
-
-def _columns(r: ArrayLike, least: int) -> Array:
-    vertices = np.asarray(r, dtype=float)
-    if vertices.ndim != 2 or vertices.shape[1] != 3 or len(vertices) < least:
-        raise ValueError(f"r must be (n >= {least}, 3), got {vertices.shape}")
-    return np.ascontiguousarray(vertices.T)
-
-
-def _unit(direction: ArrayLike) -> Vector:
-    x, y, z = np.asarray(direction, dtype=float).tolist()
-    length = sqrt(x * x + y * y + z * z)
-    if length == 0.0:
-        raise ValueError("a tangent must not be zero")
-    return x / length, y / length, z / length
 
 
 @inner
@@ -319,7 +289,7 @@ def _near_pairs(r: Array, i: int, last: int, squares: Array, from_i: Array, from
 
 
 @allocating
-def _segment_pairs(r: Array, closed: bool) -> float:
+def segment_pairs(r: Array, closed: bool) -> float:
     """Half the signed area of all pairs of segments of `r` (3, n); neighbours lie in one plane."""
     n = r.shape[1]
     from_i, from_next, squares, areas = np.empty(n), np.empty(n), np.empty(n - 1), np.empty(n)

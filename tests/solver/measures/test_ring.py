@@ -24,8 +24,9 @@ from solver import (
 from solver.arrays import Array
 from solver.measures.passages import Passages, Shape, passages
 from solver.measures.ring import is_ring
-from solver.measures.topology import NO_RAYS, writhe_closed, writhe_of_rod, writhe_shares
+from solver.measures.topology import NO_RAYS, writhe_of_rod, writhe_shares
 from tests.solver.scenes import EJ, LENGTH, ROD, turned_clamp
+from validation.writhe import writhe_closed
 
 GAP = 0.02
 

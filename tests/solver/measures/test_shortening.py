@@ -8,23 +8,18 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from solver.measures import topology
 from solver.measures.shortening import BLOCK, shorten
+from solver.measures.topology import writhe_shares
+from validation.writhe import writhe
 
 Array = NDArray[np.float64]
 E3 = np.array([0.0, 0.0, 1.0])
 
 
-@pytest.fixture
-def whole(monkeypatch: pytest.MonkeyPatch):
+def whole(r: Array, first: Array, last: Array) -> float:
     """The writhe by all pairs of segments, none left out."""
-
-    def writhe(r: Array, first: Array, last: Array) -> float:
-        with monkeypatch.context() as patch:
-            patch.setattr(topology, "shorten", lambda columns, _first, _last: (columns, 0.0))
-            return topology.writhe(r, first, last)
-
-    return writhe
+    unit = np.array([direction / np.linalg.norm(direction) for direction in (first, last)])
+    return sum(writhe_shares(r, unit))
 
 
 def vertices_left(r: Array, first: Array, last: Array) -> int:
@@ -57,16 +52,16 @@ def plectoneme(vertices: int, apart: float) -> Array:
 
 
 @pytest.mark.parametrize("seed", range(60))
-def test_any_curve_keeps_its_writhe(seed: int, whole):
+def test_any_curve_keeps_its_writhe(seed: int):
     r, first, last = waves(seed)
-    assert topology.writhe(r, first, last) == pytest.approx(whole(r, first, last), abs=1e-12)
+    assert writhe(r, first, last) == pytest.approx(whole(r, first, last), abs=1e-12)
 
 
 @pytest.mark.parametrize("apart", [0.3, 0.05, 0.01])
-def test_strands_wound_about_each_other_keep_their_writhe(apart: float, whole):
+def test_strands_wound_about_each_other_keep_their_writhe(apart: float):
     r = plectoneme(1500, apart)
     first, last = r[1] - r[0], r[-1] - r[-2]
-    value = topology.writhe(r, first, last)
+    value = writhe(r, first, last)
     assert abs(value) > 5
     assert value == pytest.approx(whole(r, first, last), abs=1e-12)
 
@@ -92,18 +87,18 @@ def test_the_blocks_at_a_sharp_bend_are_kept():
     assert left == 20 + 1 + 2 * (BLOCK - 1)
 
 
-def test_a_block_that_a_ray_passes_through_is_kept(whole):
+def test_a_block_that_a_ray_passes_through_is_kept():
     s = np.linspace(0.0, pi, 161)
     arch = np.column_stack([np.sin(s), 1e-9 * (s - pi / 2), 1.0 - np.cos(s)])
     aimed = arch[80] - arch[-1]
     assert vertices_left(arch, np.array([1.0, 0.0, 0.0]), aimed) > 21
     assert vertices_left(arch, np.array([1.0, 0.0, 0.0]), -aimed) == 21
     for last in (aimed, -aimed):
-        value = topology.writhe(arch, np.array([1.0, 0.0, 0.0]), last)
+        value = writhe(arch, np.array([1.0, 0.0, 0.0]), last)
         assert value == pytest.approx(whole(arch, np.array([1.0, 0.0, 0.0]), last), abs=1e-12)
 
 
 def test_not_a_number_stays_one():
     r = np.column_stack([np.zeros(50), np.zeros(50), np.linspace(0.0, 1.0, 50)])
     r[20, 1] = np.nan
-    assert np.isnan(topology.writhe(r, E3, E3))
+    assert np.isnan(writhe(r, E3, E3))

@@ -46,7 +46,7 @@ def frame() -> Frame:
 def looks(frame: Frame, height: float, reach: float, t: float) -> Frame:
     """A frame with the hooked shape, whose tangents at the ends are e3 and e1."""
     shape = hooked(height, reach)
-    Wr = writhe(shape.r, *shape.tangents)
+    Wr = writhe(shape.r, shape.tangents)
     orientation = np.tile([1.0, 0.0, 0.0, 0.0], (len(shape.r), 1))
     orientation[-1] = [np.sqrt(0.5), 0.0, np.sqrt(0.5), 0.0]
     return replace(frame, t=t, r=shape.r, orientation=orientation, Tw=0.0, Wr=Wr, Lk=0.0, min_gap=nan)

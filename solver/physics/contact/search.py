@@ -10,7 +10,7 @@ half of it.
 
 from __future__ import annotations
 
-from math import acos, inf
+from math import acos
 from typing import NamedTuple
 
 import numpy as np
@@ -118,19 +118,10 @@ def _enclose(points: Points) -> float:
     return largest
 
 
-def smallest_distance(points: Points, skip: float, enough: float) -> float:
-    """The smallest distance (m) of two points more than `skip` of arc apart, or `enough` if none are nearer."""
-    return float(_smallest(points, skip, enough, 0.0))
-
-
-def smallest_gap(points: Points, skip: float) -> float:
-    """The smallest distance (m) of the surfaces at two points more than `skip` of arc apart; inf if there are none."""
-    return float(_smallest(points, skip, inf, 0.5))
-
-
 @kernel
-def _smallest(points: Points, skip: float, enough: float, part: float) -> float:
-    """The smallest distance (m) of two points less `part` of their diameters, or `enough`."""
+def smallest_distance(points: Points, skip: float, enough: float, part: float) -> float:
+    """The smallest distance (m) of two points more than `skip` of arc apart, or `enough` if none are nearer; less a
+    `part` of their diameters, by half of which their surfaces are nearer."""
     largest, pitch, widest = _enclose(points), longest_spacing(points), 0.0
     for i in range(len(points.p)):
         widest = max(widest, 2.0 * part * points.diameter[i])
@@ -154,7 +145,8 @@ def _smallest(points: Points, skip: float, enough: float, part: float) -> float:
 
 @kernel
 def largest_displacement(p: Array, since: Array) -> float:
-    """How far (m) some point, or node, at p (n, 3) has moved since they lay at `since` (n, 3)."""
+    """How far (m) some point, or node, at p (n, >= 3) has moved since they lay at `since` (n, 3); of velocities, since
+    0, the largest (m/s)."""
     largest = 0.0
     for i in range(len(since)):
         square = _between(p, since, i)
@@ -167,40 +159,19 @@ def foresee(w: Array, slack: Array, steps: float, least: float, most: float) -> 
     """Let each point go as far as it comes within `steps` (s) at its velocity w (M, 3), but at `least` and at the
     `most` (m)."""
     for i in range(len(slack)):
-        slack[i] = min(max(steps * np.sqrt(_square(w, i)), least), most)
+        speed = np.sqrt(w[i, 0] ** 2 + w[i, 1] ** 2 + w[i, 2] ** 2)
+        slack[i] = min(max(steps * speed, least), most)
 
 
 @kernel
 def used(p: Array, checked: Array, slack: Array) -> float:
-    """The largest part of its `slack` (M,) that a point at p (M, 3) has used up since it was `checked` (M, 3)."""
+    """The largest part of its `slack` (M,) that a point at p (M, 3) has used up since it was `checked` (M, 3); of
+    velocities, since 0, the largest that one uses up in a second."""
     largest = 0.0
     for i in range(len(slack)):
         square = _between(p, checked, i)
         largest = max(largest, square / slack[i] ** 2)
     return float(np.sqrt(largest))
-
-
-@kernel
-def soonest(w: Array, slack: Array) -> float:
-    """The shortest time (s) in which a point, at its velocity w (M, 3), uses up all of its `slack` (M,)."""
-    fastest = 0.0
-    for i in range(len(slack)):
-        fastest = max(fastest, _square(w, i) / slack[i] ** 2)
-    return 1.0 / np.sqrt(fastest) if fastest > 0.0 else np.inf
-
-
-@kernel
-def fastest(w: Array) -> float:
-    """The largest of some velocities (n, >= 3)."""
-    largest = 0.0
-    for i in range(len(w)):
-        largest = max(largest, _square(w, i))
-    return float(np.sqrt(largest))
-
-
-@inlined
-def _square(w: Array, i: int) -> float:
-    return w[i, 0] ** 2 + w[i, 1] ** 2 + w[i, 2] ** 2  # type: ignore[no-any-return]
 
 
 @inlined

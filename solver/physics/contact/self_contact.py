@@ -16,15 +16,12 @@ from solver.physics.contact.points import Points, contact_points, place_points
 from solver.physics.contact.recipe import IN_MOTION, NOTHING, Foreseen, Hardness, held, spaced
 from solver.physics.contact.search import (
     Pairs,
-    fastest,
     find_pairs,
     foresee,
     harmless_bending,
     largest_displacement,
     most_bent,
     smallest_distance,
-    smallest_gap,
-    soonest,
     straight_intervals,
     used,
 )
@@ -77,6 +74,7 @@ class SelfContact:
         """How far (m) all points may go since the last search where nobody is near, else 0; and where the nodes were
         then. A point goes `_share` times as far as they do, at the most."""
         self._share = float(np.abs(points.weights).sum(axis=1).max())
+        self._no_nodes_move, self._no_points_move = np.zeros((len(s), 3)), np.zeros_like(points.p)
         self._skip, self._straight = self._law.skip, 0
         """The arc (m) up to which the last search has left out pairs; and the intervals in succession whose bending has
         to stay harmless for that, none where it is the law's own."""
@@ -121,18 +119,19 @@ class SelfContact:
         if self._is_bent(r, 1.0):
             return "the rod bent more than the contact search foresaw"
         if self._share * largest_displacement(r, self._checked) < self._slack:
-            speed = self._share * fastest(velocity)
+            speed = self._share * largest_displacement(velocity, self._no_nodes_move)
             self.step_limit = LARGEST_SHIFT * self._slack / speed if speed > 0.0 else inf
             return ""
         points, pairs = self.touch.points, self.touch.pairs
         place_points(points, r, velocity)
         if not self._looked:
-            near = smallest_distance(points, self._law.skip, self._farthest) <= self._reach
+            near = smallest_distance(points, self._law.skip, self._farthest, 0.0) <= self._reach
             return "the rod came near itself within one step" if near else ""
         if used(points.p, points.checked, points.slack) > 1.0:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
-        self.step_limit = min(TIME_TO_TOUCH * time_to_touch, LARGEST_SHIFT * soonest(points.w, points.slack))
+        part = used(points.w, self._no_points_move, points.slack)  # in a second
+        self.step_limit = min(TIME_TO_TOUCH * time_to_touch, LARGEST_SHIFT / part if part > 0.0 else inf)
         if approach > LARGEST_PASSAGE:
             return "two parts of the rod could have passed through each other"
         if links_meet(points, pairs):
@@ -149,7 +148,7 @@ class SelfContact:
             return nan
         points = self.touch.points
         place_points(points, r, velocity)
-        gap = smallest_gap(points, self._law.skip)
+        gap = smallest_distance(points, self._law.skip, inf, 0.5)
         return gap if gap < inf else nan
 
     def power(self) -> Array:
@@ -162,10 +161,9 @@ class SelfContact:
         place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
         self._search(0.0)
         points, pairs = self.touch.points, self.touch.pairs
-        smallest_gap(points, self._law.skip)
+        smallest_distance(points, self._law.skip, inf, 0.5)
         approaches(points, pairs), links_meet(points, pairs)
-        used(points.p, points.checked, points.slack), soonest(points.w, points.slack)
-        most_bent(self._checked, 1), largest_displacement(self._checked, self._checked)
+        used(points.p, points.checked, points.slack), most_bent(self._checked, 1)
 
     def _search(self, dt: float) -> None:
         """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
@@ -175,15 +173,16 @@ class SelfContact:
         self._leave_out()
         skip = self._skip
         self._slack = 0.0
-        least = min(max(FORESEEN * fastest(points.w) * dt, SKIN[0] * reach), SKIN[1] * reach)
+        fastest = largest_displacement(points.w, self._no_points_move)
+        least = min(max(FORESEEN * fastest * dt, SKIN[0] * reach), SKIN[1] * reach)
         foresee(points.w, points.slack, FORESEEN * dt, least, SKIN[2] * reach)
         find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[1] > 0:
             self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))
             find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[0] == 0:
-            enough = max(2.0 * self._farthest, reach + 2.0 * FORESEEN_ALONE * fastest(points.w) * dt)
-            slack = 0.5 * (smallest_distance(points, skip, enough) - reach)
+            enough = max(2.0 * self._farthest, reach + 2.0 * FORESEEN_ALONE * fastest * dt)
+            slack = 0.5 * (smallest_distance(points, skip, enough, 0.0) - reach)
             self._slack = slack if slack >= points.slack.max() else 0.0
 
     def _leave_out(self) -> None:

@@ -23,8 +23,6 @@ from solver.physics.contact.search import (
     largest_displacement,
     most_bent,
     smallest_distance,
-    smallest_gap,
-    soonest,
     straight_intervals,
     used,
 )
@@ -87,7 +85,7 @@ def listed(pairs: Pairs) -> set[tuple[int, int]]:
 @settings(max_examples=40, deadline=None)
 def test_the_smallest_distance_is_that_of_brute_force(seed: int, amplitude: float) -> None:
     points = points_of(tangents(S, seed, amplitude))
-    assert smallest_distance(points, SKIP, inf) == pytest.approx(min(distances(points).values()), rel=1e-12)
+    assert smallest_distance(points, SKIP, inf, 0.0) == pytest.approx(min(distances(points).values()), rel=1e-12)
 
 
 @given(seeds, wildness)
@@ -114,11 +112,12 @@ def test_pairs_are_listed_that_may_come_near_as_their_points_go(seed: int, ampli
 def test_how_much_of_its_slack_a_point_has_used_and_how_soon_it_will() -> None:
     points = points_of(tangents(S, 1, 2.0))
     points.checked[:], points.slack[:], points.w[:] = points.p, 0.1, 0.0
-    assert used(points.p, points.checked, points.slack) == 0.0 and soonest(points.w, points.slack) == inf
+    still = np.zeros_like(points.w)
+    assert used(points.p, points.checked, points.slack) == used(points.w, still, points.slack) == 0.0
     points.slack[7], points.checked[7] = 0.02, points.p[7] + [0.003, 0.0, -0.004]
     points.w[9], points.slack[9] = [0.0, 3.0, 4.0], 0.2
     assert used(points.p, points.checked, points.slack) == pytest.approx(0.25)
-    assert soonest(points.w, points.slack) == pytest.approx(0.04)
+    assert used(points.w, still, points.slack) == pytest.approx(1.0 / 0.04)
 
 
 @given(seeds, wildness)
@@ -127,19 +126,19 @@ def test_the_smallest_gap_is_that_of_brute_force_on_a_rod_whose_thickness_varies
     points = points_of(tangents(S, seed, amplitude))
     points.diameter[:] = 0.03 * np.random.default_rng(seed).uniform(0.1, 1.0, len(points.p))
     gaps = [d - 0.5 * (points.diameter[a] + points.diameter[b]) for (a, b), d in distances(points).items()]
-    assert smallest_gap(points, SKIP) == pytest.approx(min(gaps), rel=1e-12)
+    assert smallest_distance(points, SKIP, inf, 0.5) == pytest.approx(min(gaps), rel=1e-12)
 
 
 def test_a_distance_that_is_enough_is_returned_if_none_is_smaller() -> None:
     points = points_of(tangents(S, 1, 6.0))
     smallest = min(distances(points).values())
-    assert smallest_distance(points, SKIP, 0.5 * smallest) == 0.5 * smallest
-    assert smallest_distance(points, SKIP, 2.0 * smallest) == pytest.approx(smallest, rel=1e-12)
+    assert smallest_distance(points, SKIP, 0.5 * smallest, 0.0) == 0.5 * smallest
+    assert smallest_distance(points, SKIP, 2.0 * smallest, 0.0) == pytest.approx(smallest, rel=1e-12)
 
 
 def test_a_rod_shorter_than_the_skip_has_no_pairs() -> None:
     points = points_of(tangents(S, 1, 6.0))
-    assert smallest_distance(points, 1.5 * LENGTH, inf) == inf
+    assert smallest_distance(points, 1.5 * LENGTH, inf, 0.0) == inf
 
 
 def test_a_folded_rod_is_found_out_although_the_search_marches() -> None:
@@ -163,8 +162,8 @@ def test_in_a_coil_all_are_found_although_all_are_near(closing: float) -> None:
     last = [farthest(points, SKIP, a) for a in range(len(points.p))]
     every = {pair: d for pair, d in distances(points).items() if pair[1] <= last[pair[0]]}
     assert listed(found_by(points, 0.03)) == {pair for pair, d in every.items() if d < 0.03} != set()
-    assert smallest_distance(points, SKIP, inf) == pytest.approx(min(every.values()), rel=1e-12)
-    assert smallest_gap(points, SKIP) == pytest.approx(min(every.values()) - 0.01, rel=1e-12)
+    assert smallest_distance(points, SKIP, inf, 0.0) == pytest.approx(min(every.values()), rel=1e-12)
+    assert smallest_distance(points, SKIP, inf, 0.5) == pytest.approx(min(every.values()) - 0.01, rel=1e-12)
 
 
 def test_what_does_not_fit_is_counted() -> None:
@@ -316,4 +315,4 @@ def test_where_a_ring_meets_itself_its_ends_are_neighbours(closing: float) -> No
     around = LENGTH + closing - (pairs.second - pairs.first)[: pairs.counts[0]] * points.spacing
     assert pairs.counts[0] > 0
     assert around.min() >= SKIP * (1.0 - 1e-9)
-    assert smallest_gap(points, SKIP) > 0.9 * SKIP - float(points.diameter.max())
+    assert smallest_distance(points, SKIP, inf, 0.5) > 0.9 * SKIP - float(points.diameter.max())

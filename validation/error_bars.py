@@ -19,7 +19,9 @@ from service.cases.library import apply_settings, load_case, parse_case
 from solver import Frame, Scene, simulate
 from solver.arrays import Array
 from solver.measures.frame import OUTPUTS
+from solver.run.artificial_viscosity import with_viscosity
 from solver.run.refined import Refined
+from solver.run.trial import grade_of, longest_step, step_tolerance, strides_of
 from solver.run.verify import VerifiedFrame, refine
 from validation.elastica import TABLE
 from validation.row import Row, at_most, relative
@@ -55,11 +57,27 @@ def scene(case: str, settings: dict[str, Any]) -> Scene:
     return build_scene(parse_case(apply_settings(load_case(case), changes)))
 
 
+def verified(run: Refined, scene: Scene) -> Scene:
+    """A scene whose verified run has the two finest meshes of a run to a tolerance, and steps and viscosity like
+    these."""
+    steps, intervals, rod = run._together.finest.steps, len(run.s) - 1, scene.rod
+    tolerance = scene.numerics.tolerance or 1.0
+    numerics = replace(
+        scene.numerics, tolerance=None, verify=True, intervals=intervals // 2,
+        dt_max=longest_step(steps, scene.output_interval), strides=strides_of(tolerance, steps),
+        increment_tolerance=step_tolerance(steps, tolerance),
+    )  # fmt: skip
+    grade = grade_of(steps)
+    if grade is not None:
+        rod = with_viscosity(rod, intervals, grade)
+    return replace(scene, rod=rod, numerics=numerics)
+
+
 def run(scene: Scene) -> tuple[Scene, list[VerifiedFrame]]:
     """The frames of a verified run, and its scene with the intervals and steps that it had."""
     begun = simulate(scene)
     frames = [frame for frame in begun if isinstance(frame, VerifiedFrame)]
-    return begun.chosen if isinstance(begun, Refined) else scene, frames
+    return verified(begun, scene) if isinstance(begun, Refined) else scene, frames
 
 
 def true(scene: Scene) -> list[VerifiedFrame]:

@@ -17,7 +17,6 @@ from solver.arrays import Array
 from solver.measures.frame import Frame
 from solver.outcome import Outcome, RunFailed
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
-from solver.run.artificial_viscosity import with_viscosity
 from solver.run.first_mesh import first_intervals, first_mesh
 from solver.run.plan import LETTING_GO, MOST_WORK, Excess, allowance, next_trial, to_come
 from solver.run.recording import row_of
@@ -26,7 +25,7 @@ from solver.run.run import Run
 from solver.run.series import Attempt, chosen
 from solver.run.stability import Stability
 from solver.run.together import Piece, Together
-from solver.run.trial import AT_REST, FIRST_INTERVALS, Trial, grade_of, longest_step, step_tolerance, strides_of
+from solver.run.trial import AT_REST, FIRST_INTERVALS, Trial, grade_of
 from solver.run.under_way import UnderWay
 from solver.scene.scene import MOST_AT_REST, Scene
 
@@ -86,22 +85,6 @@ class Refined(Run):
         whole = spent + current / max(part, 0.01) + rest
         self._progress = max(self._progress, min((spent + current) / max(whole, 1.0), ALMOST))
         return self._progress
-
-    @property
-    def chosen(self) -> Scene:
-        """A scene whose verified run has the two finest meshes of this one, and steps and viscosity like these."""
-        together, rod = self._together, self._scene.rod
-        steps, intervals = together.finest.steps, len(together.s) - 1
-        tolerance = self._scene.numerics.tolerance or 1.0
-        numerics = replace(
-            self._scene.numerics, tolerance=None, verify=True, intervals=intervals // 2,
-            dt_max=longest_step(steps, self._scene.output_interval), strides=strides_of(tolerance, steps),
-            increment_tolerance=step_tolerance(steps, tolerance),
-        )  # fmt: skip
-        grade = grade_of(steps)
-        if grade is not None:
-            rod = with_viscosity(rod, intervals, grade)
-        return replace(self._scene, rod=rod, numerics=numerics)
 
     @property
     def accuracy(self) -> Accuracy | None:

@@ -40,7 +40,7 @@ from solver.scene.scene import Scene
 STRETCH_FEEDBACK, OF_WAVES = 1.0, 5.0
 """The rate at which the stretch is taken back, in that at which the tangents turn, and how often that of waves as short
 as the rod is bent is added; the largest so far. It must not depend on the step, or the order in dt is lost, nor rise
-and fall with the motion, or it turns the rod; without it |Tw + Wr - Lk| of goyal-2003 is three times as large."""
+and fall with the motion, or it turns the rod. See docs/decisions/0002."""
 LARGEST_FEEDBACK = 0.5
 """Part of the stretch, and of an end's lag, that a step may take back at the most: more would be a jolt."""
 

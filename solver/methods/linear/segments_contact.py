@@ -28,8 +28,7 @@ from solver.physics.contact.forces import Touch, allowed_fraction, change_forces
 from solver.physics.contact.members import Members
 
 SOLVED = 1e-4
-"""Relative residual at which the solve stops. Of plectonemes and knots 1e-3 takes up to 1.5 times as many of Newton's
-iterations and up to 1.4 times as long, of DNA twice; 1e-5 takes hardly fewer, and a tenth longer."""
+"""Relative residual at which the solve stops. Of a larger one Newton takes more iterations (docs/decisions/0004)."""
 
 
 class Coupling(NamedTuple):

@@ -1,9 +1,7 @@
 """Added mass: B = -Ca rho_w A a_n, a_n = a - (a . T) T the acceleration across the rod (Morison's law).
 
-(With v_t on v1, v2 alone, whose power is the rate of 1/2 Ca rho_w A |u_n|^2, the paper's scene reaches Wr(25 s) = 0.572
-instead of the reference's 0.580: the difference is no detail.) The fluid's energy is that of 1/2 Ca rho_w A |u_n|^2,
-u_n = u - (u . T) T, u the velocity relative to the current (to still water, if that varies); what is left of the power
-is lost.
+The fluid's energy is that of 1/2 Ca rho_w A |u_n|^2, u_n = u - (u . T) T, u the velocity relative to the current (to
+still water, if that varies); what is left of the power is lost. (docs/decisions/0002)
 """
 
 from __future__ import annotations

@@ -10,10 +10,9 @@ family), with R_m the mean of the two nodes' rotations:
 
 (3) and (4) are the paper's equations turned into the lab frame. (2) and (5), and (3) and (4), are adjoint to each
 other: F_m . R_m (omega_m x a3) + omega_m . (a3 x R_m^t F_m) = 0, and likewise for q and omega. So the scheme in space
-conserves energy, at all wave lengths; with (5) in the lab frame it did not, and grew at steps of h / wave speed.
+conserves energy, at all wave lengths.
 The term with g takes back the stretch that has crept in (extrapolated from the last two steps to the end of this one):
-R_m (omega_m x a3) is not quite the rate of T_m. kappa is left alone: feeding it towards the curvature of the nodes' own
-frames does work on the rod, and raised the error of Wr(32 s) in the paper's scene from 0.0009 to 0.0075.
+R_m (omega_m x a3) is not quite the rate of T_m. kappa is left alone. Why: see docs/decisions/0002.
 """
 
 from __future__ import annotations

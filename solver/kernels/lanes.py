@@ -17,7 +17,7 @@ and of the calls.
 
 What may be written: assignments and one `return`. Names that stand for several numbers (arguments, results of kernels
 that return tuples, tuples) are added and multiplied number by number, taken apart by an index in figures, and handed
-over by a star. A result that is said to be `max` is a number, of which the kernel returns the largest.
+over by a star.
 
 What is exact for small angles only (`series`) is computed along the rows, then mended lane by lane where an argument is
 beyond its bound: there the loop is split, and names that are needed on both sides of it get rows of their own.
@@ -103,8 +103,6 @@ class _Loop:
 
     def source(self) -> str:
         """The kernel."""
-        largest = [name for name, shape in self.outputs.items() if shape == "max"]
-        arrays = {name: shape for name, shape in self.outputs.items() if shape != "max"}
         loops, kept = list[str](), self._kept()
         if kept & (self.inputs.keys() | self.outputs.keys()):
             raise SyntaxError(f"{self.function.__qualname__} eight abreast: a name stands for two things")
@@ -112,19 +110,15 @@ class _Loop:
             loops += [f"for __m in range({LANES}):", *_indented([*self._loaded(at, kept), *phase,
                                                                *self._stored(at, kept)])]  # fmt: skip
             loops += self.mends[at] if at < len(self.mends) else []
-        for name in largest:
-            loops += [f"for __m in range({LANES}):", f"    __largest = max(__largest, _{name}[0, __m])"]
         rows = [(name, self.widths[name]) for name in self.inputs]
         rows += [(name, _width(shape)) for name, shape in self.outputs.items()]
         rows += [(name, 1) for name in sorted(kept)]
         body = [f"_{name} = _scratch(({width}, {LANES}))" for name, width in rows]
-        body += ["__largest = 0.0", f"__lines = len({next(iter(arrays))})",
-                 f"for __first in range(0, __lines, {LANES}):"]  # fmt: skip
+        body += [f"__lines = len({next(iter(self.outputs))})", f"for __first in range(0, __lines, {LANES}):"]
         block = [line for name, shape in self.inputs.items() for line in _moved(name, shape, "gather")]
-        block += loops + [line for name, shape in arrays.items() for line in _moved(name, shape, "scatter")]
-        body += _indented(block) + (["return __largest"] if largest else [])
-        head = f"def {self.function.__name__}({', '.join([*self.parameters, *arrays])}):"
-        return "\n".join([head, *_indented(body)])
+        block += loops + [line for name, shape in self.outputs.items() for line in _moved(name, shape, "scatter")]
+        head = f"def {self.function.__name__}({', '.join([*self.parameters, *self.outputs])}):"
+        return "\n".join([head, *_indented(body + _indented(block))])
 
     def _assign(self, target: ast.expr, value: ast.expr) -> None:
         """Write `target = value`, number by number; split the loop where the value is a series."""
@@ -264,8 +258,6 @@ def _shapes(line: str) -> dict[str, str]:
 
 def _width(shape: str) -> int:
     """How many numbers a line has."""
-    if shape == "max":
-        return 1
     rows, _, columns = shape.partition("x")
     return int(rows) * int(columns or 1)
 

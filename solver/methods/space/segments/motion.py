@@ -75,10 +75,10 @@ def spin_steadily(state: State, nodes: Array, dt: float, stages: Stages) -> None
 
 
 @abreast("theta: 3, theta_t: 3, theta_tt: 3, omega_n: 3, start: 4, steady: 4, S: 3x3"
-         " -> quaternion: 4, R: 3x3, omega: 3, alpha: 3, largest: max")  # fmt: skip
+         " -> quaternion: 4, R: 3x3, omega: 3, alpha: 3")  # fmt: skip
 @no_type_check
 def _turn(theta, theta_t, theta_tt, omega_n, start, steady, S):
-    """Orientation, omega and alpha of a segment, and |theta|^2."""
+    """Orientation, omega and alpha of a segment."""
     square = dot(*theta, *theta)
     cosine, sinc = cosine_and_sinc(square)
     turned = product(*start, cosine, *(sinc * theta))
@@ -98,7 +98,7 @@ def _turn(theta, theta_t, theta_tt, omega_n, start, steady, S):
     gained = turned_back(*S, *f)
     rate = turned_back(*S, *g)
     gyration = cross(*omega_n, *gained)
-    return turned, entries(*turned), gained + omega_n, rate - gyration, square
+    return turned, entries(*turned), gained + omega_n, rate - gyration
 
 
 @kernel
@@ -138,10 +138,11 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
         for k in range(3):
             stages.base[i, 2, k] = (inverse[i, 0] * stages.base[0, 1, k] + inverse[i, 1] * stages.base[1, 1, k]
                                     + inverse[i, 2] * stages.base[2, 1, k] - total * state.base[1, k]) / dt  # fmt: skip
-        square = _turn(stages.theta[i], stages.theta_t[i], stages.theta_tt[i], state.omega, state.quaternion,
-                       stages.steady[i], stages.S[i], stages.quaternion[i], stages.R[i], stages.omega[i],
-                       stages.alpha[i])  # fmt: skip
-        largest = max(largest, square)
+        _turn(stages.theta[i], stages.theta_t[i], stages.theta_tt[i], state.omega, state.quaternion, stages.steady[i],
+              stages.S[i], stages.quaternion[i], stages.R[i], stages.omega[i], stages.alpha[i])  # fmt: skip
+        for j in range(last + 2):
+            x, y, z = vector(stages.theta[i], j)
+            largest = max(largest, dot(x, y, z, x, y, z))
         follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], chain.h,
                         stages.r[i], stages.V[i], stages.A[i])  # fmt: skip
     if stretches(chain.elastic):

@@ -214,7 +214,7 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
     N = len(chain.mass)
     for side in range(2):
         frame = 0 if side == 0 else N + 1
-        R, V = matrix(stages.R[i], frame), _end_velocity(chain, stages, i, side)
+        R, V = matrix(stages.R[i], frame), end_velocity(chain, stages, i, side)
         kinds, values, dead = driven.kinds[side], driven.values[i, side], driven.dead[i, side]
         if driven.compliance[side] > 0.0:  # the rod's end and what holds it move apart along the tangent
             T, give = (R[0][2], R[1][2], R[2][2]), driven.compliance[side] * (1.0 if side == 1 else -1.0)
@@ -236,7 +236,7 @@ def condition_ends(chain: Chain, driven: Driven, stages: Stages, residuals: Resi
 
 
 @inner
-def _end_velocity(chain: Chain, stages: Stages, i: int, side: int) -> Any:
+def end_velocity(chain: Chain, stages: Stages, i: int, side: int) -> Any:
     """The velocity, lab, of the rod's start or end."""
     if side == 0:
         return vector(stages.base[i], 1)
@@ -314,7 +314,7 @@ def _end_tangents(chain: Chain, driven: Driven, stages: Stages, i: int, tangents
     for side in range(2):
         R, dead = matrix(stages.R[i], 0 if side == 0 else N + 1), driven.dead[i, side]
         swing = in_material_by_rotation(times(-1.0, in_material(R, (dead[3], dead[4], dead[5]))))
-        speed = in_material(R, _end_velocity(chain, stages, i, side))
+        speed = in_material(R, end_velocity(chain, stages, i, side))
         pull = in_material(R, _end_pull(chain, driven, stages, i, side))
         tangents.turn[side] = 0.0
         for k in range(3):

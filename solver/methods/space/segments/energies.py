@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from solver.arrays import Array
@@ -10,7 +12,7 @@ from solver.kernels.kernel import inner, kernel
 from solver.kernels.scratch import scratch
 from solver.kernels.vectors import dot, in_material, matrix, minus, plus, times, vector
 from solver.measures.energies import Energies
-from solver.methods.space.segments.balances import Driven, Motion, motion_at
+from solver.methods.space.segments.balances import Driven, Motion, end_velocity, motion_at
 from solver.methods.space.segments.chain import STAGES, Chain, Stages
 from solver.methods.space.segments.opening import tension
 from solver.methods.space.segments.viscosity import dissipated
@@ -55,26 +57,14 @@ def energies_at(chain: Chain, loads: Loads, i: int, bend: Array, F: Array, motio
 
 
 @inner
-def _end_velocities(chain: Chain, stages: Stages, i: int, ends: Array) -> None:
-    """Write the velocities (2, 3) of the first and the last node at stage i."""
-    N, R = len(chain.mass), stages.R[i]
-    for k in range(3):
-        swing = R[N, k, 0] * stages.omega[i, N, 1] - R[N, k, 1] * stages.omega[i, N, 0]
-        ends[0, k] = stages.base[i, 1, k]
-        ends[1, k] = stages.V[i, N - 1, k] + 0.5 * chain.h * swing
-        if stretches(chain.elastic):
-            ends[1, k] += stages.opening[i, 0, N] * swing + stages.opening[i, 1, N] * R[N, k, 2]
-
-
-@inner
-def _follow_end(driven: Driven, stages: Stages, i: int, side: int, velocity: Array, weight: float, out: Array) -> None:
-    """Add to `out` (6,) what holds an end at the `velocity` (3,) of its node moves and turns along the axes of its
+def _follow_end(driven: Driven, stages: Stages, i: int, side: int, velocity: Any, weight: float, out: Array) -> None:
+    """Add to `out` (6,) how what holds an end, at the `velocity` of its node, moves and turns along the axes of its
     conditions."""
     a, sign = (0, -1.0) if side == 0 else (stages.R.shape[1] - 1, 1.0)
     R = matrix(stages.R[i], a)
     T = R[0][2], R[1][2], R[2][2]
     away = sign * driven.compliance[side] * dot(T, vector(stages.F_t[i], side))
-    speed = plus(vector(velocity, side), times(away, T))
+    speed = plus(velocity, times(away, T))
     if driven.kinds[side, 0] in (RATE, LOAD):
         speed = in_material(R, speed)
     for k in range(3):
@@ -90,15 +80,15 @@ def stage_powers(reference: Reference, weights: Array, moved: Array, out: Array)
     conditions, by the `weights` (3,) of the stages. `reference`: see `newton.step`.
     """
     chain, loads, driven, _, stages, _, _ = reference.records
-    N, by_loads, ends = len(chain.mass), scratch(2), scratch((3, 2, 3))
+    N, by_loads = len(chain.mass), scratch(2)
     moved[:] = 0.0
     for i in range(STAGES):
-        _end_velocities(chain, stages, i, ends[i])
-        _follow_end(driven, stages, i, 0, ends[i], weights[i], moved[0])
-        _follow_end(driven, stages, i, 1, ends[i], weights[i], moved[1])
+        start, end = end_velocity(chain, stages, i, 0), end_velocity(chain, stages, i, 1)
+        _follow_end(driven, stages, i, 0, start, weights[i], moved[0])
+        _follow_end(driven, stages, i, 1, end, weights[i], moved[1])
         work, by_loads[0], by_loads[1] = 0.0, 0.0, 0.0
         for k in range(3):
-            work += stages.F[i, N, k] * ends[i, 1, k] - stages.F[i, 0, k] * ends[i, 0, k]
+            work += stages.F[i, N, k] * end[k] - stages.F[i, 0, k] * start[k]
             work += stages.right[i, N, k] * stages.omega[i, N + 1, k] - stages.left[i, 0, k] * stages.omega[i, 0, k]
         add_powers(loads, i, motion_at(stages, i), by_loads)
         out[i, 0], out[i, 1], out[i, 2] = work, chain.h * by_loads[0], chain.h * by_loads[1]

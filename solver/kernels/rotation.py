@@ -6,6 +6,8 @@ R(t + dt) = R(t) exp([theta]). Small rotations are material too: delta R = R [de
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from solver.arrays import Array
@@ -107,19 +109,17 @@ def rotation_of(quaternion: Array) -> Array:
 
 
 @inner
-def tangent_of(quaternion: Array, T: Array) -> None:
-    """Write the tangent R a3 of a unit quaternion (4,) into `T` (3,)."""
+def tangent_of(quaternion: Any) -> Any:
+    """The tangent R a3 of a unit quaternion."""
     w, x, y, z = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
-    T[0] = 2.0 * (x * z + w * y)
-    T[1] = 2.0 * (y * z - w * x)
-    T[2] = 1.0 - 2.0 * (x * x + y * y)
+    return 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
 
 
 @kernel
 def tangents_of(quaternion: Array, T: Array) -> None:
     """Write the tangents R a3 of unit quaternions (n, 4) into `T` (n, 3)."""
     for j in range(len(T)):
-        tangent_of(quaternion[j], T[j])
+        T[j, 0], T[j, 1], T[j, 2] = tangent_of(quaternion[j])
 
 
 @inner

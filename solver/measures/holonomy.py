@@ -15,7 +15,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
-from solver.kernels.rotation import product
+from solver.kernels.rotation import product, tangent_of
 from solver.kernels.vectors import dot, vector_product
 
 STILL = 1e-16
@@ -28,13 +28,6 @@ def _quaternion(a: Array, i: int) -> Any:
 
 
 @inner
-def _tangent(q: Any) -> Any:
-    """a3 of an orientation, in the lab."""
-    w, x, y, z = q
-    return 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
-
-
-@inner
 def _spin(start: Any, end: Any) -> float:
     """chi (rad) of the orientations at the ends."""
     w, _, _, z = product(start[0], -start[1], -start[2], -start[3], end[0], end[1], end[2], end[3])
@@ -44,7 +37,7 @@ def _spin(start: Any, end: Any) -> float:
 @inner
 def _swung(q: Any, tangent: Any) -> Any:
     """An orientation, swung by the shortest rotation so that its tangent is another."""
-    own = _tangent(q)
+    own = tangent_of(q)
     axis, cosine = vector_product(own, tangent), 1.0 + dot(own, tangent)
     scale = 1.0 / sqrt(cosine * cosine + dot(axis, axis)) if cosine > 0.0 else 0.0
     return product(scale * cosine, scale * axis[0], scale * axis[1], scale * axis[2], q[0], q[1], q[2], q[3])
@@ -65,10 +58,10 @@ def swept(before: Array, after: Array, turned: float) -> float:
     """
     start, end = _quaternion(before, 0), _quaternion(before, -1)
     new_start, new_end = _quaternion(after, 0), _quaternion(after, -1)
-    from_start = vector_product(_tangent(start), _tangent(new_start))
-    from_end = vector_product(_tangent(end), _tangent(new_end))
+    from_start = vector_product(tangent_of(start), tangent_of(new_start))
+    from_end = vector_product(tangent_of(end), tangent_of(new_end))
     if dot(from_start, from_start) + dot(from_end, from_end) <= STILL:
         return 0.0
-    chi, swung = _spin(start, end), _spin(_swung(start, _tangent(new_start)), _swung(end, _tangent(new_end)))
+    chi, swung = _spin(start, end), _spin(_swung(start, tangent_of(new_start)), _swung(end, tangent_of(new_end)))
     area = _within_half_a_turn(swung - chi)
     return (area + _within_half_a_turn(_spin(new_start, new_end) - chi - turned - area)) / (2.0 * pi)

@@ -21,7 +21,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import allocating, inlined, inner, kernel
-from solver.kernels.rotation import entries
+from solver.kernels.rotation import tangent_of
 from solver.kernels.vectors import Vector, dot, minus, norm, times, vector, vector_product
 from solver.measures.shortening import shorten
 from solver.measures.spherical import angle, half_area
@@ -151,12 +151,7 @@ def tangents_of_ends(orientation: Array) -> Array:
     """Unit tangents a3 (2, 3), lab, of the first and the last of unit quaternions (n, 4)."""
     tangents = np.empty((2, 3))
     for side in range(2):
-        i = side * (len(orientation) - 1)
-        R = entries(orientation[i, 0], orientation[i, 1], orientation[i, 2], orientation[i, 3])
-        tangent = R[2], R[5], R[8]
-        length = norm(tangent)
-        for k in range(3):
-            tangents[side, k] = tangent[k] / length
+        tangents[side, 0], tangents[side, 1], tangents[side, 2] = tangent_of(orientation[-side])
     return tangents
 
 

@@ -12,6 +12,7 @@ from solver.kernels.rotation import product, rotate_back, tangents_of
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape
+from solver.measures.topology import tangents_of_ends
 from solver.methods.linear.registry import linear_solver_of
 from solver.methods.method import NOTHING_AHEAD, Ahead
 from solver.methods.schemes import BACKWARD_EULER, Scheme, c0_of
@@ -201,9 +202,7 @@ class BoxMethod:
 
     def centreline(self) -> Shape:
         """The state's centreline."""
-        tangents = np.empty((2, 3))
-        tangents_of(self.state.quaternion[[0, -1]], tangents)
-        return Shape(self.state.r, tangents)
+        return Shape(self.state.r, tangents_of_ends(self.state.quaternion))
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""

@@ -9,7 +9,6 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
 from solver.kernels.rotation import tangent_of
-from solver.kernels.scratch import scratch
 from solver.methods.space.box.fields import KAPPA, OMEGA, State, V
 
 
@@ -73,13 +72,10 @@ def measure_stretch(state: State, h: float, stretch: Array) -> float:
     Gives the largest strain of an interval: what was written, over h, or by how much the chord is longer than h or
     shorter than by 1 - (kappa h)^2 / 8.
     """
-    left, right = scratch(3), scratch(3)
     strain, bend = 0.0, h * h * (state.Y[0, KAPPA] ** 2 + state.Y[0, KAPPA + 1] ** 2)
-    tangent_of(state.quaternion[0], right)
+    right = tangent_of(state.quaternion[0])
     for j in range(len(stretch)):
-        for i in range(3):
-            left[i] = right[i]
-        tangent_of(state.quaternion[j + 1], right)
+        left, right = right, tangent_of(state.quaternion[j + 1])
         for i in range(3):
             stretch[j, i] = state.r[j + 1, i] - state.r[j, i] - 0.5 * h * (left[i] + right[i])
             strain = max(strain, abs(stretch[j, i]) / h)

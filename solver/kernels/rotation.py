@@ -217,6 +217,13 @@ def relative_rotation(left: Array, right: Array, theta: Array) -> None:
     theta[0], theta[1], theta[2] = scale * x, scale * y, scale * z
 
 
+@kernel
+def relative_rotations(left: Array, right: Array, theta: Array) -> None:
+    """Write the rotation vectors of left^-1 right (n, 4), shorter than pi, into `theta` (n, 3)."""
+    for j in range(len(theta)):
+        relative_rotation(left[j], right[j], theta[j])
+
+
 def quaternion_of(R: Array) -> Array:
     """The unit quaternions (n, 4) of rotation matrices (n, 3, 3), with w >= 0 first and continuous along n.
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.handed import Handed, Reference
-from solver.kernels.rotation import product, rotate_back, tangents_of
+from solver.kernels.rotation import relative_rotations, rotate_back, tangents_of
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape
@@ -310,7 +310,9 @@ def _kappa_correction(quaternion: Array, kappa: Array, s: Array) -> Array:
     """The smallest change of kappa (n, 3) that makes its means those of the nodes' relative rotations."""
     from scipy.linalg import solveh_banded  # a fifth of a second
 
-    missing = _turns(quaternion) / np.diff(s)[:, None] - 0.5 * (kappa[1:] + kappa[:-1])
+    turns = np.empty((len(s) - 1, 3))
+    relative_rotations(quaternion[:-1], quaternion[1:], turns)
+    missing = turns / np.diff(s)[:, None] - 0.5 * (kappa[1:] + kappa[:-1])
     bands = np.full((2, len(missing)), 0.25)
     bands[1] = 0.5
     shares = solveh_banded(bands, missing)
@@ -318,13 +320,3 @@ def _kappa_correction(quaternion: Array, kappa: Array, s: Array) -> Array:
     correction[1:] += 0.5 * shares
     correction[:-1] += 0.5 * shares
     return correction
-
-
-def _turns(quaternion: Array) -> Array:
-    """The rotations (n - 1, 3) from each node to the next, shorter than pi."""
-    left, right = quaternion[:-1].T, quaternion[1:].T
-    cosine, *axis = product.py_func(left[0], *-left[1:], *right)  # type: ignore[attr-defined]
-    along = np.where(cosine < 0.0, -1.0, 1.0) * np.array(axis)
-    sine = np.sqrt(np.sum(along**2, axis=0))
-    angle = 2.0 * np.arctan2(sine, np.abs(cosine))
-    return np.asarray(along * np.where(sine > 0.0, angle / np.where(sine > 0.0, sine, 1.0), 2.0)).T

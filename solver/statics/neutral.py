@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.rotation import matrices_of, relative_rotation, rotation_of, turn
+from solver.kernels.rotation import matrices_of, relative_rotations, rotation_of, turn
 from solver.scene.layout import across
 from solver.statics.equations import Equations
 from solver.statics.point import BLOCK, FORCE, PSI, Point, X
@@ -60,8 +60,7 @@ class Neutral:
         away, R, pivot = np.empty((len(point.quaternion), 3)), np.empty((len(point.quaternion), 3, 3)), self._pivot()
         for _ in range(PASSES):
             matrices_of(point.quaternion, R)
-            for a in range(len(away)):
-                relative_rotation(before.quaternion[a], point.quaternion[a], away[a])
+            relative_rotations(before.quaternion, point.quaternion, away)
             parts = [np.sum(_rotations(about, R) * away) / len(away) for about in self.turns]
             point = _turned(point, -np.asarray(parts) @ self.turns, R, pivot)
         return point

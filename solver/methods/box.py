@@ -215,7 +215,7 @@ class BoxMethod:
 
     def smallest_gap(self) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
-        return self.contact.smallest_gap(self._bending, self.state.r, self.state.Y)
+        return self.contact.smallest_gap(self._bending, self.state.r)
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""

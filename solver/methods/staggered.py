@@ -250,7 +250,7 @@ class StaggeredMethod(RadauMethod):
     def smallest_gap(self) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
         _, joints, nodes = self._shape
-        return self.contact.smallest_gap(total_bending(joints), nodes[0], nodes[1])
+        return self.contact.smallest_gap(total_bending(joints), nodes[0])
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""

@@ -27,77 +27,58 @@ AT_REST = Hardness(pole=0.75, spacing=0.2, margin=0.371)
 (1/u - 1)^4, whatever the pole p; the margin is 1 / (1/u - 1)^4."""
 
 
-class StaticContact:
+class StaticContact(SelfContact):
     """The contact of a scene, which may have none. Nodes `r` are (N + 1, 3), lab. `energy` (J): what it stores."""
 
     def __init__(self, scene: Scene, s: Array, r: Array) -> None:
         """`r`: where the nodes begin."""
-        self._contact = SelfContact(scene.contact, scene.rod, s, 1, foreseen(scene), AT_REST)
-        self._still = np.zeros((1, len(s), 3))
-        self._kept = r.copy(), self._still[0]
+        super().__init__(scene.contact, scene.rod, s, 1, foreseen(scene), AT_REST)
+        self._kept = r.copy(), self.rest
         self.energy = 0.0
 
-    @property
-    def present(self) -> bool:
-        """Whether the scene has contact at all."""
-        return self._contact.present
-
-    @property
-    def pressing(self) -> int:
-        """Pairs that press on each other, of the nodes that `push` was asked for last."""
-        return int(self._contact.pressing)
-
-    def prepare(self, bending: float, r: Array, moved: Array) -> None:
+    def look_ahead(self, bending: float, r: Array, moved: Array) -> None:
         """Before a step from nodes r, which may move by about `moved` (N + 1, 3): list who may touch."""
-        self._contact.prepare(bending, r, moved, 1.0, anew=True)
-
-    def refusal(self, bending: float, r: Array) -> str:
-        """After a step to nodes r: why it cannot be trusted, or nothing."""
-        return self._contact.refusal(bending, lambda: (r, self._still[0]))
-
-    def smallest_gap(self, bending: float, r: Array) -> float:
-        """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
-        return float(self._contact.smallest_gap(bending, r, self._still[0]))
+        self.prepare(bending, r, moved, 1.0, anew=True)
 
     def push(self, r: Array) -> Array:
         """The forces on the nodes (N + 1, 3), lab, N."""
-        if not self._contact.touching:
-            return np.asarray(self._still[0])
-        touch = self._contact.touch
-        press(touch, touch.pressing, r[None], self._still)
+        if not self.touching:
+            return self.rest
+        touch = self.touch
+        press(touch, touch.pressing, r[None], self.rest[None])
         return np.asarray(touch.push[0])
 
     def allowed(self, moved: Array) -> float:
         """The part of a change of the nodes (N + 1, 3) that may be taken without using up a pair's distance."""
-        if not self._contact.touching:
+        if not self.touching:
             return 1.0
-        touch = self._contact.touch
-        move_points(touch, touch.pairs.members, moved, self._still[0])
+        touch = self.touch
+        move_points(touch, touch.pairs.members, moved, self.rest)
         return float(allowed_fraction(touch, touch.pressing, 0))
 
     def stiffness(self) -> tuple[Array, NDArray[np.bool_]]:
         """How the forces on the nodes change with their places (n, 3, n, 3), with the sign of a stiffness, N/m; and
         which pairs of nodes it couples (n, n)."""
-        n = len(self._still[0])
+        n = len(self.rest)
         S, coupled = np.zeros((n, 3, n, 3)), np.zeros((n, n), np.bool_)
-        _stiffen(self._contact.touch, S, coupled)
+        _stiffen(self.touch, S, coupled)
         return S, coupled
 
     def compile(self) -> None:
         """Have every kernel compiled that contact needs."""
-        touch, r = self._contact.touch, self._still[0]
-        self._contact.compile()
-        press(touch, touch.pressing, self._still, self._still)
+        super().compile()
+        touch, r = self.touch, self.rest
+        press(touch, touch.pressing, r[None], r[None])
         move_points(touch, touch.pairs.members, r, r)
         allowed_fraction(touch, touch.pressing, 0)
         self.stiffness()
-        self._contact.prepare(inf, r, r, 1.0, anew=True)
-        self._contact.refusal(inf, lambda: (r, r))
+        self.look_ahead(inf, r, r)
+        self.refusal(inf, lambda: (r, r))
 
     def keep(self, r: Array) -> None:
         """Enter that a step has brought the nodes to r, with the forces that `push` was asked for last: the energy that
         contact stores is the work done against it, by the mean of the forces before and after."""
-        push = self._contact.touch.push[0] if self._contact.touching else self._still[0]
+        push = self.touch.push[0] if self.touching else self.rest
         before, pushed = self._kept
         self.energy -= 0.5 * float(np.sum((push + pushed) * (r - before)))
         self._kept = r.copy(), push.copy()

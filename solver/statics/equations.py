@@ -61,7 +61,7 @@ class Equations:
                                 self.compliance)
                      for side, end in enumerate((scene.start, scene.end))]  # fmt: skip
         self.contact = StaticContact(scene, self.s, self.nodes())
-        self.contact.prepare(self.bending(), self.nodes(), np.zeros((N + 1, 3)))
+        self.contact.look_ahead(self.bending(), self.nodes(), self.contact.rest)
         self.hold()
 
     def hold(self, F: Array | None = None, turning: bool = False) -> None:
@@ -113,7 +113,7 @@ class Equations:
             lay_down(self.chain, guess.quaternion, guess.base, guess.F, self.stages)
             there = self.nodes()
             lay_down(self.chain, point.quaternion, point.base, point.F, self.stages)
-            self.contact.prepare(self.bending(), self.nodes(), there - self.nodes())
+            self.contact.look_ahead(self.bending(), self.nodes(), there - self.nodes())
 
     def keeps_apart(self, z: Array) -> bool:
         """Whether a displacement of the point evaluated last leaves strands that press on each other apart."""
@@ -131,7 +131,8 @@ class Equations:
 
     def refusal(self) -> str:
         """Why contact does not let the point evaluated last be trusted, after a step, or nothing."""
-        return self.contact.refusal(self.bending(), self.nodes()) if self.contact.present else ""
+        contact = self.contact
+        return contact.refusal(self.bending(), lambda: (self.nodes(), contact.rest)) if contact.present else ""
 
     def residual(self, point: Point) -> Array:
         """What is left of the equations at a point (N + 2, 9), dimensionless."""

@@ -74,7 +74,8 @@ class SelfContact:
         """How far (m) all points may go since the last search where nobody is near, else 0; and where the nodes were
         then. A point goes `_share` times as far as they do, at the most."""
         self._share = float(np.abs(points.weights).sum(axis=1).max())
-        self._no_nodes_move, self._no_points_move = np.zeros((len(s), 3)), np.zeros_like(points.p)
+        self.rest, self._points_at_rest = np.zeros((len(s), 3)), np.zeros_like(points.p)
+        """Velocities of nodes that do not move."""
         self._skip, self._straight = self._law.skip, 0
         """The arc (m) up to which the last search has left out pairs; and the intervals in succession whose bending has
         to stay harmless for that, none where it is the law's own."""
@@ -119,7 +120,7 @@ class SelfContact:
         if self._is_bent(r, 1.0):
             return "the rod bent more than the contact search foresaw"
         if self._share * largest_displacement(r, self._checked) < self._slack:
-            speed = self._share * largest_displacement(velocity, self._no_nodes_move)
+            speed = self._share * largest_displacement(velocity, self.rest)
             self.step_limit = LARGEST_SHIFT * self._slack / speed if speed > 0.0 else inf
             return ""
         points, pairs = self.touch.points, self.touch.pairs
@@ -130,7 +131,7 @@ class SelfContact:
         if used(points.p, points.checked, points.slack) > 1.0:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
-        part = used(points.w, self._no_points_move, points.slack)  # in a second
+        part = used(points.w, self._points_at_rest, points.slack)  # in a second
         self.step_limit = min(TIME_TO_TOUCH * time_to_touch, LARGEST_SHIFT / part if part > 0.0 else inf)
         if approach > LARGEST_PASSAGE:
             return "two parts of the rod could have passed through each other"
@@ -142,12 +143,12 @@ class SelfContact:
         """Whether an arc that the last search has left out bends by more than a part of what is harmless."""
         return self._straight > 0 and most_bent(r, self._straight) > part * self._not_to_be_checked
 
-    def smallest_gap(self, bending: float, r: Array, velocity: Array) -> float:
+    def smallest_gap(self, bending: float, r: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
         if bending < self._without_a_gap:
             return nan
         points = self.touch.points
-        place_points(points, r, velocity)
+        place_points(points, r, self.rest)
         gap = smallest_distance(points, self._law.skip, inf, 0.5)
         return gap if gap < inf else nan
 
@@ -158,7 +159,7 @@ class SelfContact:
     def compile(self) -> None:
         """Have every kernel compiled that a run in contact needs."""
         points = self.touch.points
-        place_points(points, np.zeros((self._nodes, 3)), np.zeros((self._nodes, 3)))
+        place_points(points, self.rest, self.rest)
         self._search(0.0)
         points, pairs = self.touch.points, self.touch.pairs
         smallest_distance(points, self._law.skip, inf, 0.5)
@@ -173,7 +174,7 @@ class SelfContact:
         self._leave_out()
         skip = self._skip
         self._slack = 0.0
-        fastest = largest_displacement(points.w, self._no_points_move)
+        fastest = largest_displacement(points.w, self._points_at_rest)
         least = min(max(FORESEEN * fastest * dt, SKIN[0] * reach), SKIN[1] * reach)
         foresee(points.w, points.slack, FORESEEN * dt, least, SKIN[2] * reach)
         find_pairs(points, skip, reach, self.touch.pairs)

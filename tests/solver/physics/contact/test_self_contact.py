@@ -248,7 +248,7 @@ def test_strands_that_approach_limit_the_next_step_to_part_of_the_time_to_touch(
     velocity[: INTERVALS // 2, 2], velocity[INTERVALS // 2 :, 2] = 0.5 * speed, -0.5 * speed
     contact.prepare(bending, r, velocity, 0.01)
     assert refusal_of(contact, bending, r, velocity) == ""
-    gap = contact.smallest_gap(bending, r, velocity) + DIAMETER
+    gap = contact.smallest_gap(bending, r) + DIAMETER
     assert 0.0 < contact.step_limit < gap / speed
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
-
 import numpy as np
 
 from solver.arrays import Array
@@ -14,7 +12,7 @@ from solver.measures.frame import Fields
 from solver.measures.passages import Shape
 from solver.measures.topology import tangents_of_ends
 from solver.methods.linear.registry import linear_solver_of
-from solver.methods.method import NOTHING_AHEAD, Ahead
+from solver.methods.method import Method
 from solver.methods.schemes import BACKWARD_EULER, Scheme, c0_of
 from solver.methods.space.box.energies import energies
 from solver.methods.space.box.fields import KAPPA, OMEGA, F, State, V
@@ -54,14 +52,13 @@ SMALL_MOTION = 1e-6
 """In rod lengths a step: motion below it does not shorten the step."""
 
 
-class BoxMethod:
+class BoxMethod(Method):
     """Generalized-alpha in time and in space on the unknowns V, omega, kappa, F at the nodes."""
 
     increment_order = 2.0
     increment_tolerance = 0.1
     easy_iterations = 4
     touches = True
-    unresolved_bending = 0.0
 
     def __init__(self, scene: Scene) -> None:
         numerics = scene.numerics
@@ -85,9 +82,7 @@ class BoxMethod:
         self._stretch, self._stretch_before, self._trial_stretch = np.zeros((3, numerics.intervals, 3))
         self.work = Work.empty(numerics.intervals, SpaceScheme.of(numerics.rho_inf_space), linear_solver_of(numerics),
                                scene.contact is not None)  # fmt: skip
-        self.shortest_step = 0.0
-        """Step (s) below which the scheme along s does not resolve the equations; 0 for the box scheme."""
-        if numerics.rho_inf_space < 1.0:
+        if numerics.rho_inf_space < 1.0:  # in shorter steps the scheme along s does not resolve the equations
             softest = principal(self.section.elastic)[:, 0]
             self.shortest_step = float(np.max(self.h**2 * np.sqrt(self.section.mass / softest)))
         self._last_dt, self._taken_dt, self._consistent, self._left_behind = 0.0, 0.0, False, 0.0
@@ -175,14 +170,6 @@ class BoxMethod:
     def step_limit(self) -> float:
         """The longest next step (s) that contact and loads allow."""
         return min(self.contact.step_limit, self.applied.longest_step(self.state.r, self.state.Y[:, V : V + 3]))
-
-    def next_blow(self) -> float:
-        """Not looked for: its steps are shortened as the motion changes."""
-        return inf
-
-    def look_back(self, ago: float) -> Ahead:
-        """Its steps end at every frame: `Numerics` sees to that."""
-        return NOTHING_AHEAD
 
     @property
     def orientations(self) -> Array | None:

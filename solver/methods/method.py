@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf, nan
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -28,13 +29,14 @@ NOTHING_AHEAD = Ahead(np.zeros(4), (0.0, 0.0))
 
 
 class Method(Protocol):
-    """A discretization in space and time of one scene.
+    """A discretization in space and time of one scene. Where an answer stands here, it is that of most.
 
     `s` (n,): arclengths of the nodes (m); `beside`: the nodes whose curvature is not that of `fields`; `start`, `end`:
     the driven ends; `applied`: the given loads; `shortest_step` (s): no shorter step is possible; `increment_order`:
     power of dt with which `relative_increment` falls, and `increment_tolerance` how large it may be unless told;
     `easy_iterations`: Newton iterations up to which a step may be followed by a longer one; `touches`: whether it takes
-    scenes that can touch themselves.
+    scenes that can touch themselves; `unresolved_bending`: by how much (J) the bending energy of what `fields` showed
+    last is more than that of the mesh: in layers.
     """
 
     s: Array
@@ -42,11 +44,12 @@ class Method(Protocol):
     start: DrivenEnd
     end: DrivenEnd
     applied: AppliedLoads
-    shortest_step: float
+    shortest_step: float = 0.0
     increment_order: float
     increment_tolerance: float
     easy_iterations: int
     touches: bool
+    unresolved_bending: float = 0.0
 
     @classmethod
     def of(cls, scene: Scene) -> Method | None:
@@ -63,12 +66,14 @@ class Method(Protocol):
 
     def strain(self) -> float:
         """By what part of its length an interval of the trial has stretched at the most: the exact rod cannot."""
+        return 0.0
 
     def turn(self) -> float:
         """The largest rotation (rad) of the trial within an interval: from pi on it does not say how the rod lies."""
 
     def refusal(self) -> str:
         """Why contact does not let the trial be trusted, or nothing."""
+        return ""
 
     def take_step(self, t: float, dt: float) -> Array:
         """Make the trial the state; return the energy (4,) in J that flowed in the step.
@@ -80,26 +85,27 @@ class Method(Protocol):
         """Put in force the end conditions that hold from t on."""
 
     def step_limit(self) -> float:
-        """The longest next step (s) that contact allows."""
+        """The longest next step (s) that contact and loads allow."""
+        return inf
 
     def next_blow(self) -> float:
         """In what time (s) the next step is to end, so that a part of the rod meets or leaves a solid between two."""
+        return inf
 
     def look_back(self, ago: float) -> Ahead:
         """Show the rod as it was `ago` (s) before the end of the last step, until the next one is tried: as `fields`,
-        `energies`, `twist`, `centreline` and `smallest_gap` see it. Say what came afterwards."""
+        `energies`, `twist`, `centreline` and `smallest_gap` see it. Say what came afterwards: nothing, where steps end
+        at every frame."""
+        return NOTHING_AHEAD
 
     @property
     def orientations(self) -> Array | None:
         """At the end of the last step, quaternions (., 4) of which the first and the last are the ends'; None where the
         rod stays in a plane or straight."""
+        return None
 
     def fields(self) -> Fields:
         """The state along the rod."""
-
-    @property
-    def unresolved_bending(self) -> float:
-        """By how much (J) the bending energy of what `fields` showed last is more than that of the mesh: in layers."""
 
     def centreline(self) -> Shape:
         """The state's centreline, as it is until the next step."""
@@ -112,9 +118,11 @@ class Method(Protocol):
 
     def smallest_gap(self) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
+        return nan
 
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""
+        return 0
 
     def compile(self) -> None:
         """Have every kernel compiled that a run may need."""

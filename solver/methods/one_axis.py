@@ -73,11 +73,6 @@ class OneAxisMethod(RadauMethod):
         """The largest rotation (rad) of the trial within a joint."""
         return float(largest_turn(self.stages.phi[-1]))
 
-    @property
-    def orientations(self) -> Array | None:
-        """None: see `Method`."""
-        return None
-
     def fields(self) -> Fields:
         """The state along the rod, at the nodes."""
         shown, nodes = Shown.empty(len(self.s)), self._nodes()

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from math import inf, nan
+from abc import abstractmethod
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from solver.arrays import Array
 from solver.kernels.handed import Handed, Reference
 from solver.methods.linear.stages import Scheme
-from solver.methods.method import NOTHING_AHEAD, Ahead
+from solver.methods.method import NOTHING_AHEAD, Ahead, Method
 from solver.methods.space.segments.chain import STAGES, Chain, State
 from solver.methods.space.segments.initial import chain_of, lay_out, loads_on_segments, segments_of
 from solver.methods.space.segments.layers import Layers
@@ -36,13 +36,12 @@ FEEDBACK = 0.5
 """Part of an end's lag behind its prescribed place that a step takes back."""
 
 
-class RadauMethod(ABC):
+class RadauMethod(Method):
     """Steps of Radau IIA of order 5 in time, for a chain that a subclass describes; there is no contact."""
 
     increment_order = 4.0
     increment_tolerance = 0.01
     easy_iterations = 7
-    shortest_step = 0.0
     chain: Record
     state: Record
     trial: Record
@@ -57,7 +56,6 @@ class RadauMethod(ABC):
         self.chain = chain_of(scene.rod, section, self.applied.entrained, self.s)
         self.start, self.end = DrivenEnd(scene.start), DrivenEnd(scene.end)
         self._layers = Layers.of(scene, self.s)
-        self.unresolved_bending = 0.0
         tolerance = scene.numerics.increment_tolerance or self.increment_tolerance
         self._tolerance = min(tolerance, 1.0)
         self._newton_part = NEWTON_PART * min(tolerance, 1.0) if tolerance < inf else 0.0
@@ -118,29 +116,9 @@ class RadauMethod(ABC):
         weights = self._step * gained
         return Ahead(self._flowed(weights), self._twisted(weights))
 
-    def strain(self) -> float:
-        """None: segments are rigid."""
-        return 0.0
-
-    def refusal(self) -> str:
-        """Nothing."""
-        return ""
-
-    def step_limit(self) -> float:
-        """None."""
-        return inf
-
     def next_blow(self) -> float:
         """As the loads have it."""
         return self.applied.next_blow(self._centres, self._borne, self._tolerance) if self.applied.strikes else inf
-
-    def smallest_gap(self) -> float:
-        """NaN."""
-        return nan
-
-    def pressing(self) -> int:
-        """None."""
-        return 0
 
     def compile(self) -> None:
         """Have every kernel compiled that a run may need, after its first step."""

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.scene.ends import Condition, End
+from solver.scene.ends import Component, Condition, End
 
 RATE, LOAD, RATE_LAB, LOAD_LAB = 0, 1, 2, 3
 """Kinds of a condition on a translation component; a rotation component is RATE or LOAD."""
@@ -111,15 +112,10 @@ class DrivenEnd:
     def prescribed(self, component: int, t: float) -> float | None:
         """The exact displacement (m) along, or rotation (rad) about, an axis since t = 0, if it has been prescribed all
         along; `component`: 0 to 2 of the translation, 3 to 5 of the rotation."""
-        total, conditions = 0.0, self._components[component]
-        for i, condition in enumerate(conditions):
-            until = conditions[i + 1].since if i + 1 < len(conditions) else t
-            if condition.kind not in ("rate", "position"):
-                return None
-            total += travel(condition, min(until, t))
-            if until >= t:
-                break
-        return total
+        conditions = self._components[component]
+        so_far = [conditions[0], *(condition for condition in conditions[1:] if condition.since < t)]
+        known = all(condition.kind in ("rate", "position") for condition in so_far)
+        return travelled(conditions, t) if known else None
 
     def _set_kinds(self) -> None:
         self._held = np.zeros(6)
@@ -172,3 +168,12 @@ def travel(condition: Condition, t: float) -> float:
     if condition.kind == "rate":
         return condition.curve.integral(t) - condition.curve.integral(condition.since)
     return condition.curve.value(t) - condition.curve.value(condition.since)
+
+
+def travelled(component: Component, t: float) -> float:
+    """The exact displacement or rotation from t = 0 to t, as far as the component's conditions prescribe it."""
+    total, ends = 0.0, [*(condition.since for condition in component[1:]), inf]
+    for condition, until in zip(component, ends, strict=True):
+        if condition.kind in ("rate", "position"):
+            total += travel(condition, min(max(t, condition.since), until))
+    return total

@@ -24,9 +24,9 @@ from solver.arrays import Array
 from solver.kernels.rotation import rotate
 from solver.physics.contact.automatic import POWER
 from solver.physics.elasticity import elasticity_of, principal
-from solver.physics.ends import travel
+from solver.physics.ends import travelled
 from solver.scene.contact import Contact
-from solver.scene.ends import Component, Condition
+from solver.scene.ends import Component
 from solver.scene.layout import nodes_at_rest
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
@@ -167,25 +167,17 @@ def _slack(scene: Scene, t: Array) -> Array:
 
 def _travel(component: Component, t: Array) -> Array:
     """How far an end has gone, or turned, until each time, as far as it is prescribed."""
-    travelled = np.zeros_like(t)
-    for condition, until in _in_turn(component, t[-1]):
-        if condition.kind in ("rate", "position"):
-            travelled += [travel(condition, min(max(x, condition.since), until)) for x in t]
-    return travelled
-
-
-def _in_turn(component: Component, last: float) -> list[tuple[Condition, float]]:
-    """The conditions of a component, with the times (s) until which each holds."""
-    ends = [*(condition.since for condition in component[1:]), max(last, component[-1].since)]
-    return list(zip(component, ends, strict=True))
+    return np.array([travelled(component, x) for x in t])
 
 
 def _loads(component: Component, t: Array) -> Array:
     """The force or moment that is given for a component at each time; 0 where its motion is."""
     load = np.zeros_like(t)
-    for condition, until in _in_turn(component, t[-1]):
+    for condition in component:
         if condition.kind == "load":
-            load = np.where((t >= condition.since) & (t <= until), condition.curve(t), load)
+            load = np.where(t >= condition.since, condition.curve(t), load)
+        else:
+            load = np.where(t > condition.since, 0.0, load)
     return load
 
 

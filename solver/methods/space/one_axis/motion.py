@@ -14,7 +14,7 @@ from solver.kernels.copying import copy
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.methods.space.one_axis.axis import Plane
 from solver.methods.space.one_axis.chain import Chain, Stages, State
-from solver.methods.space.segments.chain import STAGES
+from solver.methods.space.segments.chain import STAGES, rate_at
 from solver.methods.space.segments.motion import differentiate
 from solver.physics.elasticity import is_viscous, moment
 
@@ -39,11 +39,9 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
     largest, base, shift = 0.0, stages.base, stages.shift
     for i in range(STAGES):
         base[i, 0] = state.base[0] + shift[i]
-        base[i, 1] = (inverse[i, 0] * shift[0] + inverse[i, 1] * shift[1] + inverse[i, 2] * shift[2]) / dt
+        base[i, 1] = rate_at(i, shift, 0.0, inverse, dt)
     for i in range(STAGES):
-        base[i, 2] = 0.0
-        for k in range(STAGES):
-            base[i, 2] += inverse[i, k] * (base[k, 1] - state.base[1]) / dt
+        base[i, 2] = rate_at(i, base[:, 1], state.base[1], inverse, dt)
         for a in range(len(state.phi)):
             theta = stages.theta[i, a]
             largest = max(largest, abs(theta))

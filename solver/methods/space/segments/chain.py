@@ -8,14 +8,22 @@ nodes, omega and the tangent between them.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.kernel import inlined
 from solver.physics.elasticity import Elasticity
 
 STAGES = 3
+
+
+@inlined
+def rate_at(i: int, values: Any, before: Any, inverse: Array, dt: float) -> Any:
+    """The rate at stage i of what was `before` when the step of dt began, and is `values` (3,) at its stages."""
+    change = inverse[i, 0] * (values[0] - before) + inverse[i, 1] * (values[1] - before)
+    return (change + inverse[i, 2] * (values[2] - before)) / dt
 
 
 class Chain(NamedTuple):

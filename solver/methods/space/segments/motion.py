@@ -36,7 +36,7 @@ from solver.kernels.rotation import (
     unit,
 )
 from solver.kernels.vectors import matrix, plus, tangent_acceleration, tangent_rate, times, vector
-from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
+from solver.methods.space.segments.chain import STAGES, Chain, Stages, State, rate_at
 from solver.methods.space.segments.opening import open_joints
 from solver.physics.elasticity import stretches
 
@@ -124,26 +124,22 @@ def move(chain: Chain, state: State, stages: Stages, nodes: Array, inverse: Arra
     """
     differentiate(inverse, dt, stages.theta, stages.theta_t)
     differentiate(inverse, dt, stages.theta_t, stages.theta_tt)
+    base, F, largest, last = stages.base, stages.F, 0.0, len(chain.mass)
     for i in range(STAGES):
         for k in range(3):
-            stages.base[i, 0, k] = state.base[0, k] + stages.shift[i, k]
-            stages.base[i, 1, k] = (inverse[i, 0] * stages.shift[0, k] + inverse[i, 1] * stages.shift[1, k]
-                                    + inverse[i, 2] * stages.shift[2, k]) / dt  # fmt: skip
-    largest, last = 0.0, len(chain.mass)
+            base[i, 0, k] = state.base[0, k] + stages.shift[i, k]
+            base[i, 1, k] = rate_at(i, stages.shift[:, k], 0.0, inverse, dt)
     for i in range(STAGES):
         for k in range(3):
-            stages.F_t[i, 0, k] = _rate(inverse, dt, stages.F, state.F, i, 0, k)
-            stages.F_t[i, 1, k] = _rate(inverse, dt, stages.F, state.F, i, last, k)
-        total = inverse[i, 0] + inverse[i, 1] + inverse[i, 2]
-        for k in range(3):
-            stages.base[i, 2, k] = (inverse[i, 0] * stages.base[0, 1, k] + inverse[i, 1] * stages.base[1, 1, k]
-                                    + inverse[i, 2] * stages.base[2, 1, k] - total * state.base[1, k]) / dt  # fmt: skip
+            base[i, 2, k] = rate_at(i, base[:, 1, k], state.base[1, k], inverse, dt)
+            stages.F_t[i, 0, k] = rate_at(i, F[:, 0, k], state.F[0, k], inverse, dt)
+            stages.F_t[i, 1, k] = rate_at(i, F[:, last, k], state.F[last, k], inverse, dt)
         _turn(stages.theta[i], stages.theta_t[i], stages.theta_tt[i], state.omega, state.quaternion, stages.steady[i],
               stages.S[i], stages.quaternion[i], stages.R[i], stages.omega[i], stages.alpha[i])  # fmt: skip
         for j in range(last + 2):
             x, y, z = vector(stages.theta[i], j)
             largest = max(largest, dot(x, y, z, x, y, z))
-        follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], stages.base[i], chain.h,
+        follow_segments(stages.R[i], stages.omega[i], stages.alpha[i], base[i], chain.h,
                         stages.r[i], stages.V[i], stages.A[i])  # fmt: skip
     if stretches(chain.elastic):
         open_joints(chain, state, stages, inverse, dt)
@@ -206,15 +202,6 @@ def look_back(reference: Reference, before: State, part: float, dt: float, cubic
             then.F[i, k] = (parabola[0] * stages.F[0, i, k] + parabola[1] * stages.F[1, i, k]
                             + parabola[2] * stages.F[2, i, k])  # fmt: skip
     follow_segments(R, then.omega, then.alpha, then.base, chain.h, centres[0], centres[1], centres[2])
-
-
-@inlined
-def _rate(inverse: Array, dt: float, F: Array, before: Array, i: int, node: int, k: int) -> float:
-    """The rate of a component of F at a node at stage i."""
-    rate = 0.0
-    for j in range(STAGES):
-        rate += inverse[i, j] * (F[j, node, k] - before[node, k])
-    return rate / dt
 
 
 @inner

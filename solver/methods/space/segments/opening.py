@@ -31,7 +31,7 @@ from solver.kernels.vectors import (
     times,
     vector,
 )
-from solver.methods.space.segments.chain import STAGES, Chain, Stages, State
+from solver.methods.space.segments.chain import STAGES, Chain, Stages, State, rate_at
 from solver.methods.space.segments.joints import add_moment, bend_joints, on_neighbours, share
 from solver.physics.elasticity import axial_strain, axial_tangent, moment_of_tension, stretches
 
@@ -82,10 +82,7 @@ def open_joints(chain: Chain, state: State, stages: Stages, inverse: Array, dt: 
     for rate in range(2):
         for i in range(STAGES):
             for a in range(opening.shape[2]):
-                change = 0.0
-                for j in range(STAGES):
-                    change += inverse[i, j] * (opening[j, rate, a] - state.opening[rate, a])
-                opening[i, rate + 1, a] = change / dt
+                opening[i, rate + 1, a] = rate_at(i, opening[:, rate, a], state.opening[rate, a], inverse, dt)
     for i in range(STAGES):
         shift_segments(stages.R[i], stages.omega[i], stages.alpha[i], opening[i], stages.r[i], stages.V[i], stages.A[i])
 

@@ -9,18 +9,8 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.physics.elasticity import elasticity_of, principal
-from solver.run.recording import (
-    ADDED_MASS,
-    BENDING,
-    JUDGED_KAPPA,
-    JUDGED_R,
-    KINETIC,
-    STRETCHING,
-    TORSION,
-    TWIST,
-    WRITHE,
-    Columns,
-)
+from solver.run import recording
+from solver.run.recording import Columns
 from solver.scene.scene import Scene
 
 QUANTITIES = ("r", "kappa", "energies", "Tw_Wr")
@@ -92,7 +82,7 @@ def sizes(scene: Scene, pieces: Iterable[Columns]) -> Array:
     stiffness = float(principal(elasticity_of(scene.rod, np.array([0.5 * length])))[0, 0])
     kappa, energy = bend, 0.0
     for columns in pieces:
-        kappa = max(kappa, float(_rms(columns.along[..., JUDGED_KAPPA]).max()))
+        kappa = max(kappa, float(_rms(columns.along[..., recording.JUDGED_KAPPA]).max()))
         energy = max(energy, float(np.sum(_energies(columns), axis=-1).max()))
     # an error of kappa by the tolerance is worth this times the tolerance, where the rod has no stress
     worth = 0.5 * stiffness * length * max(bend**2, (scene.numerics.tolerance or 0.0) * kappa**2)
@@ -101,10 +91,10 @@ def sizes(scene: Scene, pieces: Iterable[Columns]) -> Array:
 
 def errors_of(error: Columns, size: Array) -> Array:
     """The errors of `QUANTITIES` (frames, 4), from those of the `JUDGED` columns, relative to `sizes`."""
-    place = np.linalg.norm(error.along[..., JUDGED_R], axis=-1).max(axis=-1)
-    topology = np.nan_to_num(error.numbers[:, 0, [TWIST, WRITHE]])  # NaN where the output has none
+    place = np.linalg.norm(error.along[..., recording.JUDGED_R], axis=-1).max(axis=-1)
+    topology = np.nan_to_num(error.numbers[:, 0, [recording.TWIST, recording.WRITHE]])  # NaN where the output has none
     topology[np.isnan(place)] = np.nan  # or where nothing tells the errors
-    kappa, energies = _rms(error.along[..., JUDGED_KAPPA]), _energies(error).max(axis=-1)
+    kappa, energies = _rms(error.along[..., recording.JUDGED_KAPPA]), _energies(error).max(axis=-1)
     return np.asarray(np.column_stack([place, kappa, energies, topology.max(axis=-1)]) / size)
 
 
@@ -132,5 +122,6 @@ def _rms(field: Array) -> Array:
 def _energies(columns: Columns) -> Array:
     """Of bending, torsion, stretching and motion, (frames, 4)."""
     numbers = columns.numbers[:, 0]
-    motion = numbers[:, KINETIC] + numbers[:, ADDED_MASS]
-    return np.stack([*(numbers[:, strain] for strain in (BENDING, TORSION, STRETCHING)), motion], axis=-1)
+    motion = numbers[:, recording.KINETIC] + numbers[:, recording.ADDED_MASS]
+    strains = recording.BENDING, recording.TORSION, recording.STRETCHING
+    return np.stack([*(numbers[:, strain] for strain in strains), motion], axis=-1)

@@ -9,22 +9,13 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
+from solver.physics.contact import search
 from solver.physics.contact.forces import Pressing, Touch
 from solver.physics.contact.law import Law
 from solver.physics.contact.links import links_meet, links_reach
 from solver.physics.contact.points import Points, contact_points, place_points
 from solver.physics.contact.recipe import IN_MOTION, NOTHING, Foreseen, Hardness, held, spaced
-from solver.physics.contact.search import (
-    Pairs,
-    find_pairs,
-    foresee,
-    harmless_bending,
-    largest_displacement,
-    most_bent,
-    smallest_distance,
-    straight_intervals,
-    used,
-)
+from solver.physics.contact.search import Pairs
 from solver.scene.contact import Contact
 from solver.scene.rod import Rod
 
@@ -68,7 +59,7 @@ class SelfContact:
         self._farthest = FARTHEST * self._reach
         distances = (self._farthest, self._reach, self._law.cutoff)
         self._not_to_be_searched, self._not_to_be_checked, self._without_a_gap = (
-            harmless_bending(distance, self._law) if contact else inf for distance in distances
+            search.harmless_bending(distance, self._law) if contact else inf for distance in distances
         )
         self._slack, self._checked = 0.0, np.zeros((len(s), 3))
         """How far (m) all points may go since the last search where nobody is near, else 0; and where the nodes were
@@ -102,11 +93,11 @@ class SelfContact:
                 self._looked, self._slack, self._straight = False, 0.0, 0
             return
         bent = anew or self._is_bent(r, 0.5 * (1.0 + BENT))
-        if not bent and self._share * largest_displacement(r, self._checked) < 0.5 * self._slack:
+        if not bent and self._share * search.largest_displacement(r, self._checked) < 0.5 * self._slack:
             return
         points = self.touch.points
         place_points(points, r, velocity)
-        if bent or not self._looked or used(points.p, points.checked, points.slack) > 0.5:
+        if bent or not self._looked or search.used(points.p, points.checked, points.slack) > 0.5:
             self._checked[:] = r
             self._search(dt)
         points.start[:] = points.p
@@ -119,19 +110,19 @@ class SelfContact:
         r, velocity = nodes()
         if self._is_bent(r, 1.0):
             return "the rod bent more than the contact search foresaw"
-        if self._share * largest_displacement(r, self._checked) < self._slack:
-            speed = self._share * largest_displacement(velocity, self.rest)
+        if self._share * search.largest_displacement(r, self._checked) < self._slack:
+            speed = self._share * search.largest_displacement(velocity, self.rest)
             self.step_limit = LARGEST_SHIFT * self._slack / speed if speed > 0.0 else inf
             return ""
         points, pairs = self.touch.points, self.touch.pairs
         place_points(points, r, velocity)
         if not self._looked:
-            near = smallest_distance(points, self._law.skip, self._farthest, 0.0) <= self._reach
+            near = search.smallest_distance(points, self._law.skip, self._farthest, 0.0) <= self._reach
             return "the rod came near itself within one step" if near else ""
-        if used(points.p, points.checked, points.slack) > 1.0:
+        if search.used(points.p, points.checked, points.slack) > 1.0:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
-        part = used(points.w, self._points_at_rest, points.slack)  # in a second
+        part = search.used(points.w, self._points_at_rest, points.slack)  # in a second
         self.step_limit = min(TIME_TO_TOUCH * time_to_touch, LARGEST_SHIFT / part if part > 0.0 else inf)
         if approach > LARGEST_PASSAGE:
             return "two parts of the rod could have passed through each other"
@@ -141,7 +132,7 @@ class SelfContact:
 
     def _is_bent(self, r: Array, part: float) -> bool:
         """Whether an arc that the last search has left out bends by more than a part of what is harmless."""
-        return self._straight > 0 and most_bent(r, self._straight) > part * self._not_to_be_checked
+        return self._straight > 0 and search.most_bent(r, self._straight) > part * self._not_to_be_checked
 
     def smallest_gap(self, bending: float, r: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
@@ -149,7 +140,7 @@ class SelfContact:
             return nan
         points = self.touch.points
         place_points(points, r, self.rest)
-        gap = smallest_distance(points, self._law.skip, inf, 0.5)
+        gap = search.smallest_distance(points, self._law.skip, inf, 0.5)
         return gap if gap < inf else nan
 
     def power(self) -> Array:
@@ -162,9 +153,9 @@ class SelfContact:
         place_points(points, self.rest, self.rest)
         self._search(0.0)
         points, pairs = self.touch.points, self.touch.pairs
-        smallest_distance(points, self._law.skip, inf, 0.5)
+        search.smallest_distance(points, self._law.skip, inf, 0.5)
         approaches(points, pairs), links_meet(points, pairs)
-        used(points.p, points.checked, points.slack), most_bent(self._checked, 1)
+        search.used(points.p, points.checked, points.slack), search.most_bent(self._checked, 1)
 
     def _search(self, dt: float) -> None:
         """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
@@ -174,21 +165,21 @@ class SelfContact:
         self._leave_out()
         skip = self._skip
         self._slack = 0.0
-        fastest = largest_displacement(points.w, self._points_at_rest)
+        fastest = search.largest_displacement(points.w, self._points_at_rest)
         least = min(max(FORESEEN * fastest * dt, SKIN[0] * reach), SKIN[1] * reach)
-        foresee(points.w, points.slack, FORESEEN * dt, least, SKIN[2] * reach)
-        find_pairs(points, skip, reach, self.touch.pairs)
+        search.foresee(points.w, points.slack, FORESEEN * dt, least, SKIN[2] * reach)
+        search.find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[1] > 0:
             self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))
-            find_pairs(points, skip, reach, self.touch.pairs)
+            search.find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[0] == 0:
             enough = max(2.0 * self._farthest, reach + 2.0 * FORESEEN_ALONE * fastest * dt)
-            slack = 0.5 * (smallest_distance(points, skip, enough, 0.0) - reach)
+            slack = 0.5 * (search.smallest_distance(points, skip, enough, 0.0) - reach)
             self._slack = slack if slack >= points.slack.max() else 0.0
 
     def _leave_out(self) -> None:
         """See which arcs bend so little that their ends cannot be near. (Around a ring they are not looked at.)"""
-        straight = straight_intervals(self._checked, BENT * self._not_to_be_checked)
+        straight = search.straight_intervals(self._checked, BENT * self._not_to_be_checked)
         arc = (straight - 1) * self._interval  # one that lies between nodes is part of one interval more
         further = arc > self._law.skip and self.touch.points.closing == inf
         self._skip, self._straight = (arc, straight) if further else (self._law.skip, 0)

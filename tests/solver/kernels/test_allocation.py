@@ -17,6 +17,7 @@ import solver.methods.box as box
 import solver.methods.one_axis as one_axis
 import solver.methods.staggered as staggered
 import solver.methods.time.radau.method as radau
+import solver.physics.contact.search as search
 import solver.physics.contact.self_contact as self_contact
 from solver import Curve, DistributedLoad, End, Fluid, Numerics, PointLoad, Scene
 from solver.kernels.kernel import allocating, kernel
@@ -46,7 +47,7 @@ SCENES = {
 }
 STEPS = 40
 """In which the loop's strands come to press on each other."""
-MODULES = (box, staggered, one_axis, radau, self_contact)
+MODULES = (box, staggered, one_axis, radau, search, self_contact)
 
 
 def scene(name: str, **numerics: int) -> Scene:

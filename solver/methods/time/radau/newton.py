@@ -15,31 +15,12 @@ from typing import NamedTuple
 from solver.arrays import Array
 from solver.kernels.handed import Reference
 from solver.kernels.kernel import inlined, inner, kernel
-from solver.methods.linear.stages import (
-    Scheme,
-    complete,
-    factor,
-    solve,
-    solve_stages,
-    solve_with_contact,
-    update,
-    widths,
-)
+from solver.methods.linear import stages as linear
+from solver.methods.linear.stages import Scheme
+from solver.methods.space import stages as space
 from solver.methods.space.segments.chain import STAGES
 from solver.methods.space.segments.motion import LARGEST_TURN
-from solver.methods.space.stages import (
-    Record,
-    begin_step,
-    evaluate,
-    in_contact,
-    join_stages,
-    missed_by_bodies,
-    move,
-    press_stages,
-    resist,
-    tangents_at,
-    turn_residuals,
-)
+from solver.methods.space.stages import Record
 from solver.methods.status import CONVERGED, SINGULAR, STALLED
 
 LARGEST_ITERATIONS = 12
@@ -95,7 +76,7 @@ def mix(weights: Array, source: Array, target: Array) -> None:
 def transform_residuals(driven: Record, scheme: Scheme, stages: Record, tangents: Record, residuals: Record,
                         transformed: Record) -> None:  # fmt: skip
     """Write the residuals, in the tangents' frames, as the right-hand sides of the real and the complex system."""
-    turn_residuals(driven, stages, tangents, residuals)
+    space.turn_residuals(driven, stages, tangents, residuals)
     mix(scheme.back, residuals.rotation, transformed.rotation)
     mix(scheme.back, residuals.translation, transformed.translation)
     mix(scheme.back, residuals.ends, transformed.ends)
@@ -105,10 +86,10 @@ def transform_residuals(driven: Record, scheme: Scheme, stages: Record, tangents
 def factor_both(chain: Record, loads: Record, driven: Record, scheme: Scheme, dt: float, stages: Record,
                 tangents: Record, real: Record, pair: Record) -> bool:  # fmt: skip
     """Write the tangents at the middle stage, and factor the real and the complex system; False if one is singular."""
-    tangents_at(chain, loads, driven, stages, 1, tangents)
-    if not factor(chain, driven, tangents, scheme.gamma / dt, real):
+    space.tangents_at(chain, loads, driven, stages, 1, tangents)
+    if not linear.factor(chain, driven, tangents, scheme.gamma / dt, real):
         return False
-    return bool(factor(chain, driven, tangents, scheme.pair / dt, pair))
+    return bool(linear.factor(chain, driven, tangents, scheme.pair / dt, pair))
 
 
 @inlined
@@ -128,7 +109,7 @@ def diverges(iteration: int, size: float, before: float) -> bool:
 def relaxation(work: Record, part: float, first: bool) -> float:
     """The part of the increments that is taken after `part` of those before, unless they are the `first`: by what the
     forces' increments changed from the one to the other, Aitken's; and keep them."""
-    x, z, (width, _) = work.real.x, work.pair.x, widths(work.real)
+    x, z, (width, _) = work.real.x, work.pair.x, linear.widths(work.real)
     earlier, earlier_pair, along, square = work.earlier, work.earlier_pair, 0.0, 0.0
     for a in range(len(x)):
         for k in range(width, x.shape[1]):
@@ -153,32 +134,33 @@ def step(reference: Reference, dt: float, unit: float, part: float, rough: bool,
     """
     chain, loads, driven, scheme, stages, touch, work = reference.records
     stale, relaxed, part_taken = True, False, 1.0
-    before, contact, fresh, length = 0.0, in_contact(touch), True, chain.h * len(chain.mass)
+    before, contact, fresh, length = 0.0, space.in_contact(touch), True, chain.h * len(chain.mass)
     residuals, transformed, tangents, real, pair = work.residuals, work.transformed, work.tangents, work.real, work.pair
-    begin_step(state, scheme.nodes, dt, stages)
+    space.begin_step(state, scheme.nodes, dt, stages)
     for iteration in range(1, LARGEST_ITERATIONS + 1):
-        if not move(chain, state, stages, scheme.nodes, scheme.inverse, dt) < LARGEST_TURN:
+        if not space.move(chain, state, stages, scheme.nodes, scheme.inverse, dt) < LARGEST_TURN:
             return STALLED, iteration
         if contact:
-            press_stages(chain, stages, driven, touch, work.coupling, fresh)
-        evaluate(chain, loads, driven, stages, residuals)
-        missed = missed_by_bodies(driven, stages, residuals, ROUNDING * length / (dt * dt))
+            space.press_stages(chain, stages, driven, touch, work.coupling, fresh)
+        space.evaluate(chain, loads, driven, stages, residuals)
+        missed = space.missed_by_bodies(driven, stages, residuals, ROUNDING * length / (dt * dt))
         if stale:
             if not factor_both(chain, loads, driven, scheme, dt, stages, tangents, real, pair):
                 return SINGULAR, iteration
         transform_residuals(driven, scheme, stages, tangents, residuals, transformed)
         fraction, gamma, lam = 1.0, scheme.gamma / dt, scheme.pair / dt
         if contact:
-            fraction = solve_with_contact(chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma,
-                                          lam, dt, transformed, real, pair, touch, work.coupling,
-                                          stale, fresh)  # fmt: skip
+            fraction = linear.solve_with_contact(
+                chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma, lam, dt, transformed,
+                real, pair, touch, work.coupling, stale, fresh,
+            )  # fmt: skip
         else:
-            solve_stages(chain, driven, tangents, gamma, lam, transformed, real, pair)
+            linear.solve_stages(chain, driven, tangents, gamma, lam, transformed, real, pair)
             slow = stale and iteration > 1
             if slow:
                 fraction = part_taken = relaxation(work, part_taken, not relaxed)
             relaxed = slow
-        turned, forced, shifted = update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
+        turned, forced, shifted = linear.update(chain, scheme.transform, unit, fraction, stages, tangents, real, pair)
         if not max(turned, forced) < LARGEST_INCREMENT:
             return STALLED, iteration
         share = part * ROUGH if contact or rough else part
@@ -188,10 +170,10 @@ def step(reference: Reference, dt: float, unit: float, part: float, rough: bool,
         size = max(size, shifted / max(TOLERANCE * length, share * shift_departure(stages.shift, state.base, dt)))
         size = max(size, missed / OF_BODY)
         if is_enough(size, before):
-            move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
+            space.move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
             if contact:
-                press_stages(chain, stages, driven, touch, work.coupling, False)
-            join_stages(chain, stages)
+                space.press_stages(chain, stages, driven, touch, work.coupling, False)
+            space.join_stages(chain, stages)
             return CONVERGED, iteration
         if diverges(iteration, size, before) and not contact and (stale or not rough):
             return STALLED, iteration
@@ -235,10 +217,10 @@ def estimate_error(reference: Reference, dt: float, state: Record, centres: Arra
     factors, mu = work.real, scheme.gamma / dt
     turned = _load_rotation(chain, state, stages, scheme.error, mu, dt, factors)
     moved = _delay(centres, stages.r, stages.V, scheme.error, mu, work.velocities)
-    resist(chain, driven, work.tangents, mu, work.velocities, factors.load, factors.ends)
-    complete(chain, driven, work.tangents, mu, factors)
-    solve(factors)
-    turn_error, move_error, (turns, moves) = 0.0, 0.0, widths(factors)
+    space.resist(chain, driven, work.tangents, mu, work.velocities, factors.load, factors.ends)
+    linear.complete(chain, driven, work.tangents, mu, factors)
+    linear.solve(factors)
+    turn_error, move_error, (turns, moves) = 0.0, 0.0, linear.widths(factors)
     for a in range(1, len(factors.x) - 1):
         for k in range(turns):
             turn_error = max(turn_error, abs(factors.x[a, k]))
@@ -252,7 +234,7 @@ def estimate_error(reference: Reference, dt: float, state: Record, centres: Arra
 def _load_rotation(chain: Record, state: Record, stages: Record, weights: Array, mu: float, dt: float,
                    factors: Record) -> float:  # fmt: skip
     """Write the rotation's right-hand side into x; return the largest rotation (rad) of a segment in the step."""
-    x, count, (width, _), turned = factors.x, state.alpha.size, widths(factors), 0.0
+    x, count, (width, _), turned = factors.x, state.alpha.size, linear.widths(factors), 0.0
     theta, theta_t = stages.theta.reshape(STAGES, count), stages.theta_t.reshape(STAGES, count)
     omega, alpha = state.omega.reshape(count), state.alpha.reshape(count)
     inertia = chain.inertia.reshape(count - 2 * width)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-import solver.physics.contact.self_contact as self_contact
+import solver.physics.contact.search as search
 from solver import (
     Contact,
     Curve,
@@ -132,13 +132,13 @@ class Calls:
             self._count(monkeypatch, name)
 
     def _count(self, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
-        original = getattr(self_contact, name)
+        original = getattr(search, name)
 
         def counted(*args: object) -> object:
             self.number[name] += 1
             return original(*args)
 
-        monkeypatch.setattr(self_contact, name, counted)
+        monkeypatch.setattr(search, name, counted)
 
 
 def bent(contact: Contact | None) -> Scene:

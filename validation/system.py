@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from solver.arrays import Array
-from solver.kernels.handed import Handed, Reference
+from solver.kernels.handed import Reference
 from solver.kernels.kernel import kernel
 from solver.methods.box import BoxMethod
 from solver.methods.linear.segments_increments import update
@@ -46,12 +46,12 @@ class NewtonSystem:
         method.work.feedback[:] = 0.0
         set_scales(method._scales, self._c0, method.work.system)
         method.contact.prepare(method._bending, method.state.r, method.state.Y, dt)
-        self._handed = Handed.over(*method._records)
+        self._handed = Reference.to(method._records)
 
     def assemble(self) -> None:
         """Residuals, and what the tangents are made of."""
         method = self._method
-        _assemble(self._handed.reference, method.state, method.trial, self._c0, method.h, self._ends)
+        _assemble(self._handed, method.state, method.trial, self._c0, method.h, self._ends)
 
     def factor(self) -> bool:
         """Form the panels and factor them by the method's linear solver, block elimination by default."""
@@ -101,7 +101,7 @@ class NewtonSystem:
 
 @kernel
 def _assemble(reference: Reference, old: State, new: State, c0: float, h: float, ends: EndValues) -> None:
-    section, loads, _, _, work = reference.records
+    section, loads, work = reference.section, reference.loads, reference.work
     balance_nodes(old, new, work.past, c0, section, loads, work.nodes)
     form_residuals(new, work.past, c0, h, ends, work.nodes, work.feedback, work.system)
 
@@ -114,52 +114,53 @@ class StagesSystem:
         method._drive(0.0, dt)
         method._guess_rest()
         spin_steadily(method.state, SCHEME.nodes, dt, method.stages)
-        self._handed = Handed.over(*method._records)
+        self._handed = Reference.to(method._records)
         self.move()
         self.evaluate()
 
     def move(self) -> None:
         """All that follows from the unknown rotations."""
-        _move(self._handed.reference, self._method.state, self._dt)
+        _move(self._handed, self._method.state, self._dt)
 
     def evaluate(self) -> None:
         """Moments and residuals."""
-        _evaluate(self._handed.reference)
+        _evaluate(self._handed)
 
     def factor(self) -> bool:
         """Tangents, and the real and the complex system factored."""
-        return bool(_factor(self._handed.reference, self._dt))
+        return bool(_factor(self._handed, self._dt))
 
     def solve(self) -> None:
         """Both systems solved for the residuals."""
-        _solve(self._handed.reference, self._dt)
+        _solve(self._handed, self._dt)
 
     def update(self) -> None:
         """A vanishing part of the increments added to the stages, at the cost of all."""
-        _update(self._handed.reference)
+        _update(self._handed)
 
 
 @kernel
 def _move(reference: Reference, state: Record, dt: float) -> None:
-    chain, _, _, scheme, stages, _, _ = reference.records
+    chain, scheme, stages = reference.chain, reference.scheme, reference.stages
     move(chain, state, stages, scheme.nodes, scheme.inverse, dt)
 
 
 @kernel
 def _evaluate(reference: Reference) -> None:
-    chain, loads, driven, _, stages, _, work = reference.records
-    evaluate(chain, loads, driven, stages, work.residuals)
+    evaluate(reference.chain, reference.loads, reference.driven, reference.stages, reference.work.residuals)
 
 
 @kernel
 def _factor(reference: Reference, dt: float) -> bool:
-    chain, loads, driven, scheme, stages, _, work = reference.records
+    chain, loads, driven, scheme = reference.chain, reference.loads, reference.driven, reference.scheme
+    stages, work = reference.stages, reference.work
     return factor_both(chain, loads, driven, scheme, dt, stages, work.tangents, work.real, work.pair)
 
 
 @kernel
 def _solve(reference: Reference, dt: float) -> None:
-    chain, _, driven, scheme, stages, _, work = reference.records
+    chain, driven, scheme, stages = reference.chain, reference.driven, reference.scheme, reference.stages
+    work = reference.work
     transform_residuals(driven, scheme, stages, work.tangents, work.residuals, work.transformed)
     solve_stages(chain, driven, work.tangents, scheme.gamma / dt, scheme.pair / dt, work.transformed, work.real,
                  work.pair)  # fmt: skip
@@ -167,5 +168,5 @@ def _solve(reference: Reference, dt: float) -> None:
 
 @kernel
 def _update(reference: Reference) -> None:
-    chain, _, _, scheme, stages, _, work = reference.records
+    chain, scheme, stages, work = reference.chain, reference.scheme, reference.stages, reference.work
     update(chain, scheme.transform, 1.0, 1e-30, stages, work.tangents, work.real, work.pair)

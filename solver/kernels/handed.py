@@ -19,15 +19,15 @@ from llvmlite import ir
 from numba import types
 from numba.core.typing.templates import AttributeTemplate
 from numba.extending import NativeValue, infer_getattr, lower_getattr_generic, models, register_model, unbox
+from numpy.typing import NDArray
 
 
 class Referred(types.Type):
-    """The type of a reference to records (a tuple, of which `records` are the parts) or to one (with its fields)."""
+    """The type of a reference to a record."""
 
     def __init__(self, record: Any) -> None:
         self.record = record
-        self.instance_class = getattr(record, "instance_class", None)
-        self.fields = getattr(record, "fields", ())
+        self.instance_class, self.fields = record.instance_class, record.fields
         self.types = tuple(Referred(kind) if isinstance(kind, types.BaseNamedTuple) else kind for kind in record.types)
         super().__init__(f"reference to {record}")
 
@@ -40,40 +40,35 @@ class Referred(types.Type):
 register_model(Referred)(models.OpaqueModel)
 
 
+@dataclass(frozen=True, eq=False)
 class Reference:
-    """What a kernel gets: `records` are those that were handed over."""
+    """What a kernel gets of a record, a NamedTuple, and reads by the same names. The numbers in it are as they were
+    when it was handed over."""
 
-    __slots__ = ("_memory", "_numba_type_", "address")
-    records: Any
-
-    def __init__(self, records: tuple[Any, ...]) -> None:
-        likeness, parts = list[Any](), list[Any]()
-        _take_apart(records, likeness, parts)
-        kinds = tuple(likeness)
-        if kinds not in _LAYOUTS:
-            kind: Any = numba.typeof(records)  # type: ignore[no-untyped-call]
-            _LAYOUTS[kinds] = Referred(kind), Struct("=" + _format(kind))
-        self._numba_type_, layout = _LAYOUTS[kinds]
-        self._memory = np.frombuffer(layout.pack(*parts), np.uint8)
-        self.address = self._memory.ctypes.data
-
-
-@dataclass(frozen=True)
-class Handed:
-    """Records, and the reference to their arrays; the numbers in them are as they were when they were handed over."""
-
-    records: tuple[Any, ...]
-    reference: Reference
+    _record: tuple[Any, ...]
+    _memory: NDArray[np.uint8]
+    _numba_type_: Referred
+    address: int
 
     @classmethod
-    def over(cls, *records: Any) -> Handed:
-        """Hand records over."""
-        return cls(records, Reference(records))
+    def to(cls, record: tuple[Any, ...]) -> Reference:
+        """Hand a record over."""
+        likeness, parts = list[Any](), list[Any]()
+        _take_apart(record, likeness, parts)
+        kinds = tuple(likeness)
+        if kinds not in _LAYOUTS:
+            kind: Any = numba.typeof(record)  # type: ignore[no-untyped-call]
+            _LAYOUTS[kinds] = Referred(kind), Struct("=" + _format(kind))
+        referred, layout = _LAYOUTS[kinds]
+        memory = np.frombuffer(layout.pack(*parts), np.uint8)
+        return cls(record, memory, referred, memory.ctypes.data)
 
-    def again(self, *records: Any) -> Handed:
-        """The same; or what is handed over in its place, if one of the records has been replaced."""
-        same = all(new is old for new, old in zip(records, self.records, strict=True))
-        return self if same else self.over(*records)
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._record, name)
+
+    def again(self, record: tuple[Any, ...]) -> Reference:
+        """The same; or what is handed over in its place, if a field of the record has been replaced."""
+        return self if all(new is old for new, old in zip(record, self._record, strict=True)) else self.to(record)
 
 
 def _offsets(kind: Any) -> list[int]:
@@ -95,10 +90,6 @@ def _extent(kind: Any) -> tuple[int, int]:
         return 8 * (5 + 2 * kind.ndim), 8
     size = 8 if isinstance(kind, types.NoneType) else np.dtype(str(kind)).itemsize
     return size, min(size, 8)
-
-
-def _tuple(kinds: tuple[Any, ...]) -> Any:
-    return types.BaseTuple.from_types(kinds)  # type: ignore[no-untyped-call]
 
 
 _LAYOUTS: dict[Any, tuple[Referred, Struct]] = {}
@@ -144,22 +135,13 @@ class _Fields(AttributeTemplate):
     key = Referred
 
     def generic_resolve(self, kind: Referred, name: str) -> Any:  # type: ignore[override]
-        if name in kind.fields:
-            return kind.types[kind.fields.index(name)]
-        return _tuple(kind.types) if name == "records" and not kind.fields else None
+        return kind.types[kind.fields.index(name)] if name in kind.fields else None
 
 
 @lower_getattr_generic(Referred)  # type: ignore[no-untyped-call]
 def _read(target: Any, builder: Any, kind: Referred, address: Any, name: str) -> Any:
-    """The code that reads a field, or makes references to all records."""
-    if name in kind.fields:
-        return _part(target, builder, kind, address, kind.fields.index(name))
-    parts = [_part(target, builder, kind, address, k) for k in range(len(kind.types))]
-    return target.make_tuple(builder, _tuple(kind.types), parts)
-
-
-def _part(target: Any, builder: Any, kind: Referred, address: Any, k: int) -> Any:
-    """Part k of what lies at an address. It stays as it is: the compiler may read it once for all times."""
+    """The code that reads a field. It stays as it is: the compiler may read it once for all times."""
+    k = kind.fields.index(name)
     part = kind.types[k]
     place = builder.gep(address, [ir.Constant(ir.IntType(64), _offsets(kind.record)[k])])
     if isinstance(part, Referred):

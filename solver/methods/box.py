@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from solver.arrays import Array
-from solver.kernels.handed import Handed, Reference
+from solver.kernels.handed import Reference
 from solver.kernels.rotation import relative_rotations, rotate_back, tangents_of
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
@@ -22,15 +22,13 @@ from solver.methods.space.box.schemes import SpaceScheme
 from solver.methods.space.box.trial import Measured, mean_turning, measure_trial, total_bending
 from solver.methods.time.generalized_alpha.guess import force_rate, guess, stretch_feedback
 from solver.methods.time.generalized_alpha.history import rescale_aux
-from solver.methods.time.generalized_alpha.newton import EndValues, Scales, Work, step
+from solver.methods.time.generalized_alpha.newton import EndValues, Scales, StepRecords, Work, step
 from solver.physics.cells import around_nodes
-from solver.physics.contact.forces import Touch
 from solver.physics.contact.recipe import foreseen
 from solver.physics.contact.self_contact import SelfContact
 from solver.physics.elasticity import mean_bending, needs_segments, principal
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
-from solver.physics.loads.registry import Loads
 from solver.physics.section import Beside, Section, sample_over
 from solver.scene.initial import Initial
 from solver.scene.layout import nodes_at_rest
@@ -91,7 +89,7 @@ class BoxMethod(Method):
         """Step (s) that is not shortened for an end: what it does within it is made up for in those that follow."""
         self._F_rate = np.zeros((len(self.s), 3))
         self._flows = Flows.empty(len(self.s))
-        self._handed = Handed.over(*self._records)
+        self._handed = Reference.to(self._records)
 
     @classmethod
     def of(cls, scene: Scene) -> BoxMethod:
@@ -129,7 +127,7 @@ class BoxMethod(Method):
         force_rate(old.Y, new.Y, dt, self._F_rate)
         # a step that finds forces knows none at its begin: there those of its end count
         late = 1.0 if self._consistent else 0.5
-        enter_step(self._handed.reference, old, new, self.contact.power()[0], c0_of(self._rule, dt), dt, late, self.h,
+        enter_step(self._handed, old, new, self.contact.power()[0], c0_of(self._rule, dt), dt, late, self.h,
                    self._flows)  # fmt: skip
         for end, node in self._at_ends:
             end.follow(_along_axes(end, self._flows.moved[node], old.quaternion[node]))
@@ -219,14 +217,13 @@ class BoxMethod(Method):
         return (self.start, 0), (self.end, -1)
 
     @property
-    def _records(self) -> tuple[Section, Loads, Scales, Touch, Work]:
-        """What the kernels of a step get by reference."""
-        return self.section, self.applied.records, self._scales, self.contact.touch, self.work
+    def _records(self) -> StepRecords:
+        return StepRecords(self.section, self.applied.records, self._scales, self.contact.touch, self.work)
 
     def _hand_over(self) -> Reference:
         """The records, as they are now."""
-        self._handed = self._handed.again(*self._records)
-        return self._handed.reference
+        self._handed = self._handed.again(self._records)
+        return self._handed
 
     @property
     def _rule(self) -> Scheme:

@@ -122,7 +122,7 @@ class OneAxisMethod(RadauMethod):
         return start, end
 
     def _follow_ends(self, weights: Array) -> None:
-        stage_powers(self._handed.reference, weights, self._moved, self._powers)
+        stage_powers(self._handed, weights, self._moved, self._powers)
         moved = (self._moved[:, :, None] * self._in_six).sum(axis=1)
         self.start.follow(moved[0])
         self.end.follow(moved[1])

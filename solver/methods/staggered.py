@@ -10,7 +10,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.dispatch import enter
-from solver.kernels.handed import Handed
+from solver.kernels.handed import Reference
 from solver.kernels.rotation import matrices_of, rotate_back
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
@@ -165,7 +165,7 @@ class StaggeredMethod(RadauMethod):
         self.applied.set_time(0.0)
         stages.R[0], stages.omega[0] = self._R, self.state.omega
         stages.r[0], stages.V[0] = self._centres[:2]
-        load_segments(self._handed.reference)
+        load_segments(self._handed)
         gained = np.sum(self.work.residuals.translation[0] * tangents[1:-1], axis=1)
         pull = np.append(0.0, np.cumsum(gained))
         between = np.concatenate([tangents[:1], 0.5 * (tangents[1:-2] + tangents[2:-1]), tangents[-1:]])
@@ -180,7 +180,7 @@ class StaggeredMethod(RadauMethod):
     def take_step(self, t: float, dt: float) -> Array:
         """Make the trial the state: see `RadauMethod`."""
         flowed = super().take_step(t, dt)
-        show_last_stage(self._handed.reference, self.state, self._centres, self._R, self._joints, self._nodes)
+        show_last_stage(self._handed, self.state, self._centres, self._R, self._joints, self._nodes)
         return flowed
 
     def switch_ends(self, t: float) -> None:
@@ -261,14 +261,14 @@ class StaggeredMethod(RadauMethod):
         super().compile()
         self.contact.compile()
         measure_openings(self.chain, self._R, self.state.F, self._joints, np.zeros(0))
-        load_segments(self._handed.reference)
+        load_segments(self._handed)
         if self.contact.present:
             self._guess_keeps_apart(1.0)
 
     @cached_property
-    def _looking(self) -> Handed:
-        """What `look_back` reads and writes, for runs that do."""
-        return Handed.over(self.chain, self.stages, Interpolation.empty(len(self.s) - 1), self._within)
+    def _looking(self) -> Reference:
+        """What `look_back` writes, for runs that do."""
+        return Reference.to(Interpolation.into(self._within))
 
     @property
     def _touch(self) -> Touch:
@@ -292,7 +292,7 @@ class StaggeredMethod(RadauMethod):
 
     def _interpolate(self, part: float, cubic: Array, parabola: Array) -> None:
         before, R, then, centres = self.trial, self._R_within, self._within, self._centres_within
-        look_back(self._looking.reference, before, part, self._step, cubic, parabola, R, centres)
+        look_back(self._handed, self._looking, before, part, self._step, cubic, parabola, R, centres)
         if len(self._strain):
             then.opening[:] = before.opening + np.tensordot(cubic, self.stages.opening - before.opening, 1)
             shift_segments(R, then.omega, then.alpha, then.opening, *centres)
@@ -315,7 +315,7 @@ class StaggeredMethod(RadauMethod):
         return written
 
     def _follow_ends(self, weights: Array) -> None:
-        stage_powers(self._handed.reference, weights, self._moved, self._powers)
+        stage_powers(self._handed, weights, self._moved, self._powers)
         self.start.follow(self._moved[0])
         self.end.follow(self._moved[1])
 
@@ -324,7 +324,7 @@ class StaggeredMethod(RadauMethod):
         if len(self._strain):
             np.divide(self.stages.opening[-1, 0], self.chain.span, out=self._strain)
             return stretch_of(self._strain)
-        return stretch_of_ends(self._handed.reference) / float(self.s[-1]) if self._ends_give else 0.0
+        return stretch_of_ends(self._handed) / float(self.s[-1]) if self._ends_give else 0.0
 
     def _flowed(self, weights: Array) -> Array:
         flowed = super()._flowed(weights)

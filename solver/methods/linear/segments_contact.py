@@ -72,8 +72,8 @@ def place_nodes(chain: Chain, R: Array, omega: Array, base: Array, opening: Arra
 @kernel
 def show_last_stage(reference: Reference, state: State, centres: Array, R: Array, joints: Array, nodes: Array) -> None:
     """Write R (N + 2, 3, 3), the joints' rotation vectors (N + 1, 3), and the nodes' places and velocities
-    (2, N + 1, 3) of the `state` at the end of a step, whose `centres` are known. `reference`: see `newton.step`."""
-    chain, _, _, _, stages, _, _ = reference.records
+    (2, N + 1, 3) of the `state` at the end of a step, whose `centres` are known."""
+    chain, stages = reference.chain, reference.stages
     copy(stages.R[STAGES - 1], R)
     copy(stages.bend[STAGES - 1], joints)
     place_nodes(chain, R, state.omega, state.base, state.opening, centres[0], centres[1], nodes[0], nodes[1])

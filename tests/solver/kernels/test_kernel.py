@@ -70,10 +70,10 @@ def test_a_kernel_is_compiled_once_for_all_numbers_that_callers_write_in_figures
 WRITTEN = """
 import numpy as np
 from typing import NamedTuple
-from solver.kernels.handed import Handed
+from solver.kernels.handed import Reference
 class {name}(NamedTuple):
     values: np.ndarray
-Handed.over({name}(np.zeros(2)))
+Reference.to({name}(np.zeros(2)))
 """
 
 

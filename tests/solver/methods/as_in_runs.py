@@ -31,7 +31,7 @@ def call(kernel: Callable[..., Any], *arguments: Any) -> Any:
 
 def _reference(record: tuple[Any, ...]) -> Reference:
     if id(record) not in _references:
-        _references[id(record)] = record, Reference(record)
+        _references[id(record)] = record, Reference.to(record)
     return _references[id(record)][1]
 
 

@@ -25,14 +25,14 @@ from solver.physics.loads.registry import Loads
 
 
 def energies(reference: Reference, state: State, h: float) -> Energies:
-    """The energies at a state; `reference`: see `newton.step`."""
+    """The energies at a state."""
     return _integrate(reference, state, h, np.empty((len(state.r), 3, 3)), np.zeros(2))
 
 
 @kernel
 def _integrate(reference: Reference, state: State, h: float, R: Array, by_loads: Array) -> Energies:
     """Bending, torsion and motion: each interval's mean density, of mean strains and velocities."""
-    section, loads, _, _, _ = reference.records
+    section, loads = reference.section, reference.loads
     matrices_of(state.quaternion, R)
     add_energies(loads, Motion(state.r, state.Y, state.aux, R, 0.0), h, by_loads)
     Y, elastic = state.Y, section.elastic

@@ -71,10 +71,10 @@ def enter_step(reference: Reference, old: State, new: State, contact: Array, c0:
                h: float, flows: Flows) -> None:  # fmt: skip
     """Write what flowed in the step of dt from `old` to `new` into `flows`.
 
-    `reference`: see `newton.step`; `contact` (2,): power stored and taken by it; c0: see `history`; `late`: the part in
-    the means over the step of what acts at its end.
+    `contact` (2,): power stored and taken by it; c0: see `history`; `late`: the part in the means over the step of what
+    acts at its end.
     """
-    section, loads, _, _, work = reference.records
+    section, loads, work = reference.section, reference.loads, reference.work
     past, early, power = work.past, 1.0 - late, flows.power
     copy(flows.given[0], flows.given[1])
     flows.given[0, :] = 0.0

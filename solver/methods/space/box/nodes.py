@@ -68,10 +68,10 @@ def balance_rotation(new: State, section: Section, past: Array, c0: float, nodes
 
 @kernel
 def moments(reference: Reference, Y: Array, q: Array) -> None:
-    """Write the moments q (n, 3) of unknowns Y (n, 12); `reference`: see `newton.step`."""
-    section, _, _, _, _ = reference.records
+    """Write the moments q (n, 3) of unknowns Y (n, 12)."""
+    elastic = reference.section.elastic
     for j in range(len(q)):
-        q[j, 0], q[j, 1], q[j, 2] = moment(section.elastic, j, (Y[j, KAPPA], Y[j, KAPPA + 1], Y[j, KAPPA + 2]))
+        q[j, 0], q[j, 1], q[j, 2] = moment(elastic, j, (Y[j, KAPPA], Y[j, KAPPA + 1], Y[j, KAPPA + 2]))
 
 
 @inner

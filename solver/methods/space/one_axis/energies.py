@@ -16,8 +16,8 @@ from solver.physics.loads.load import add_energies, add_powers
 
 @kernel
 def energies(reference: Reference, phi: Array, motion: Motion) -> Energies:
-    """The energies at the end of a step: angles (N + 2,), and the segments' motion; `reference`: see `newton.step`."""
-    chain, loads, _, _, _, _, _ = reference.records
+    """The energies at the end of a step: angles (N + 2,), and the segments' motion."""
+    chain, loads = reference.chain, reference.loads
     elastic, kinetic, turning, by_loads, h = 0.0, 0.0, 0.0, scratch(2), chain.h
     by_loads[0], by_loads[1] = 0.0, 0.0
     add_energies(loads, STAGES - 1, motion, by_loads)
@@ -37,9 +37,9 @@ def stage_powers(reference: Reference, weights: Array, moved: Array, out: Array)
     """Write the power (W) of the ends, of loads, and dissipated, at the stages, into `out`.
 
     And into `moved` (2, 3) by how much start and end have moved, z of the frame of their conditions on translation, and
-    turned (rad), by the `weights` (3,) of the stages. `reference`: see `newton.step`.
+    turned (rad), by the `weights` (3,) of the stages.
     """
-    chain, loads, driven, _, stages, _, _ = reference.records
+    chain, loads, driven, stages = reference.chain, reference.loads, reference.driven, reference.stages
     N, by_loads = len(chain.mass), scratch(2)
     moved[:] = 0.0
     for i in range(STAGES):

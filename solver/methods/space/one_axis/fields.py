@@ -64,11 +64,8 @@ def _at_node(x: Array, i: int) -> float:
 
 @kernel
 def place_nodes(reference: Reference, state: State, centres: Plane, r: Plane, V: Plane) -> None:
-    """Write places and velocities (N + 1,) of the nodes, from those of the segments' `centres` (3, N).
-
-    `reference`: see `newton.step`.
-    """
-    chain, _, _, _, _, _, _ = reference.records
+    """Write places and velocities (N + 1,) of the nodes, from those of the segments' `centres` (3, N)."""
+    chain = reference.chain
     r[0], V[0] = state.base[0], state.base[1]
     for j in range(len(chain.mass)):
         phi, swing = chain.swing * state.phi[j + 1], chain.swing * state.omega[j + 1]
@@ -86,8 +83,8 @@ def _set_out(z: complex, directions: Plane, i: int, out: Array) -> None:
 @kernel
 def show(reference: Reference, state: State, r: Plane, V: Plane, offset: Array, space: InSpace, shown: Shown) -> None:
     """Write what the nodes, whose places and velocities are known, show. `offset` (N + 1,): by what the curvature
-    differs from the centreline's. `reference`: see `newton.step`."""
-    chain, _, _, _, _, _, _ = reference.records
+    differs from the centreline's."""
+    chain = reference.chain
     for i in range(len(r)):
         phi, omega, q = _at_node(state.phi, i), _at_node(state.omega, i), joint_moment(chain, state.phi, state.omega, i)
         swing, half = chain.swing * phi, 0.5 * phi

@@ -203,9 +203,8 @@ def balance_segments(chain: Chain, loads: Loads, driven: Driven, stages: Stages,
 
 @kernel
 def load_segments(reference: Reference) -> None:
-    """Write the residuals of all segments at the first stage, whose motion is known. `reference`: see `newton.step`."""
-    chain, loads, driven, _, stages, _, work = reference.records
-    balance_segments(chain, loads, driven, stages, work.residuals, 0)
+    """Write the residuals of all segments at the first stage, whose motion is known."""
+    balance_segments(reference.chain, reference.loads, reference.driven, reference.stages, reference.work.residuals, 0)
 
 
 @kernel

@@ -24,12 +24,8 @@ from solver.physics.loads.registry import Loads
 
 @kernel
 def energies(reference: Reference, bend: Array, F: Array, motion: Motion) -> Energies:
-    """The energies at the end of a step: joints' `bend` and forces `F` (N + 1, 3), the segments' motion.
-
-    `reference`: see `newton.step`.
-    """
-    chain, loads, _, _, _, _, _ = reference.records
-    return energies_at(chain, loads, STAGES - 1, bend, F, motion)
+    """The energies at the end of a step: joints' `bend` and forces `F` (N + 1, 3), the segments' motion."""
+    return energies_at(reference.chain, reference.loads, STAGES - 1, bend, F, motion)
 
 
 @kernel
@@ -77,9 +73,9 @@ def stage_powers(reference: Reference, weights: Array, moved: Array, out: Array)
     """Write the power (W) of the ends, of loads, and dissipated, at the stages into `out` (3, 3).
 
     And into `moved` (2, 6) by how much what holds start and end has moved (m) and turned (rad) along the axes of its
-    conditions, by the `weights` (3,) of the stages. `reference`: see `newton.step`.
+    conditions, by the `weights` (3,) of the stages.
     """
-    chain, loads, driven, _, stages, _, _ = reference.records
+    chain, loads, driven, stages = reference.chain, reference.loads, reference.driven, reference.stages
     N, by_loads = len(chain.mass), scratch(2)
     moved[:] = 0.0
     for i in range(STAGES):
@@ -98,8 +94,8 @@ def stage_powers(reference: Reference, weights: Array, moved: Array, out: Array)
 
 @kernel
 def stretch_of_ends(reference: Reference) -> float:
-    """By how much (m) a step ends with the ends stretched by their compliance; `reference`: see `newton.step`."""
-    _, _, driven, _, stages, _, _ = reference.records
+    """By how much (m) a step ends with the ends stretched by their compliance."""
+    driven, stages = reference.driven, reference.stages
     F, R, (N, stretch) = stages.F[STAGES - 1], stages.R[STAGES - 1], (stages.F.shape[1] - 1, 0.0)
     for side, node, frame in ((0, 0, 0), (1, N, N + 1)):
         pull = 0.0

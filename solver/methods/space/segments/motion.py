@@ -158,8 +158,9 @@ def become(state: State, stages: Stages) -> None:
 
 
 class Interpolation(NamedTuple):
-    """What a state within a step is made from, of all orientations (N + 2, ...): see `Stages`."""
+    """What the state `then`, within a step, is made from, of all orientations (N + 2, ...): see `Stages`."""
 
+    then: State
     theta: Array
     theta_t: Array
     theta_tt: Array
@@ -167,21 +168,20 @@ class Interpolation(NamedTuple):
     S: Array
 
     @classmethod
-    def empty(cls, intervals: int) -> Interpolation:
-        """Zeros for N = `intervals`."""
-        n = intervals + 2
-        return cls(*(np.zeros((n, *shape)) for shape in ((3,), (3,), (3,), (4,), (3, 3))))
+    def into(cls, then: State) -> Interpolation:
+        """Zeros for such a state."""
+        return cls(then, *(np.zeros((len(then.omega), *shape)) for shape in ((3,), (3,), (3,), (4,), (3, 3))))
 
 
 @kernel
-def look_back(reference: Reference, before: State, part: float, dt: float, cubic: Array, parabola: Array, R: Array,
-              centres: Array) -> None:  # fmt: skip
+def look_back(reference: Reference, within: Reference, before: State, part: float, dt: float, cubic: Array,
+              parabola: Array, R: Array, centres: Array) -> None:  # fmt: skip
     """Write state, R (N + 2, 3, 3) and centres (3, N, 3) after a part of the step of dt that began with `before`.
 
-    `reference`: a Chain, Stages, an Interpolation and the State that is written. `cubic` and `parabola` (3,): see
-    `tableau.within`. Accelerations are not known there, and 0.
+    `within`: to an Interpolation. `cubic` and `parabola` (3,): see `tableau.within`. Accelerations are not known there,
+    and 0.
     """
-    chain, stages, within, then = reference.records
+    chain, stages, then = reference.chain, reference.stages, within.then
     a, b, c = cubic[0], cubic[1], cubic[2]
     for i in range(len(then.omega)):
         for k in range(3):

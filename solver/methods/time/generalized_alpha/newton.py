@@ -19,7 +19,7 @@ from solver.methods.space.box.nodes import balance_rotation, balance_translation
 from solver.methods.space.box.schemes import SpaceScheme
 from solver.methods.status import CONVERGED, STALLED
 from solver.methods.time.generalized_alpha.history import finish, history
-from solver.physics.contact.forces import touching
+from solver.physics.contact.forces import Touch, touching
 from solver.physics.ends import Kinds
 from solver.physics.loads.registry import Loads
 from solver.physics.section import Section
@@ -119,17 +119,28 @@ class Work(NamedTuple):
                    Coupling.empty(intervals if touching else 0))  # fmt: skip
 
 
+class StepRecords(NamedTuple):
+    """What the kernels of a step get by reference."""
+
+    section: Section
+    loads: Loads
+    scales: Scales
+    touch: Touch
+    work: Work
+
+
 @kernel
 def step(reference: Reference, old: State, new: State, scheme: Scheme, dt: float, h: float,
          ends: EndValues) -> tuple[int, int]:  # fmt: skip
     """Advance `old` by dt into `new`; `new.Y` is the first guess. Returns how it ended and the iterations.
 
-    `reference`: a Section, Loads, Scales, Touch and Work; `work.feedback` holds the stretch times its feedback rate.
+    `reference`: to `StepRecords`; `work.feedback` holds the stretch times its feedback rate.
     Convergence: the increment, or its extrapolation for a quadratically converging iteration, is below 1e-9 of the
     natural units.
     Records of many arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
-    section, loads, scales, touch, work = reference.records
+    section, loads, scales, touch = reference.section, reference.loads, reference.scales, reference.touch
+    work = reference.work
     c0, contact = c0_of(scheme, dt), touching(touch)
     past, nodes, system = work.past, work.nodes, work.system
     history(old, scheme, dt, past)

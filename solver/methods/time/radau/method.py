@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solver.arrays import Array
-from solver.kernels.handed import Handed, Reference
+from solver.kernels.handed import Reference
 from solver.methods.linear.stages import Scheme
 from solver.methods.method import NOTHING_AHEAD, Ahead, Method
 from solver.methods.space.segments.chain import STAGES, Chain, State
@@ -19,7 +19,7 @@ from solver.methods.space.segments.layers import Layers
 from solver.methods.space.stages import Record
 from solver.methods.status import CONVERGED
 from solver.methods.time.radau import tableau
-from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, Work, estimate_error, step
+from solver.methods.time.radau.newton import LARGEST_ITERATIONS, TOLERANCE, StepRecords, Work, estimate_error, step
 from solver.methods.time.radau.next_step import Last, finish, go_on
 from solver.physics.elasticity import mean_bending
 from solver.physics.ends import RATE, DrivenEnd
@@ -87,7 +87,7 @@ class RadauMethod(Method):
 
         What is too small to count in a step of dt_max does count in one that is far longer.
         """
-        errors: tuple[float, ...] = estimate_error(self._handed.reference, dt, self.state, self._centres)
+        errors: tuple[float, ...] = estimate_error(self._handed, dt, self.state, self._centres)
         turn_error, turned, move_error, moved = errors
         if self.applied.strikes:
             places = np.concatenate([self._centres[:1], self.stages.r])
@@ -99,7 +99,7 @@ class RadauMethod(Method):
         """Make the trial the state; return the energy (4,) that flowed, by Radau's quadrature: see `Method`."""
         weights = tableau.A[-1] * dt
         self._follow_ends(weights)
-        finish(self._handed.reference, self.trial, self._centres, self._last)
+        finish(self._handed, self.trial, self._centres, self._last)
         self.state, self.trial = self.trial, self.state
         self._time, self._last_dt, self._step, self._ago = t + dt, dt, dt, 0.0
         return self._flowed(weights)
@@ -173,9 +173,8 @@ class RadauMethod(Method):
         return None
 
     @property
-    def _records(self) -> tuple[Record, ...]:
-        """What the kernels of a step get by reference."""
-        return self.chain, self.applied.records, self.driven, SCHEME, self.stages, self._touch, self.work
+    def _records(self) -> StepRecords:
+        return StepRecords(self.chain, self.applied.records, self.driven, SCHEME, self.stages, self._touch, self.work)
 
     def _lay_out(self, scene: Scene) -> tuple[Chain, State, Array]:
         """The chain in space, its state at t = 0, and by what its curvature differs from the centreline's."""
@@ -194,7 +193,7 @@ class RadauMethod(Method):
             factors.empty(N, np.complex128), coupling, np.zeros_like(self.stages.r[0]),
             factors.empty(N, np.float64).x, factors.empty(N, np.complex128).x,
         )  # fmt: skip
-        self._handed = Handed.over(*self._records)
+        self._handed = Reference.to(self._records)
         unknown = self.stages.theta, self.stages.shift, self.stages.F
         self._last = Last(*(np.zeros_like(series) for series in unknown))
         self._centres: NDArray[Any] = np.zeros_like(self.stages.r)
@@ -227,8 +226,8 @@ class RadauMethod(Method):
 
     def _hand_over(self) -> Reference:
         """The records, as they are now."""
-        self._handed = self._handed.again(*self._records)
-        return self._handed.reference
+        self._handed = self._handed.again(self._records)
+        return self._handed
 
     def _solve(self, dt: float, consistent: bool) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""

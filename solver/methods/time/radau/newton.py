@@ -61,6 +61,18 @@ class Work(NamedTuple):
     earlier_pair: Array
 
 
+class StepRecords(NamedTuple):
+    """What the kernels of a step get by reference."""
+
+    chain: Record
+    loads: Record
+    driven: Record
+    scheme: Scheme
+    stages: Record
+    touch: Record
+    work: Work
+
+
 @inner
 def mix(weights: Array, source: Array, target: Array) -> None:
     """target[i] = sum over j of weights[i, j] source[j], stages first."""
@@ -127,12 +139,12 @@ def relaxation(work: Record, part: float, first: bool) -> float:
 def step(reference: Reference, dt: float, unit: float, part: float, rough: bool, state: Record) -> tuple[int, int]:
     """Solve for the stages of a step of dt; theta, shift and F hold the first guess. `unit` = EJ/L^2 (N).
 
-    `reference`: a Chain, Loads, Driven, Scheme, Stages, Touch and Work. `part` of the step's largest departure from
-    steady rotation may be left, where that is more than TOLERANCE. `rough`: whether loads may strike or rub. Returns
-    how it ended and the iterations. Records of many arrays go only to where they are needed: each one passed on costs
-    some ns in every iteration.
+    `reference`: to `StepRecords`. `part` of the step's largest departure from steady rotation may be left, where that
+    is more than TOLERANCE. `rough`: whether loads may strike or rub. Returns how it ended and the iterations. Records
+    of many arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
-    chain, loads, driven, scheme, stages, touch, work = reference.records
+    chain, loads, driven, scheme = reference.chain, reference.loads, reference.driven, reference.scheme
+    stages, touch, work = reference.stages, reference.touch, reference.work
     stale, relaxed, part_taken = True, False, 1.0
     before, contact, fresh, length = 0.0, space.in_contact(touch), True, chain.h * len(chain.mass)
     residuals, transformed, tangents, real, pair = work.residuals, work.transformed, work.tangents, work.real, work.pair
@@ -209,11 +221,12 @@ def largest_departure(theta: Array) -> float:
 def estimate_error(reference: Reference, dt: float, state: Record, centres: Array) -> tuple[float, float, float, float]:
     """The embedded estimate of the step's error, and the motion: rotation (rad) error, motion; position (m) likewise.
 
-    `reference`: see `step`; `centres` (3, N, ...): position, velocity and acceleration of the centres at the start
-    of the step. The estimate of order 3, g = dt/gamma y'(t) + sum of e_i (Y_i - y), is smoothed by the real system,
-    M mu^2 + C mu + K, as it was factored.
+    `centres` (3, N, ...): position, velocity and acceleration of the centres at the start of the step. The estimate of
+    order 3, g = dt/gamma y'(t) + sum of e_i (Y_i - y), is smoothed by the real system, M mu^2 + C mu + K, as it was
+    factored.
     """
-    chain, _, driven, scheme, stages, _, work = reference.records
+    chain, driven, scheme, stages = reference.chain, reference.driven, reference.scheme, reference.stages
+    work = reference.work
     factors, mu = work.real, scheme.gamma / dt
     turned = _load_rotation(chain, state, stages, scheme.error, mu, dt, factors)
     moved = _delay(centres, stages.r, stages.V, scheme.error, mu, work.velocities)

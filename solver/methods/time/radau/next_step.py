@@ -28,8 +28,8 @@ class Last(NamedTuple):
 @kernel
 def finish(reference: Reference, state: Record, centres: Array, last: Last) -> None:
     """Write the `state` at the end of a step, the places, velocities and accelerations of its segments' `centres`
-    (3, N, ...), and the unknowns of what is now the `last` step. `reference`: see `newton.step`."""
-    _, _, _, _, stages, _, _ = reference.records
+    (3, N, ...), and the unknowns of what is now the `last` step."""
+    stages = reference.stages
     become(state, stages)
     copy(stages.r[STAGES - 1], centres[0])
     copy(stages.V[STAGES - 1], centres[1])
@@ -50,9 +50,8 @@ def go_on(reference: Reference, last: Last, before: Record, state: Record, dt_la
     """Guess theta, shift and F at the stages of a step of dt from `state`, by the `last` one of dt_last from `before`.
 
     Motion goes on along the cubic through the last step's begin and stages, forces along the parabola through these.
-    `reference`: see `newton.step`.
     """
-    _, _, _, scheme, stages, _, _ = reference.records
+    scheme, stages = reference.scheme, reference.stages
     ratio, cubic, parabola = dt / dt_last, scratch((3, 3)), scratch((3, 3))
     for i in range(STAGES):
         x = 1.0 + ratio * scheme.nodes[i]
@@ -70,7 +69,7 @@ def go_on(reference: Reference, last: Last, before: Record, state: Record, dt_la
 
 @kernel
 def move_guess(reference: Reference, dt: float, state: Record) -> None:
-    """Write how the first guess of a step of dt moves at all stages; `reference`: see `newton.step`."""
-    chain, _, _, scheme, stages, _, _ = reference.records
+    """Write how the first guess of a step of dt moves at all stages."""
+    chain, scheme, stages = reference.chain, reference.scheme, reference.stages
     begin_step(state, scheme.nodes, dt, stages)
     move(chain, state, stages, scheme.nodes, scheme.inverse, dt)

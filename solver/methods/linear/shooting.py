@@ -15,8 +15,8 @@ from solver.arrays import Array
 from solver.kernels.copying import copy
 from solver.kernels.dispatch import variant
 from solver.kernels.kernel import inner, kernel
-from solver.kernels.scratch import scratch
-from solver.methods.linear.panels import Swaps
+from solver.kernels.scratch import scratch, scratch_like
+from solver.methods.linear.panels import Swaps, eliminate
 from solver.methods.linear.system import System, factor, solve, solves_again
 from solver.methods.space.box.fields import Nodes
 from solver.methods.space.box.intervals import MEANS, interval_panel
@@ -77,29 +77,29 @@ def _march(linear: Shooting, Y: Array, c0: float, h: float, nodes: Nodes,
     marched, c, N = linear.marched, linear.coefficients, len(linear.marched) - 1
     if not _start(system.start, system.b_start, marched[0], linear.pivots):
         return np.inf
-    A, panel, mean = scratch((12, 12)), scratch((18, 24)), scratch((MEANS, 3))
+    W, panel, mean, swaps = scratch((12, 24)), scratch((18, 24)), scratch((MEANS, 3)), scratch_like(12, linear.pivots)
     for j in range(N):
         interval_panel(j, Y, c0, h, BOX, nodes, system.rows, system.columns, mean, panel, 6)
         for i in range(12):
             for k in range(12):
-                A[i, k] = panel[6 + i, 12 + k]
+                W[i, k] = panel[6 + i, 12 + k]
             for m in range(7):
                 marched[j + 1, i, m] = system.b[j, i] if m == 6 else 0.0
             for k in range(12):
                 if panel[6 + i, k] != 0.0:
                     for m in range(7):
                         marched[j + 1, i, m] -= panel[6 + i, k] * marched[j, k, m]
-        if not _solve_dense(A, marched[j + 1]):
+        if not _solve_dense(W, swaps, marched[j + 1]):
             return np.inf
     growth = _largest(marched[N]) / _largest(marched[0])
-    A_end = scratch((6, 6))
+    W_end = scratch((6, 12))
     for i in range(6):
         c[i, 0] = system.b_end[i]
         for k in range(12):
             c[i, 0] -= system.end[i, k] * marched[N, k, 6]
             for m in range(6):
-                A_end[i, m] += system.end[i, k] * marched[N, k, m]
-    if not _solve_dense(A_end, c):
+                W_end[i, m] += system.end[i, k] * marched[N, k, m]
+    if not _solve_dense(W_end, swaps[:6], c):
         return np.inf
     return float(growth)
 
@@ -156,32 +156,18 @@ def _start(start: Array, b: Array, first: Array, pivots: Swaps) -> bool:
 
 
 @inner
-def _solve_dense(A: Array, X: Array) -> bool:
-    """Overwrite X (n, m) with A^-1 X by Gaussian elimination with row pivoting; A (n, n) is destroyed."""
+def _solve_dense(W: Array, swaps: Swaps, X: Array) -> bool:
+    """Overwrite X (n, m) with A^-1 X, of A in the left half of the columns of W (n, 2 n), which is destroyed."""
     n, m = X.shape
-    for k in range(n):
-        pivot = k
-        for i in range(k + 1, n):
-            if abs(A[i, k]) > abs(A[pivot, k]):
-                pivot = i
-        if not abs(A[pivot, k]) > 0.0:
-            return False
-        if pivot != k:
-            for c in range(n):
-                A[k, c], A[pivot, c] = A[pivot, c], A[k, c]
-            for c in range(m):
-                X[k, c], X[pivot, c] = X[pivot, c], X[k, c]
-        for i in range(k + 1, n):
-            if A[i, k] != 0.0:
-                multiplier = A[i, k] / A[k, k]
-                for c in range(k + 1, n):
-                    A[i, c] -= multiplier * A[k, c]
-                for c in range(m):
-                    X[i, c] -= multiplier * X[k, c]
+    for i in range(n):
+        for c in range(m):
+            W[i, n + c] = X[i, c]
+    if not eliminate(W, swaps):
+        return False
     for k in range(n - 1, -1, -1):
         for c in range(m):
-            total = X[k, c]
+            total = W[k, n + c]
             for i in range(k + 1, n):
-                total -= A[k, i] * X[i, c]
-            X[k, c] = total / A[k, k]
+                total -= W[k, i] * X[i, c]
+            X[k, c] = total / W[k, k]
     return True

@@ -38,7 +38,7 @@ def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: compl
         b[N + 1, 3 + k] = 0.0
     for j in range(N):
         for k in range(3):
-            moved = X[j, k, 0] * load[j, 0] + X[j, k, 1] * load[j, 1] + X[j, k, 2] * load[j, 2]
+            moved = X[j + 1, k, 0] * load[j, 0] + X[j + 1, k, 1] * load[j, 1] + X[j + 1, k, 2] * load[j, 2]
             b[j, 3 + k] += moved
             b[j + 1, 3 + k] = -moved
     for side in range(2):
@@ -61,13 +61,13 @@ def complete(chain: Chain, driven: Driven, tangents: Tangents, eigenvalue: compl
 @inner
 def displace(factors: Factors) -> None:
     """Write the displacements of the centres that belong to the solution."""
-    x, X, Y = factors.x, factors.X, factors.Y
+    x = factors.x
     for j in range(len(factors.moved)):
-        psi, near, far, load = x[j + 1], x[j], x[j + 1], factors.load[j]
+        X, Y, psi, near, far, load = factors.X[j + 1], factors.Y[j + 1], x[j + 1], x[j], x[j + 1], factors.load[j]
         u, v, w = far[3] - near[3] - load[0], far[4] - near[4] - load[1], far[5] - near[5] - load[2]
         for k in range(3):
-            factors.moved[j, k] = (X[j, k, 0] * u + X[j, k, 1] * v + X[j, k, 2] * w
-                                   + (Y[j, k, 0] * psi[0] + Y[j, k, 1] * psi[1] + Y[j, k, 2] * psi[2]))  # fmt: skip
+            factors.moved[j, k] = (X[k, 0] * u + X[k, 1] * v + X[k, 2] * w
+                                   + (Y[k, 0] * psi[0] + Y[k, 1] * psi[1] + Y[k, 2] * psi[2]))  # fmt: skip
 
 
 @inner

@@ -387,6 +387,8 @@ def _may_do(history: Sequence[Attempt], excess: Excess, trial: Trial, most_inter
     if expected(complete, trial) <= CHEAP * MOST_WORK:
         by_steps = len(complete) > 2 and trial.mesh == complete[-1].mesh == complete[-2].mesh
         return not (by_steps and 1.0 / SAME < fall < SAME)
+    if _is_damped(trial):
+        return False  # its waves do not converge
     return fall >= LEAST_FALL and _work(history) + _all_of(complete, excess, trial) <= excess.worth * MOST_WORK
 
 

@@ -9,15 +9,18 @@ import numpy as np
 
 from service.cases.case import CaseSpec
 from service.cases.errors import FieldError
-from service.cases.extents import widest
+from service.cases.extents import forces, widest
 from solver import Scene
 from solver.arrays import Array
-from solver.physics.loads.solids import Floor, Given
+from solver.physics.loads.solids import Floor, Given, Obstacle
 from solver.physics.section import sample
 from solver.scene.layout import nodes_at_rest
 
 SOFT, HARD = 10.0, 0.1
 """Of its diameter, by how much its weight may press a rod in; and by how much where a floor is hard."""
+DRAWN_IN = 0.2
+"""Of its radius, by how much a pull may draw a rod into an obstacle: beyond the middle it is pushed out on the other
+side."""
 BESIDE, WITHIN = 8.0, 0.9
 """In D: how far along the rod places are neighbours; and how near others overlap."""
 PLACES, NEIGHBOURS = 161, 3
@@ -26,8 +29,8 @@ PLACES, NEIGHBOURS = 161, 3
 
 def touching_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
     """What is wrong with what the rod touches."""
-    return [*_obstacles(spec), *_begins_inside(scene), *_sinks(scene), *_friction_at_rest(spec),
-            *_touches_itself(scene), *_lies_across_itself(scene)]  # fmt: skip
+    return [*_obstacles(spec), *_begins_inside(scene), *_sinks(scene), *_is_drawn_in(scene),
+            *_friction_at_rest(spec), *_touches_itself(scene), *_lies_across_itself(scene)]  # fmt: skip
 
 
 def solids_of(scene: Scene) -> Iterator[tuple[str, Given]]:
@@ -75,6 +78,17 @@ def _sinks(scene: Scene) -> Iterator[FieldError]:
             enough = solid.stiffness * depth / (HARD * widest(scene))
             rule = (f"is so small that the rod's weight presses it in by {depth:.2g} m, {depth / widest(scene):.2g} "
                     f"times its diameter: {enough:.1g} N/m² would be hard")  # fmt: skip
+            yield FieldError(f"{where}/stiffness", solid.stiffness, rule)
+
+
+def _is_drawn_in(scene: Scene) -> Iterator[FieldError]:
+    """An obstacle so soft that a rod which is pulled over it with the force T, as deep as T / (R k), may cut it."""
+    pull = max(forces(scene).values(), default=0.0)
+    for where, solid in solids_of(scene):
+        if isinstance(solid, Obstacle) and pull > DRAWN_IN * solid.radius**2 * solid.stiffness:
+            depth, enough = pull / (solid.radius * solid.stiffness), pull / (solid.radius * widest(scene))
+            rule = (f"is so small that a pull of {pull:.2g} N may draw the rod {depth:.2g} m into it, whose radius is "
+                    f"{solid.radius:.2g} m: with {enough:.1g} N/m² it is drawn in by its diameter")  # fmt: skip
             yield FieldError(f"{where}/stiffness", solid.stiffness, rule)
 
 

@@ -184,13 +184,13 @@ def test_one_that_does_not_reach_it_or_bends_aside_is_left_alone(case: dict[str,
 
 @pytest.mark.parametrize(("intervals", "warned"), [(10, True), (100, False)])
 def test_an_obstacle_that_fits_between_nodes_is_named(intervals: int, warned: bool):
-    balls = [{"start": [0, 0, -1], "radius": radius, "stiffness": 50.0} for radius in (0.5, 0.02)]
+    balls = [{"start": [0, 0, -1], "radius": radius, "stiffness": 5e5} for radius in (0.5, 0.02)]
     warnings = told({"loads.obstacles": balls, "numerics.intervals": intervals})
     assert [warning.pointer for warning in warnings] == ["/numerics/intervals"] * warned
     assert all("radius of 0.02 m of /loads/obstacles/1" in warning.rule for warning in warnings)
 
 
-BAR = {"start": [0.0, -1.0, 0.5], "end": [0.0, 1.0, 0.5], "radius": 0.1, "stiffness": 50.0}
+BAR = {"start": [0.0, -1.0, 0.5], "end": [0.0, 1.0, 0.5], "radius": 0.1, "stiffness": 5e5}
 
 
 @pytest.mark.parametrize(("loads", "pointer"), [
@@ -202,6 +202,14 @@ BAR = {"start": [0.0, -1.0, 0.5], "end": [0.0, 1.0, 0.5], "radius": 0.1, "stiffn
 ])  # fmt: skip
 def test_a_rod_that_begins_in_something_solid_is_pointed_out(loads: dict[str, Any], pointer: str):
     assert [warning.pointer for warning in told({"numerics.intervals": 1000, **loads})] == [pointer] * bool(pointer)
+
+
+@pytest.mark.parametrize(("stiffness", "warned"), [(900.0, True), (1100.0, False)])
+def test_an_obstacle_that_a_pulled_rod_may_cut_through_is_told(stiffness: float, warned: bool):
+    """A pull of 2 N over a bar of 0.1 m: T / (R k) = 2.2 cm, more than a fifth of the radius, or 1.8 cm."""
+    bar = BAR | {"start": [0.2, -1.0, 0.5], "end": [0.2, 1.0, 0.5], "stiffness": stiffness}
+    warnings = told({"loads.obstacles": [bar], "loads.point": [], "ends.end": {"preset": "free", "f3": 2.0}})
+    assert [warning.pointer for warning in warnings] == ["/loads/obstacles/0/stiffness"] * warned
 
 
 @pytest.mark.parametrize(("angle", "warned"), [(90.0, True), (6.28, False)])

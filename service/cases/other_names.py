@@ -74,7 +74,7 @@ WAVES = "sin sine cos cosine amplitude frequency omega period phase"
 
 def kind_named_otherwise(name: object, rule: str) -> str:
     """What goes by this name elsewhere, of what the rule for a value allows, in words; or nothing."""
-    called = str(name).lower().replace(" ", "_")
+    called = name.lower().replace(" ", "_") if isinstance(name, str) else ""
     return next((kind for word, kind, others in OTHER_KINDS if word in rule and called in others.split()), "")
 
 

@@ -56,7 +56,7 @@ DEARER = {"wound up": 4.0, "on solids": 4.0, "limp": 3.0, "stressed at the start
 """How many times more a static analysis takes."""
 FRAMES, FOLLOWED, BY_FRAMES, MOST = 60, 0.5, 0.3, 10.0
 """Frames of a run of those seconds. More take as many times longer where they are below FOLLOWED, for the steps follow
-the frames there, and else so many to the power of BY_FRAMES, up to MOST: the seconds that `solver.run.plan` spends on a
+the frames there, and else so many to the power of BY_FRAMES, up to MOST: the seconds that `solver.run.budget` has for a
 tolerance (MOST_WORK)."""
 WINDS = 1.3
 """Twist, in that at which a rod buckles that is pulled as it is, from which on it is taken to wind itself up."""

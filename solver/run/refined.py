@@ -16,9 +16,11 @@ import numpy as np
 from solver.arrays import Array
 from solver.measures.frame import Frame
 from solver.outcome import Outcome, RunFailed
+from solver.run import budget
 from solver.run.accuracy import QUANTITIES, Accuracy, judge
+from solver.run.budget import LETTING_GO, allowance
 from solver.run.first_mesh import first_intervals, first_mesh
-from solver.run.plan import LETTING_GO, MOST_WORK, Excess, allowance, next_trial, to_come
+from solver.run.plan import Excess, next_trial, to_come
 from solver.run.recording import row_of
 from solver.run.remarks import Remarks
 from solver.run.run import Run
@@ -186,7 +188,7 @@ class Refined(Run):
         none is lost: what is none at a frame was none before."""
         if not self._history and attempt.pressed and self._first_if_pressed > attempt.trial.mesh:
             return Outcome.MESH_TOO_COARSE
-        if self._scene.at_rest and not self._rows and attempt.work > LETTING_GO * MOST_WORK:
+        if self._scene.at_rest and not self._rows and attempt.work > LETTING_GO * budget.MOST_WORK:
             return Outcome.EQUILIBRIUM_LOST
         if attempt.work > allowance(self._attempts, attempt.trial, attempt.patience):
             return Outcome.TOLERANCE_NOT_REACHED

@@ -8,10 +8,11 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from solver.measures.frame import Frame, Statistics
+from solver.run import budget
 from solver.run.artificial_viscosity import has_waves, is_damped, retardation_time, with_viscosity
+from solver.run.budget import SETTLING, Patience
 from solver.run.checkpoint import Saved, restore, saved
 from solver.run.first_mesh import first_intervals
-from solver.run.plan import MOST_WORK, SETTLING, Patience
 from solver.run.simulation import Simulation
 from solver.run.trial import (
     AT_REST,
@@ -34,9 +35,9 @@ SMALL_MOTION = 1e-3
 
 
 class UnderWay:
-    """The `run` of a trial, with what it has taken so far: its own `statistics`, and `work` as `plan` counts it.
+    """The `run` of a trial, with what it has taken so far: its own `statistics`, and `work` as `budget` counts it.
 
-    `pressed`: whether strands have pressed on each other; `calm_until`: see `plan.Patience`. Its states depend on
+    `pressed`: whether strands have pressed on each other; `calm_until`: see `budget.Patience`. Its states depend on
     nothing but the scene and the trial, so another run whose scene begins alike passes through the same; and it holds
     no frames.
     """
@@ -76,7 +77,7 @@ class UnderWay:
         of_iteration = work_at_rest if self.trial.steps == AT_REST else work_of_iteration
         per_iteration = of_iteration(self.trial.mesh, pressing)
         self.work += (self.statistics.newton_iterations - before) * per_iteration
-        if self.work > SETTLING * MOST_WORK:
+        if self.work > SETTLING * budget.MOST_WORK:
             self.calm_until = min(self.calm_until, self.run.t)
         return frame
 

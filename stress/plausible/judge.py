@@ -25,7 +25,7 @@ from service.cases import build_scene, parse_case
 from solver import Frame, Run, RunFailed, Scene
 from solver.arrays import Array
 from solver.physics.seed import seeded
-from solver.run import plan
+from solver.run import budget
 from solver.run.accuracy import errors_of, excess, sizes
 from solver.run.equilibria import Equilibria
 from solver.run.first_mesh import first_intervals
@@ -123,12 +123,12 @@ def _refined(scene: Scene) -> tuple[list[VerifiedFrame], float, Array]:
 
 def _true(scene: Scene) -> tuple[list[VerifiedFrame], Array]:
     """Its frames and its errors."""
-    tolerance, work = scene.numerics.tolerance or 0.0, plan.MOST_WORK
-    plan.MOST_WORK = WORK * work
+    tolerance, work = scene.numerics.tolerance or 0.0, budget.MOST_WORK
+    budget.MOST_WORK = WORK * work
     try:
         frames, _, told = _refined(replace(scene, numerics=replace(scene.numerics, tolerance=TRUTH * tolerance)))
     finally:
-        plan.MOST_WORK = work
+        budget.MOST_WORK = work
     return frames, told
 
 

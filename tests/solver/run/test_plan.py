@@ -7,24 +7,18 @@ from math import inf
 import numpy as np
 import pytest
 
-from solver.run.plan import (
-    CROSSED,
-    FAR_FROM_IT,
+from solver.run.budget import (
     FIRST_PART,
-    MADE,
     MOST_PATIENCE,
     MOST_WORK,
     SETTLING,
     SETTLING_LATE,
     TO_THE_END,
-    WAVES,
-    Excess,
     Patience,
     allowance,
     expected,
-    next_trial,
-    to_come,
 )
+from solver.run.plan import CROSSED, FAR_FROM_IT, MADE, WAVES, Excess, next_trial, to_come
 from solver.run.series import Attempt, Chosen, chosen
 from solver.run.trial import AT_REST, DAMPED, LOOSEST, Trial, step_tolerance
 

@@ -22,7 +22,7 @@ from solver import (
     simulate,
 )
 from solver.arrays import Array
-from solver.run import plan
+from solver.run import budget
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN, first_intervals
 from solver.run.plan import Excess
@@ -124,7 +124,7 @@ def test_what_cannot_be_reached_is_delivered_all_the_same_and_says_so() -> None:
 
 
 def test_where_the_work_that_may_be_done_is_little_there_is_an_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan, "MOST_WORK", 2e4)
+    monkeypatch.setattr(budget, "MOST_WORK", 2e4)
     run = simulate(tolerated(1e-6))
     assert len(list(run)) == 17
     assert run.accuracy is not None
@@ -279,7 +279,7 @@ def test_attempts_that_begin_from_states_of_another_run_give_the_same_to_the_bit
 
 def test_an_attempt_that_is_given_up_before_a_state_does_not_begin_from_it(monkeypatch: pytest.MonkeyPatch) -> None:
     states = states_at(tolerated(1e-6, most_intervals=32), 15)
-    monkeypatch.setattr(plan, "MOST_WORK", 2e4)
+    monkeypatch.setattr(budget, "MOST_WORK", 2e4)
     alone, (run, begun) = Refined(tolerated(1e-6)), begun_from(states, tolerated(1e-6))
     frames = list(alone)
     assert begun[0] is False  # it takes more than a tenth of that work

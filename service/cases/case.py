@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import ceil
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
@@ -32,6 +33,9 @@ TOLERANCE, INTERVALS, DT_MAX = 1e-3, 200, 0.05
 NULLABLE = ("tolerance", "intervals", "dt_max", "increment_tolerance")
 """What numerics may say null to, as if it were not given."""
 
+OF_THE_BOX = {"method", "linear_solver", "rho_inf", "rho_inf_space"}
+"""What numerics say of no other method than the box method, or of which one it is."""
+
 Fraction = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 
 if TYPE_CHECKING:
@@ -46,8 +50,8 @@ class NumericsSpec(Spec):
     method: Annotated[
         Literal["box", "staggered"],
         means("`box`: the paper's, generalized-alpha; `staggered`: rigid segments and Radau IIA of order 5, more "
-              "accurate at long steps (`rho_inf` and `linear_solver` say nothing to it). With a tolerance "
-              "`staggered`, and no other"),
+              "accurate at long steps (`rho_inf` and `linear_solver` say nothing to it). With a tolerance, a rod that "
+              "can stretch or resists its own bending, or a body at an end `staggered`, and no other"),
     ] = "box"  # fmt: skip
     linear_solver: Annotated[
         LinearSolver,
@@ -134,6 +138,16 @@ def _to_tolerance(raw: dict[str, Any]) -> bool:
     return "tolerance" in values or (values.keys() <= {"method", "verify"} and values.get("method") != "box")
 
 
+def _asking_for_staggered(rod: RodSpec, ends: EndsSpec) -> Iterator[tuple[str, str]]:
+    """The fields that no other method knows, and what they describe."""
+    for name, does in (("axial_stiffness", "can stretch"), ("retardation_time", "resists its own bending")):
+        if getattr(rod, name) is not None:
+            yield f"rod.{name}", f"a rod that {does}"
+    for name in ("start", "end"):
+        if getattr(getattr(ends, name), "mass", 0.0) > 0.0:
+            yield f"ends.{name}.mass", "a body at an end"
+
+
 class OutputSpec(Spec):
     """What is stored, and how often."""
 
@@ -196,11 +210,15 @@ class CaseSpec(Spec):
 
     @field_validator("numerics", mode="before")
     @classmethod
-    def _resolve_statics(cls, raw: Any, case: ValidationInfo) -> Any:
-        """Of a static analysis that is not to a tolerance the intervals have a node at each load."""
-        if case.data.get("analysis") != "static" or not isinstance(raw, dict) or _to_tolerance(raw):
+    def _resolve(cls, raw: Any, case: ValidationInfo) -> Any:
+        """What is not to a tolerance has the one method that knows its parts; in a static analysis the intervals have
+        a node at each load."""
+        if not isinstance(raw, dict) or _to_tolerance(raw):
             return raw
-        rod, loads = case.data.get("rod"), case.data.get("loads")  # missing where they are refused
+        rod, ends, loads = (case.data.get(part) for part in ("rod", "ends", "loads"))  # missing where they are refused
+        if case.data.get("analysis") != "static":
+            staggered = rod and ends and not raw.keys() & OF_THE_BOX and any(_asking_for_staggered(rod, ends))
+            return {"method": "staggered", **raw} if staggered else raw
         places = [load.s / rod.length for load in loads.point] if rod and loads else []
         return {"intervals": with_nodes_at(places, INTERVALS), **raw}
 
@@ -221,14 +239,9 @@ class CaseSpec(Spec):
 
     @model_validator(mode="after")
     def _check_laws(self) -> Self:
-        for name, does in (("axial_stiffness", "can stretch"), ("retardation_time", "resists its own bending")):
-            if self.analysis == "dynamic" and getattr(self.rod, name) is not None and self.numerics.method == "box":
-                rule = f"must be staggered for a rod that {does}: leave out rod.{name}, or give this method"
-                raise refusal("numerics/method", self.numerics.method, rule)
-        for name in ("start", "end"):
-            mass = getattr(getattr(self.ends, name), "mass", 0.0)
-            if self.analysis == "dynamic" and mass > 0.0 and self.numerics.method == "box":
-                rule = f"must be staggered for a body at an end: leave out ends.{name}.mass, or give this method"
+        if self.analysis == "dynamic" and self.numerics.method == "box":
+            for field, what in _asking_for_staggered(self.rod, self.ends):
+                rule = f"must be staggered for {what}: leave out {field}, or give this method"
                 raise refusal("numerics/method", self.numerics.method, rule)
         return self
 

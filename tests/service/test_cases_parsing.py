@@ -362,3 +362,13 @@ def test_a_number_whose_products_overflow_is_refused_in_a_line(name: str, key: s
         parse_case(apply_settings(load_case(name), {key: value}))
     assert [fault.pointer for fault in refused.value.errors] == [pointer]
     assert len(str(refused.value)) < 200
+
+
+BODY = {"preset": "free", "mass": 2.0}
+
+
+@pytest.mark.parametrize("part", [{"rod.axial_stiffness": 30.0}, {"rod.retardation_time": 0.1}, {"ends.end": BODY}])
+def test_what_one_method_knows_alone_is_solved_by_it_where_none_is_named(part):
+    raw = apply_settings(load_case("elastica"), {"numerics": {"intervals": 50}})
+    assert parse_case(raw).numerics.method == "box"
+    assert parse_case(apply_settings(raw, part)).numerics.method == "staggered"

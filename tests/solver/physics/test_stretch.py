@@ -283,8 +283,9 @@ def test_a_case_says_how_stiff_it_is() -> None:
     raw = apply_settings(load_case("free-flight"), {"rod.axial_stiffness": 30.0})
     given = {"method": "staggered", "intervals": 20, "dt_max": 0.1}
     assert parse_case({**raw, "numerics": given}).rod.build().laws[0].EA(np.zeros(1)) == 30.0  # type: ignore[attr-defined]
-    with pytest.raises(CaseError, match=r"/numerics/method must be staggered for a rod that can stretch.*got 'box'"):
-        parse_case({**raw, "numerics": {**given, "method": "box"}})
+    for named in ({"method": "box"}, {"rho_inf": 0.9}):
+        with pytest.raises(CaseError, match=r"/method must be staggered for a rod that can stretch.*got 'box'"):
+            parse_case({**raw, "numerics": {"intervals": 20, **named}})
     with pytest.raises(CaseError, match=r"/rod/axial_stiffness must be > 0, got 0\.0"):
         parse_case(apply_settings(raw, {"rod.axial_stiffness": 0.0}))
 

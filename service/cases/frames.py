@@ -1,4 +1,4 @@
-"""Too few frames to see what the rod does."""
+"""Too few frames to see what the rod does, and a last one that tells nothing new."""
 
 from __future__ import annotations
 
@@ -19,11 +19,23 @@ from solver.measures.buckling import stays_straight
 LONG_RUN, STILL = 200.0, 1.0
 """Periods of a swing after which a run is likely not about it; and the damping (1/s), in the frequency of a swing in
 1/s, with which it soon swings no more."""
+SLIVER = 0.01
+"""Part of the interval from which on a last frame may tell something new."""
 
 
 def frames_of(spec: CaseSpec, scene: Scene) -> list[FieldError]:
-    """What frames that are far apart do not show."""
-    return [*_frames(spec)] or [*_swings(spec, scene)]
+    """What frames that are far apart do not show, and the last one if it is next to none."""
+    return [*([*_frames(spec)] or _swings(spec, scene)), *_last(spec)]
+
+
+def _last(spec: CaseSpec) -> Iterator[FieldError]:
+    """A last frame right after the one before, as of an interval that was rounded."""
+    interval, many = spec.output.interval, spec.frames - 2
+    rest = spec.t_end - many * interval
+    if many > 0 and rest < SLIVER * interval:
+        rule = (f"leaves the last frame, at t_end, {rest:.2g} s after the one before: {spec.t_end / many:.12g} leaves "
+                "none")  # fmt: skip
+        yield FieldError("/output/interval", interval, rule)
 
 
 def _swings(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:

@@ -182,6 +182,12 @@ def test_one_that_does_not_reach_it_or_bends_aside_is_left_alone(case: dict[str,
     assert [warning for warning in _warned(case) if warning.pointer == "/loads/floor"] == []
 
 
+@pytest.mark.parametrize(("interval", "warned"), [(0.0999999, True), (0.333, True), (0.1, False), (0.3, False)])
+def test_a_last_frame_right_after_the_one_before_is_named(interval: float, warned: bool):
+    warnings = told({"t_end": 1.0, "output.interval": interval})
+    assert [(warning.pointer, warning.value) for warning in warnings] == [("/output/interval", interval)] * warned
+
+
 @pytest.mark.parametrize(("intervals", "warned"), [(10, True), (100, False)])
 def test_an_obstacle_that_fits_between_nodes_is_named(intervals: int, warned: bool):
     balls = [{"start": [0, 0, -1], "radius": radius, "stiffness": 5e5} for radius in (0.5, 0.02)]

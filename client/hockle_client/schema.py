@@ -252,8 +252,8 @@ class NumericsSpec(TypedDict):
 
     method: NotRequired[Literal["box", "staggered"]]
     """`box`: the paper's, generalized-alpha; `staggered`: rigid segments and Radau IIA of order 5, more
-    accurate at long steps (`rho_inf` and `linear_solver` say nothing to it). With a tolerance `staggered`,
-    and no other; default "box"
+    accurate at long steps (`rho_inf` and `linear_solver` say nothing to it). With a tolerance, a rod that
+    can stretch or resists its own bending, or a body at an end `staggered`, and no other; default "box"
     """
 
     linear_solver: NotRequired[Literal["block_elimination", "shooting", "banded"]]
@@ -373,7 +373,7 @@ class RodSpec(TypedDict):
     """L, along the centreline; in m"""
 
     diameter: Union[float, ProfileTable]
-    """profile; what fluid and contact see: of a tape its width or thickness; in m"""
+    """profile; what fluid and contact see: of a tape its width in a flow, its thickness in contact; in m"""
 
     youngs_modulus: NotRequired[Union[float, None]]
     """E; this or `bending_stiffness`, not both; in Pa"""
@@ -411,7 +411,9 @@ class RodSpec(TypedDict):
     """EA: profile; without it the rod cannot stretch. For `staggered` and static analyses; in N"""
 
     twist_stretch_coupling: NotRequired[Union[float, ProfileTable]]
-    """g: profile, what couples torsion with stretch; beside `axial_stiffness`; in N m; default 0.0"""
+    """g: profile, what couples torsion with stretch; beside `axial_stiffness`, and smaller than √(EA GJ).
+    Where it is negative, as DNA's, a pull winds the rod up; in N m; default 0.0
+    """
 
     retardation_time: NotRequired[Union[Union[float, ProfileTable], None]]
     """profile, by which the material resists its own bending and twisting. For `staggered`; in s"""

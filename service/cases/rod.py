@@ -54,7 +54,8 @@ class RodSpec(Spec):
 
     length: Annotated[Positive, means("L, along the centreline", "m")]
     diameter: Annotated[
-        PositiveProfile, means("profile; what fluid and contact see: of a tape its width or thickness", "m")
+        PositiveProfile,
+        means("profile; what fluid and contact see: of a tape its width in a flow, its thickness in contact", "m"),
     ]
     youngs_modulus: Annotated[Positive | None, means("E; this or `bending_stiffness`, not both", "Pa")] = None
     shear_modulus: Annotated[Positive | None, means("G; this or `torsional_stiffness`, not both", "Pa")] = None
@@ -90,8 +91,10 @@ class RodSpec(Spec):
         means("EA: profile; without it the rod cannot stretch. For `staggered` and static analyses", "N"),
     ] = None
     twist_stretch_coupling: Annotated[
-        Profile, means("g: profile, what couples torsion with stretch; beside `axial_stiffness`", "N m")
-    ] = 0.0
+        Profile,
+        means("g: profile, what couples torsion with stretch; beside `axial_stiffness`, and smaller than √(EA GJ). "
+              "Where it is negative, as DNA's, a pull winds the rod up", "N m"),
+    ] = 0.0  # fmt: skip
     retardation_time: Annotated[
         PositiveProfile | None,
         means("profile, by which the material resists its own bending and twisting. For `staggered`", "s"),

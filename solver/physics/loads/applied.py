@@ -12,7 +12,7 @@ from solver.arrays import Array
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.given import nodes_act
 from solver.physics.loads.load import Samples
-from solver.physics.loads.registry import Loads, entrained_mass, records_about, sources_of
+from solver.physics.loads.registry import Loads, about_axis, entrained_mass, records_about, sources_of
 from solver.physics.section import Section
 from solver.scene.scene import Scene
 
@@ -36,6 +36,8 @@ class AppliedLoads:
         self.at_ends = bool(self._at_ends) or bool(self._weights.any())
         """Whether there are point loads, or bodies with a weight, at an end."""
         self._moving = tuple(source for source in self._sources if not source.steady)
+        in_plane = [] if axis is None else about_axis(self._sources, self.records)
+        self._projected = [(load.about, source, mine) for load, source, mine in in_plane if not source.steady]
         self._barring = tuple(source for source in self._sources if source.bars)
         self._striking = tuple(source for source in self._sources if source.strikes and source.record.present)
         self.entrained = np.zeros(len(s)) + entrained_mass(self._sources)
@@ -76,13 +78,13 @@ class AppliedLoads:
                 values[k] += np.where(end.kinds % 2 == 1, following, 0.0)
         return values, dead
 
-    def set_time(self, t: float, i: int = 0) -> None:
-        """Let the records say what acts at time t, the i-th time of a step."""
+    def set_time(self, t: float, later: Sequence[float] = (0.0,)) -> None:
+        """Let the records say what acts at the times t + dt of a step, `later` being these dt."""
         for source in self._moving:
-            source.set_time(t, i)
-        if self._axis is not None and self._moving:
-            for mine, new in zip(self.records, records_about(self._axis, self._sources), strict=True):
-                _write(mine, new)
+            for i, dt in enumerate(later):
+                source.set_time(t + dt, i)
+        for about, source, mine in self._projected:
+            _write(mine, about(source.record, self._axis))
 
     def longest_step(self, r: Array, V: Array) -> float:
         """The longest step (s) from places r (n, 3) with velocities V (n, 3), lab, that passes over no load."""

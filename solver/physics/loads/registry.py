@@ -70,6 +70,12 @@ def records_about(axis: Any, sources: tuple[Source, ...]) -> Any:
     return LoadsAbout(**records)
 
 
+def about_axis(sources: tuple[Source, ...], records: Any) -> list[tuple[Any, Source, Any]]:
+    """Each load that may turn about one axis, with its source and its record there, of the `records_about` it."""
+    pairs = [(load, source) for load, source in zip(LOADS, sources, strict=True) if load in ABOUT]
+    return [(*pair, record) for pair, record in zip(pairs, records, strict=True)]
+
+
 def entrained_mass(sources: tuple[Source, ...]) -> Any:
     """The mass per length (n,) that the loads let the rod take along across its tangent, kg/m."""
     masses = [source.record.mass for load, source in zip(LOADS, sources, strict=True) if hasattr(load, "entrained")]

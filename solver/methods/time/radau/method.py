@@ -204,8 +204,7 @@ class RadauMethod(Method):
     def _drive(self, t: float, dt: float) -> None:
         """Write what is given at the stages of a step."""
         later = [float(c * dt) for c in tableau.C]
-        for i, time in enumerate(later):
-            self.applied.set_time(t + time, i)
+        self.applied.set_time(t, later)
         for side, (end, s) in enumerate(((self.start, 0.0), (self.end, float(self.s[-1])))):
             self._drive_end(side, end, *self.applied.driving(end, s, t, later, FEEDBACK / dt))
 

@@ -143,9 +143,11 @@ class Transverse:
         wrung = 0.5 * moment[:, None, None] * product
         blocks[:, :2, 2:] -= wrung
         blocks[:, 2:, :2] -= wrung.transpose(0, 2, 1)
-        K, rows = np.zeros((len(self.basis),) * 2), 2 * np.arange(len(blocks))[:, None] + np.arange(4)
-        np.add.at(K, (rows[:, :, None], rows[:, None, :]), blocks)
-        return np.asarray(self.basis.T @ K @ self.basis)
+        of_nodes, forces = 2 * len(blocks), np.zeros_like(self.basis)
+        beside = blocks @ self.basis[2 * np.arange(len(blocks))[:, None] + np.arange(4)]
+        forces[:of_nodes] += beside[:, :2].reshape(of_nodes, -1)
+        forces[2 : of_nodes + 2] += beside[:, 2:].reshape(of_nodes, -1)
+        return np.asarray(self.basis.T @ forces)
 
 
 class Disturbance:

@@ -347,7 +347,7 @@ class StaggeredMethod(RadauMethod):
 
     def _guess_keeps_apart(self, dt: float) -> bool:
         """Whether the guess leaves parts that press on each other apart: where they rattle, the last step misleads."""
-        move_guess(self._hand_over(), dt, self.state)
+        move_guess(self._handed, dt, self.state)
         touch = self.contact.touch
         return bool(keeps_apart(touch.points, touch.pairs, self._trial_nodes()[0]))
 

@@ -71,6 +71,7 @@ class RadauMethod(Method):
         With `consistent`, from rest: an end that is set going at once gives forces that say nothing of what follows.
         """
         self._drive(t, dt)
+        self._hand_over()
         if consistent:
             self._guess_rest()
         else:
@@ -212,7 +213,7 @@ class RadauMethod(Method):
         """The motion of the last step goes on; after a start, that of the state."""
         stages, state = self.stages, self.state
         if self._last_dt > 0.0:
-            go_on(self._hand_over(), self._last, self.trial, state, self._last_dt, dt)
+            go_on(self._handed, self._last, self.trial, state, self._last_dt, dt)
             return
         tau = tableau.C * dt
         stages.theta[:] = np.multiply.outer(0.5 * tau**2, state.alpha)
@@ -231,6 +232,6 @@ class RadauMethod(Method):
     def _solve(self, dt: float, consistent: bool) -> tuple[int, int]:
         """Iterate on the stages from where they are; how it ended and the iterations."""
         rough = self.applied.strikes and not consistent
-        status, iterations = step(self._hand_over(), dt, self._unit, self._newton_part, rough, self.state)
+        status, iterations = step(self._handed, dt, self._unit, self._newton_part, rough, self.state)
         self.applied.check()
         return int(status), int(iterations)

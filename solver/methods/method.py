@@ -11,6 +11,7 @@ from solver.arrays import Array
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape
+from solver.methods.cost import Cost
 from solver.physics.ends import DrivenEnd
 from solver.physics.loads.applied import AppliedLoads
 from solver.physics.section import Beside
@@ -35,8 +36,8 @@ class Method(Protocol):
     the driven ends; `applied`: the given loads; `shortest_step` (s): no shorter step is possible; `increment_order`:
     power of dt with which `relative_increment` falls, and `increment_tolerance` how large it may be unless told;
     `easy_iterations`: Newton iterations up to which a step may be followed by a longer one; `touches`: whether it takes
-    scenes that can touch themselves; `unresolved_bending`: by how much (J) the bending energy of what `fields` showed
-    last is more than that of the mesh: in layers.
+    scenes that can touch themselves; `cost`: of its steps, as runs to a tolerance count it; `unresolved_bending`: by
+    how much (J) the bending energy of what `fields` showed last is more than that of the mesh: in layers.
     """
 
     s: Array
@@ -49,6 +50,7 @@ class Method(Protocol):
     increment_tolerance: float
     easy_iterations: int
     touches: bool
+    cost: Cost
     unresolved_bending: float = 0.0
 
     @classmethod

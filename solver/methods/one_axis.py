@@ -9,6 +9,7 @@ from solver.kernels.dispatch import enter
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape, shape_of
+from solver.methods.cost import ABOUT_AXIS
 from solver.methods.linear import one_axis
 from solver.methods.linear import stages as linear
 from solver.methods.linear.one_axis import Factors
@@ -32,7 +33,7 @@ for asked in (space, linear):
 class OneAxisMethod(RadauMethod):
     """The rigid segments and the steps of `StaggeredMethod` for a scene that turns about `axis`: the same solution."""
 
-    touches = False
+    touches, cost = False, ABOUT_AXIS
     chain: Chain
     state: State
     stages: Stages

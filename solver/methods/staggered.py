@@ -15,6 +15,7 @@ from solver.kernels.rotation import matrices_of, rotate_back
 from solver.measures.energies import Energies
 from solver.measures.frame import Fields
 from solver.measures.passages import Shape
+from solver.methods.cost import IN_SPACE, STRETCHED
 from solver.methods.linear import segments_contact, segments_increments, tridiagonal
 from solver.methods.linear import stages as linear
 from solver.methods.linear.segments import Factors
@@ -107,6 +108,8 @@ class StaggeredMethod(RadauMethod):
         self._joints = self._bend(self.state.quaternion)[0]
         self._R = R = np.zeros((N + 2, 3, 3))
         matrices_of(self.state.quaternion, R)
+        points = 0 if scene.contact is None else len(self._touch.points.p)
+        self.cost = (STRETCHED if can_stretch(scene.rod) else IN_SPACE)._replace(points=points)
         if can_stretch(scene.rod):
             self._stretch_at_start(scene)
         follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)

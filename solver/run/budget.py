@@ -8,10 +8,10 @@ from math import inf
 
 from solver.run.artificial_viscosity import highest_grade
 from solver.run.series import Attempt
-from solver.run.trial import AT_REST, LOOSEST, OVERHEAD, Trial, grade_of, intervals_of
+from solver.run.trial import AT_REST, LOOSEST, Trial, grade_of, intervals_of
 
-MOST_WORK = 1.2e7
-"""Newton iterations times (intervals + OVERHEAD), in all, after which nothing is refined: five to ten seconds."""
+MOST_WORK = 1e7
+"""Microseconds as `solver.methods.cost` counts them, in all, after which nothing is refined: some ten seconds."""
 MOST_WORK_AT_REST = 20.0 * MOST_WORK
 """Of a static analysis on one mesh, if none as coarse has come to its end: no waves can keep it from that."""
 LETTING_GO = 3.0
@@ -20,12 +20,12 @@ FIRST_PART = 0.1
 """Part of MOST_WORK that a run may take as long as there is no answer; with longer steps it is tried again."""
 TO_THE_END = 6.0
 """Part of MOST_WORK that a run with the longest steps may take which no viscosity makes faster, as it has no waves."""
-SETTLING, SETTLING_LATE = 1.0, 3.0
+SETTLING, SETTLING_LATE = 0.8, 2.2
 """Likewise of a rod whose strands may strike each other, and soon rest: a loop that collapses takes most of the work of
 a run that is calm before and after. Viscosity takes no less, and bends the rod elsewhere."""
 OVERDRAWN = 0.25
 """Part of MOST_WORK that an attempt may take beyond what was left for it, lest all of it be lost near its end."""
-PATIENCE, MOST_PATIENCE = 8.0, 2.5
+PATIENCE, MOST_PATIENCE = 8.0, 2.0
 """How many times the work that is expected of it the first run on a second mesh, or with other steps, may take; and
 how many times MOST_WORK."""
 DAMPED_PART, LAST_PART = 0.6, 2.0
@@ -33,6 +33,8 @@ DAMPED_PART, LAST_PART = 0.6, 2.0
 or of the highest grade."""
 NEARLY = 0.5
 """Part of the whole run from which on one was not slow by so much."""
+OVERHEAD = 60
+"""Intervals that take as long as all else of a step, before it has shown."""
 BY_STEPS = 1.5
 """How much more work steps of a quarter of the error are expected to be, before it has shown."""
 FASTER = 1.2

@@ -49,6 +49,12 @@ FAR_BACK = 1.0
 """And by how much more than at first the shape may be held: a branch that leads farther hardly ever comes back."""
 
 
+ITERATION, OVERHEAD, PRESSED, COUPLED = 16.0, 60, 4.0, 0.4
+"""Microseconds of an iteration for each interval, and for OVERHEAD besides, with all that goes with it; of that how
+many times more where strands press on each other; and what the square of its intervals adds there, for all rotations
+are counted together."""
+
+
 class Equilibria(Run):
     """A branch of equilibria. Raises `RunFailed` where it cannot be followed.
 
@@ -92,6 +98,13 @@ class Equilibria(Run):
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""
         return self._equations.contact.pressing
+
+    def counted(self, _steps: int, iterations: int) -> float:
+        """About how long (us) some iterations take with all that goes with them, as `solver.methods.cost` has it."""
+        intervals = len(self.s) - 1
+        nearby = ITERATION * (intervals + OVERHEAD)
+        each = PRESSED * nearby + COUPLED * intervals**2 if self.pressing else nearby
+        return iterations * each
 
     def warm(self) -> None:
         """Have every kernel compiled."""

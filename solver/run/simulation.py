@@ -64,6 +64,10 @@ class Simulation(Run):
         """Number of pairs of points that press on each other."""
         return self._method.pressing()
 
+    def counted(self, steps: int, iterations: int) -> float:
+        """About how long steps like the last one take (us), by their number and all their `iterations`."""
+        return self._method.cost.of(len(self.s) - 1, steps, iterations, self.pressing)
+
     def warm(self) -> None:
         """Have every kernel compiled."""
         numerics = self._scene.numerics

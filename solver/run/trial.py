@@ -1,4 +1,4 @@
-"""A resolution that a run to a tolerance tries, see `plan`, and what an iteration at it costs.
+"""A resolution that a run to a tolerance tries, see `plan`.
 
 It is a mesh of some 16 times 2^mesh intervals (see `first_mesh`) and steps whose error relative to their motion, as the
 embedded formula has it, is at most FIRST_STEPS tolerance^(1/2) / 4^steps: where the motion is smooth, the true one
@@ -11,20 +11,11 @@ from math import sqrt
 from typing import NamedTuple
 
 FIRST_INTERVALS = 16
-"""Of the coarsest mesh, or somewhat more: see `first_mesh`. The work is counted as if it were as many."""
+"""Of the coarsest mesh, or somewhat more: see `first_mesh`."""
 FIRST_STEPS = 0.5
 STRIDES = 5
 """Frames that a step may pass at the most, see `Numerics`, and does at tolerances from 1e-3 on. Where the motion is
 smooth, which such steps are for, their error is of order 5."""
-OVERHEAD = 60
-"""Intervals that take as long as all else in a Newton iteration."""
-IN_CONTACT, PAIR = 2.3, 0.021
-"""How many times more work an iteration is where strands press on each other; and what each pair of points that do adds
-to that: of many, more directions have to be searched."""
-DEAR_AT_REST, PRESSED_AT_REST, COUPLED_AT_REST = 20.0, 4.0, 0.5
-"""How many times more work an iteration of a static analysis is, with all that goes with it; of that how many times
-more where strands press on each other; and what the square of its intervals adds there, for all rotations are counted
-together."""
 LOOSEST, AT_REST, DAMPED = -2, -9, -11
 """The longest steps that are tried; what stands for those of a static analysis, which make no error and are no other
 when they are tried again; and what stands for the longest steps of a rod with an artificial viscosity, as do all
@@ -58,17 +49,6 @@ def strides_of(tolerance: float, steps: int = 0) -> int:
     if steps < 0:
         return 1
     return int(max(round(STRIDES * min(tolerance / 1e-3, 1.0) ** 0.2), 1))
-
-
-def work_of_iteration(mesh: int, pressing: int) -> float:
-    """Of a motion; `pressing`: how many pairs of points press on each other."""
-    return (intervals_of(mesh) + OVERHEAD) * (IN_CONTACT + PAIR * pressing if pressing else 1.0)
-
-
-def work_at_rest(mesh: int, pressing: int) -> float:
-    """Of an iteration of a static analysis."""
-    nearby = DEAR_AT_REST * (intervals_of(mesh) + OVERHEAD)
-    return PRESSED_AT_REST * nearby + COUPLED_AT_REST * intervals_of(mesh) ** 2 if pressing else nearby
 
 
 def longest_step(steps: int, interval: float) -> float:

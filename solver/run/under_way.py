@@ -15,15 +15,12 @@ from solver.run.checkpoint import Saved, restore, saved
 from solver.run.first_mesh import first_intervals
 from solver.run.simulation import Simulation
 from solver.run.trial import (
-    AT_REST,
     Trial,
     grade_of,
     intervals_of,
     longest_step,
     step_tolerance,
     strides_of,
-    work_at_rest,
-    work_of_iteration,
 )
 from solver.scene.scene import Scene
 
@@ -32,6 +29,8 @@ if TYPE_CHECKING:
 
 SMALL_MOTION = 1e-3
 """See `Numerics`: of the waves that a start excites those below it are not followed step by step."""
+FRAME = 270.0
+"""Microseconds that a frame takes, see `solver.methods.cost`."""
 
 
 class UnderWay:
@@ -70,16 +69,19 @@ class UnderWay:
 
     def advance(self) -> Frame | None:
         """Take a step; give the frame where it ends, if one is due there. Raises RunFailed."""
-        before = self.statistics.newton_iterations
+        steps, iterations = self._spent
         frame = self.run.advance()
-        pressing = self.run.pressing
-        self.pressed = self.pressed or pressing > 0
-        of_iteration = work_at_rest if self.trial.steps == AT_REST else work_of_iteration
-        per_iteration = of_iteration(self.trial.mesh, pressing)
-        self.work += (self.statistics.newton_iterations - before) * per_iteration
+        self.pressed = self.pressed or self.run.pressing > 0
+        tried, iterated = self._spent
+        self.work += self.run.counted(tried - steps, iterated - iterations) + (FRAME if frame is not None else 0.0)
         if self.work > SETTLING * budget.MOST_WORK:
             self.calm_until = min(self.calm_until, self.run.t)
         return frame
+
+    @property
+    def _spent(self) -> tuple[int, int]:
+        """Steps that were tried, and Newton iterations, so far."""
+        return self.statistics.steps + self.statistics.failed_steps, self.statistics.newton_iterations
 
     @property
     def patience(self) -> float:

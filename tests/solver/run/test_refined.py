@@ -22,6 +22,7 @@ from solver import (
     simulate,
 )
 from solver.arrays import Array
+from solver.methods.cost import ABOUT_AXIS
 from solver.run import budget
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN, first_intervals
@@ -43,7 +44,7 @@ from solver.run.refined import Refined
 from solver.run.series import Attempt
 from solver.run.together import Together, possible
 from solver.run.trial import FIRST_INTERVALS, Trial
-from solver.run.under_way import UnderWay
+from solver.run.under_way import FRAME, UnderWay
 from solver.scene.ends import FREE
 from tests.solver.bent import bent_cantilever
 from tests.solver.scenes import EJ, LENGTH, energy
@@ -330,3 +331,12 @@ def test_what_no_rod_has_is_not_extrapolated() -> None:
     assert told[BENDING] == told[CURVATURE] == 0.5
     assert told[TWIST] == told[BALANCE] == -2.0
     assert (possible(-numbers, finest)[0, 0, [BENDING, CURVATURE, TWIST]] == 2.0).all()
+
+
+def test_the_work_of_an_attempt_is_that_of_its_steps_and_frames() -> None:
+    attempt, frames = UnderWay(tolerated(1e-3), Trial(0, 0)), 0
+    while not attempt.run.finished:
+        frames += attempt.advance() is not None
+    tried = attempt.statistics.steps + attempt.statistics.failed_steps
+    counted = ABOUT_AXIS.of(16, tried, attempt.statistics.newton_iterations, 0)
+    assert attempt.work == pytest.approx(counted + frames * FRAME)

@@ -14,6 +14,11 @@ from uuid import uuid4
 
 import pytest
 
+from hockle.parts import SINGLE_THREADED
+
+# before numpy is imported: beside other tests, BLAS would spend more on waiting for its threads than on its sums
+os.environ.update(SINGLE_THREADED | os.environ)
+
 from service.jobs import Database
 from service.results import bucket
 

@@ -35,7 +35,11 @@ def all_states(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def settings(tmp_path: Path, tables: None) -> Settings:
-    settings = Settings(data=tmp_path)
+    return settings_in(tmp_path)
+
+
+def settings_in(directory: Path) -> Settings:
+    settings = Settings(data=directory)
     settings.make_directories()
     return settings
 
@@ -60,7 +64,10 @@ def variables(settings: Settings, job) -> dict[str, np.ndarray]:
 
 def assert_same(settings: Settings, follower: Job, alone: Job) -> None:
     """All that they gave, to the bit; and the numbers of steps."""
-    shared, own = variables(settings, follower), variables(settings, alone)
+    assert_equal(variables(settings, follower), variables(settings, alone))
+
+
+def assert_equal(shared: dict[str, Any], own: dict[str, Any]) -> None:
     assert shared.keys() == own.keys() and "Tw" in own
     for name, values in own.items():
         same = np.array_equal(shared[name], values, equal_nan=values.dtype.kind == "f") if isinstance(

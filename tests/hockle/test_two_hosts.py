@@ -72,7 +72,7 @@ def _pass_on(source: socket.socket, target: socket.socket) -> None:
 def test_a_host_that_is_cut_off_loses_its_job_to_the_other_and_is_back_later(
     start, postgresql, broker, slow, quick, until, tmp_path
 ):
-    slow = apply_settings(slow, {"t_end": 10.0})
+    slow = apply_settings(slow, {"t_end": 7.0})  # more than a lease
     links = [Link(socket.AF_UNIX, str(postgresql.directory / ".s.PGSQL.5432")),
              Link(socket.AF_INET, ("127.0.0.1", broker))]  # fmt: skip
     shared = {"HOCKLE_STORE": str(tmp_path / "store")}

@@ -54,14 +54,26 @@ def give(directory: Path) -> None:
         os.chown(path, NOBODY, NOBODY)
 
 
-@pytest.fixture
-def compiled(room: Path) -> None:
-    """The kernels lie where he keeps them, as after his first run: to compile them takes minutes."""
+@pytest.fixture(scope="module")
+def kernels() -> Iterator[Path]:
+    """A copy of the compiled kernels that is his: to compile them takes minutes, and to copy them seconds."""
     solver.warm()
+    with TemporaryDirectory(dir="/tmp", prefix="hockle-kernels-") as name:
+        copy = Path(name) / f"kernels-{code_digest()}"
+        shutil.copytree(config.CACHE_DIR, copy)
+        give(copy)
+        yield copy
+
+
+@pytest.fixture
+def compiled(room: Path, kernels: Path) -> Iterator[None]:
+    """They lie where he keeps them, as after his first run, until the test ends."""
     his = room / "tmp" / f"hockle-{NOBODY}"
-    shutil.copytree(config.CACHE_DIR, his / f"kernels-{code_digest()}")
-    his.chmod(0o700)
+    his.mkdir(mode=0o700)
     give(his)
+    here = kernels.rename(his / kernels.name)
+    yield
+    here.rename(kernels)
 
 
 def environment(room: Path, **told: str) -> dict[str, str]:

@@ -28,6 +28,7 @@ from hockle_client.retrying import Retries
 from hockle_client.schema import Setting
 from hockle_client.showing import Line
 from hockle_client.streaming import Download, Events
+from hockle_client.trust import trusted
 
 if TYPE_CHECKING:
     pass
@@ -49,7 +50,9 @@ class AsyncClient:
         key = key or os.environ.get("HOCKLE_KEY")
         self.patience = patience
         headers = {"Authorization": f"Bearer {key}"} if key else {}
-        self._http = httpx.AsyncClient(base_url=self.url, headers=headers, timeout=SILENCE, trust_env=False)
+        self._http = httpx.AsyncClient(
+            base_url=self.url, headers=headers, timeout=SILENCE, trust_env=False, verify=trusted()
+        )
 
     async def __aenter__(self) -> Self:
         return self

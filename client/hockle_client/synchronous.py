@@ -27,6 +27,7 @@ from hockle_client.retrying import Retries
 from hockle_client.schema import Setting
 from hockle_client.showing import Line
 from hockle_client.streaming import Download, Events
+from hockle_client.trust import trusted
 
 if TYPE_CHECKING:
     pass
@@ -48,7 +49,9 @@ class Client:
         key = key or os.environ.get("HOCKLE_KEY")
         self.patience = patience
         headers = {"Authorization": f"Bearer {key}"} if key else {}
-        self._http = httpx.Client(base_url=self.url, headers=headers, timeout=SILENCE, trust_env=False)
+        self._http = httpx.Client(
+            base_url=self.url, headers=headers, timeout=SILENCE, trust_env=False, verify=trusted()
+        )
 
     def __enter__(self) -> Self:
         return self

@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import replace
+from http.client import HTTPConnection, HTTPException
 from pathlib import Path
 
 from hockle.broker import answers, redis_binary, redis_child, short_directory
@@ -140,12 +141,14 @@ class Services:
             time.sleep(0.05)
 
     def _api_answers(self) -> bool:
-        import httpx
-
+        connection = HTTPConnection(self._host, self._port, timeout=1.0)
         try:
-            return httpx.get(f"{self.address}/readyz", timeout=1.0, trust_env=False).status_code == 200
-        except httpx.TransportError:
+            connection.request("GET", "/readyz")
+            return connection.getresponse().status == 200
+        except (OSError, HTTPException):
             return False
+        finally:
+            connection.close()
 
 
 def stop_on_signals() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache
 from importlib.metadata import version
 
 from fastapi import FastAPI
@@ -105,11 +106,13 @@ def create_app(settings: Settings, keyed: bool = False) -> FastAPI:
     return app
 
 
+@cache
 def _warm_up() -> None:
-    """Do now what would hold up the first clients: load what validation needs, and set what lives as long as the
+    """Do now, once, what would hold up the first clients: load what validation needs, and set what lives as long as the
     process apart from what is collected (a collection of it all takes 0.1 s, in which nobody is answered)."""
     for name in shipped_cases():
         parse_case(load_case(name))
-    gc.collect()
+    if gc.isenabled():  # else nobody has looked since the process began, in which there is next to no garbage yet
+        gc.collect()
     gc.freeze()
     gc.enable()

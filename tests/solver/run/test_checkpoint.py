@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable
 from dataclasses import fields, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -97,6 +98,12 @@ def refined_at_rest() -> Scene:
     return replace(balanced(), numerics=Numerics("staggered", tolerance=1e-3))
 
 
+@cache
+def undisturbed(make: Callable[[], Scene]) -> list[Frame]:
+    """The frames of a run that is not interrupted."""
+    return list(simulate(make()))
+
+
 def interrupted(scene: Scene, after: int) -> list[Frame]:
     """The frames of a run that is begun anew, and restored, after each `after` steps."""
     found: list[Frame | None] = []
@@ -123,7 +130,7 @@ def assert_same(one: list[Frame], other: list[Frame]) -> None:
                                   balanced, verified])  # fmt: skip
 @pytest.mark.parametrize("after", [1, 3, 10])
 def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], Scene], after: int) -> None:
-    assert_same(list(simulate(make())), interrupted(make(), after))
+    assert_same(undisturbed(make), interrupted(make(), after))
 
 
 @pytest.mark.parametrize("after", [7, 40, 300])
@@ -131,13 +138,12 @@ def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], 
 def test_a_run_that_is_interrupted_while_it_is_refined_gives_the_same_frames_to_the_bit(
     make: Callable[[], Scene], after: int
 ) -> None:
-    assert_same(list(simulate(make())), interrupted(make(), after))
+    assert_same(undisturbed(make), interrupted(make(), after))
 
 
 @pytest.mark.parametrize("make", [pressed, staggered_pressed])
 def test_strands_press_in_the_run_that_is_interrupted_in_contact(make: Callable[[], Scene]) -> None:
-    *_, last = simulate(make())
-    assert last.contacts > 0
+    assert undisturbed(make)[-1].contacts > 0
 
 
 def test_what_a_run_has_cost_goes_on_too() -> None:

@@ -24,7 +24,7 @@ from hockle_client import Client
 from service.cases import apply_settings, load_case
 
 QUICK = {"t_end": 0.5, "output.interval": 0.1, "numerics.intervals": 20}
-SLOW = {"t_end": 3.0, "output.interval": 0.1, "numerics.dt_max": 0.0005}
+SLOW = {"t_end": 2.0, "output.interval": 0.1, "numerics.dt_max": 0.0005}
 SHORT_LEASES = {"HOCKLE_LEASE": "5"}  # a machine with other work to do may hold a beat back for seconds
 
 

@@ -90,9 +90,9 @@ def refusal(at: str, value: object, rule: str) -> PydanticCustomError:
 def field_error(detail: ErrorDetails) -> FieldError:
     """A fault as pydantic found it, in the words of this package."""
     context = detail.get("ctx", {})
-    told = tuple(map(str, detail["loc"]))
-    named = told[-1:] if detail["type"] == "extra_forbidden" else ()  # by who sent it, however it looks
-    parts = [part for part in told[: len(told) - len(named)] if not TAG.fullmatch(part)] + list(named)
+    location = tuple(map(str, detail["loc"]))
+    named = location[-1:] if detail["type"] == "extra_forbidden" else ()  # by who sent it, however it looks
+    parts = [part for part in location[: len(location) - len(named)] if not TAG.fullmatch(part)] + list(named)
     pointer = "".join("/" + part.replace("~", "~0").replace("/", "~1") for part in parts)
     if len(pointer) > LONGEST_POINTER:
         pointer = pointer[:LONGEST_POINTER] + "..."

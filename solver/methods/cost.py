@@ -11,6 +11,9 @@ from typing import NamedTuple
 
 POINT = 0.4
 """Microseconds that each point of self-contact adds to a step."""
+ROUGH = 1.3
+"""Microseconds that each iteration after a step's second takes more for each interval where loads may set in all of a
+sudden: tangents are renewed."""
 PRESSED, PAIR, OVERHEAD = 0.3, 0.0123, 60
 """Microseconds that an iteration takes more for each interval, and for OVERHEAD besides, where strands press on each
 other; and those that each pair of points which do adds to them: of many, more directions have to be searched."""
@@ -25,12 +28,13 @@ class Cost(NamedTuple):
     iteration: float
     points: int = 0
 
-    def of(self, intervals: int, steps: int, iterations: int, pressing: int) -> float:
-        """Of some steps (us); `iterations`: of all of them; `pressing`: how many pairs of points press on each other.
-        """
+    def of(self, intervals: int, steps: int, iterations: int, pressing: int, rough: bool = False) -> float:
+        """Of some steps (us); `iterations`: of all of them; `pressing`: how many pairs of points press on each other;
+        `rough`: whether loads may set in all of a sudden."""
+        renewed = ROUGH * intervals * max(iterations - 2 * steps, 0) if rough else 0.0
         each = self.step + self.interval * intervals + POINT * self.points
         pressed = (intervals + OVERHEAD) * (PRESSED + PAIR * pressing) if pressing else 0.0
-        return steps * each + iterations * (self.iteration * intervals + pressed)
+        return steps * each + iterations * (self.iteration * intervals + pressed) + renewed
 
 
 ABOUT_AXIS, IN_SPACE, STRETCHED = Cost(105.0, 0.43, 0.14), Cost(140.0, 2.4, 0.32), Cost(230.0, 1.05, 1.05)

@@ -28,7 +28,7 @@ OVERDRAWN = 0.25
 PATIENCE, MOST_PATIENCE = 8.0, 2.0
 """How many times the work that is expected of it the first run on a second mesh, or with other steps, may take; and
 how many times MOST_WORK."""
-DAMPED_PART, LAST_PART = 0.6, 2.0
+DAMPED_PART, LAST_PART = 0.6, 1.5
 """Part of MOST_WORK that a run with artificial viscosity may take, and that the last ones may: after one that was slow,
 or of the highest grade."""
 NEARLY = 0.5

@@ -12,6 +12,8 @@ def test_it_grows_with_intervals_steps_iterations_points_and_pairs() -> None:
     assert IN_SPACE.of(20, 10, 30, 0) == pytest.approx(10.0 * one)
     assert one < IN_SPACE.of(40, 1, 3, 0) < 2.0 * one
     assert one < IN_SPACE.of(20, 1, 4, 0) < 4.0 / 3.0 * one
+    assert IN_SPACE.of(20, 1, 2, 0, rough=True) == IN_SPACE.of(20, 1, 2, 0)
+    assert one < IN_SPACE.of(20, 1, 3, 0, rough=True)
     assert one < touching.of(20, 1, 3, 0) < touching.of(20, 1, 3, 5) < touching.of(20, 1, 3, 500)
 
 

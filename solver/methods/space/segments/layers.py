@@ -141,8 +141,10 @@ class Layers(NamedTuple):
         about, missing = [*held, *[np.ones(2, dtype=bool)] * len(self.layers)], np.zeros_like(fields.kappa)
         energy = 0.0
         for layer, turned in zip(self.layers, about, strict=False):
-            T = float(np.mean(fields.f[layer.taut, 2]))
-            x = self.h * np.sqrt(max(T, 0.0) / layer.EJ)
+            T = sum(float(fields.f[i, 2]) for i in layer.taut) / len(layer.taut)
+            if T * self.h**2 <= RESOLVED**2 * layer.EJ.min():
+                continue
+            x = self.h * np.sqrt(T / layer.EJ)
             lacking = turned & (x > RESOLVED)
             if layer.load is None:
                 missing[layer.nodes, :2] += self._at_hinge(fields, layer, x, ~turned & (x > RESOLVED))

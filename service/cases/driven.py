@@ -21,12 +21,14 @@ BACK = 0.01
 class Driven:
     """How both ends are moved. `turned`: the largest rotation (rad) of one about itself relative to the other, where
     both are prescribed; `spun`: that of any; `moved`: whether one changes its place or leans; `to_and_fro`: whether one
-    comes back; `acceleration`: the largest (m/s^2) of an end, or of the rod's length where it leans."""
+    comes back; `turns`: how often at the most; `acceleration`: the largest (m/s^2) of an end, or of the rod's length
+    where it leans."""
 
     turned: float
     spun: float
     moved: bool
     to_and_fro: bool
+    turns: int
     acceleration: float
 
     @classmethod
@@ -41,11 +43,17 @@ class Driven:
         speeds = np.diff(places, axis=0) / times[1]
         fastest = np.abs(speeds).max(axis=0)
         there, back = ((sign * speeds > BACK * fastest).any(axis=0) for sign in (1.0, -1.0))
+        sides = np.sign(np.where(np.abs(speeds) > BACK * fastest, speeds, 0.0))
         return cls(
             turned=float(turned.max()), spun=float(spun.max()), moved=bool(fastest.any()),
-            to_and_fro=bool((there & back).any()),
+            to_and_fro=bool((there & back).any()), turns=max(map(_changes, sides.T)),
             acceleration=float(np.abs(np.diff(speeds, axis=0, prepend=0.0)).max() / times[1]),
         )  # fmt: skip
+
+
+def _changes(sides: Array) -> int:
+    """How often signs (n,) change, but for those that are 0."""
+    return int(np.count_nonzero(np.diff(sides[sides != 0.0])))
 
 
 def _prescribed(end: End, times: Array) -> Array:

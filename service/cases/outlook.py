@@ -36,8 +36,8 @@ from solver.scene.layout import nodes_at_rest
 
 SECONDS = {
     "wound up": 10.0, "lies on itself": 7.0, "may spring onto itself": 3.5, "taut": 6.0,
-    "taut and stretching": 1.6, "still": 0.1, "struck": 5.0, "struck in water": 3.2, "held straight and twisted": 1.8,
-    "held straight and springing": 6.0,
+    "taut and stretching": 1.6, "still": 0.1, "under many loads": 2.0, "struck": 5.0,
+    "struck in water": 3.2, "held straight and twisted": 1.8, "held straight and springing": 6.0,
     "held straight and moved": 2.0, "held straight": 0.7, "on a floor": 8.0, "slides as a whole": 0.3,
     "overdamped": 0.18, "overdamped and wound up": 3.0, "limp and moved": 5.0, "in space and moved or let go": 4.0,
     "with a heavy piece": 2.3, "a coil that is moved": 0.45, "moved and settling in space": 0.4, "spun": 1.6,
@@ -59,6 +59,8 @@ FRAMES, FOLLOWED, BY_FRAMES, MOST = 60, 0.5, 0.3, 10.0
 """Frames of a run of those seconds. More take as many times longer where they are below FOLLOWED, for the steps follow
 the frames there, and else so many to the power of BY_FRAMES, up to MOST: the seconds that `solver.run.budget` has for a
 tolerance (MOST_WORK)."""
+FOR_A_TURN = 7
+"""Frames that take as long as an end that turns back once."""
 WINDS = 1.3
 """Twist, in that at which a rod buckles that is pulled as it is, from which on it is taken to wind itself up."""
 SPINS = 15.0
@@ -101,6 +103,8 @@ STIFF, STICK = 1.0, 0.1
 LIMP, WHIPPED = 1e5, 1e6
 """Weight, in EJ/L^2, of a rod that bends by its ends in so short a part that the meshes have to be fine; and moment of
 the inertia, in EJ/L, of one that does where it is moved."""
+MANY = 10
+"""Point loads, each of which kinks the rod, or sets in at a time of its own."""
 HEAVY = 20.0
 """Mass per length, by its median, of a piece that stands for a body, whose end a mesh has to find."""
 STRESSED = 3.0
@@ -117,7 +121,8 @@ def likely_seconds(scene: Scene) -> float:
     """CPU seconds at a tolerance of 1e-3, but for what very many frames or nodes cost."""
     if scene.analysis == "static":
         return _at_rest(scene)
-    kind, more = kind_of(scene), max(scene.t_end / scene.output_interval / FRAMES, 1.0)
+    kind, frames = kind_of(scene), scene.t_end / scene.output_interval
+    more = max(frames, FOR_A_TURN * Driven.of(scene).turns, FRAMES) / FRAMES
     seconds = SECONDS[kind]
     if kind != "still" and heavy_part(scene).any() and not _is_braked(scene):
         seconds = max(seconds, SECONDS["with a heavy piece"])
@@ -147,7 +152,7 @@ def kind_of(scene: Scene) -> str:
         return "let go and stretching"
     if _is_still(scene, driven, urged):
         return "still"
-    if driven.turned > WINDS * critical_twist(scene):
+    if driven.turned + _wound(scene) > WINDS * critical_twist(scene):
         return "overdamped and wound up" if overdamped else "wound up"
     if scene.contact is not None and urged.bent > TIED and not overdamped:
         return "lies on itself"
@@ -209,6 +214,11 @@ def kind_of(scene: Scene) -> str:
         return "shaken in water" if driven.to_and_fro else "towed through water" if driven.moved else "in water"
     if not held and max(urged.stress, urged.force) < SMALL:
         return "flying freely"
+    if len(scene.points) >= MANY:
+        return "under many loads"
+    snaps = distances(scene) is not None and urged.pushed > SNAPS * urged.bent
+    if snaps and (urged.bent > SMALL or not urged.at_once):
+        return "snapping through"
     if urged.at_once:
         gentle = max(urged.stress, urged.force) < SMALL and urged.weight < GENTLE and damping > DAMPED * frequency
         if gentle:
@@ -221,8 +231,6 @@ def kind_of(scene: Scene) -> str:
         if damping > SETTLING * frequency:
             return "let go and settling between holds" if between_holds else "let go and settling"
         return "let go or loaded at once"
-    if distances(scene) is not None and urged.pushed > SNAPS * urged.bent:
-        return "snapping through"
     if driven.spun and damping < UNDAMPED * frequency:
         return "twisted to and fro"
     if damping < UNDAMPED * frequency:
@@ -345,6 +353,15 @@ def _is_held(end: End) -> bool:
 def _lets_go(end: End) -> bool:
     """Whether it holds its place at first, and later does not."""
     return any(c[0].kind != "load" and c[-1].kind == "load" for c in end.translation)
+
+
+def _wound(scene: Scene) -> float:
+    """By what rotation (rad) a rod is twisted at t = 0 whose ends do not turn freely."""
+    if not (_is_turned(scene.start) and _is_turned(scene.end)):
+        return 0.0
+    s = np.linspace(0.0, float(scene.rod.length), INTERVALS + 1)
+    _, _, kappa = nodes_at_rest(scene.initial, s)
+    return abs(float(np.trapezoid(kappa[:, 2] - scene.rod.kappa0[2](s), s)))
 
 
 def _is_turned(end: End) -> bool:

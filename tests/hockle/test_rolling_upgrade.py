@@ -103,9 +103,9 @@ def held(registry, until) -> Callable[[str], AbstractContextManager[None]]:
     nobody is at the database, else a transaction of its own could keep the tables from being changed."""
 
     def others_at_work() -> bool:
-        told = text("SELECT count(*) FROM pg_stat_activity WHERE pid <> pg_backend_pid() AND state <> 'idle'")
+        query = text("SELECT count(*) FROM pg_stat_activity WHERE pid <> pg_backend_pid() AND state <> 'idle'")
         with registry.database.reading() as connection:
-            return connection.scalar(told) > 0
+            return connection.scalar(query) > 0
 
     def stopped(pid: int) -> bool:
         os.kill(pid, signal.SIGSTOP)

@@ -48,6 +48,8 @@ FAR_FROM_IT = 0.1
 """Relative error of the next finer mesh from which on a mesh is too coarse to show what shorter steps would change."""
 STEEPER = 3
 """By how many grades more viscosity the next run has where one was slow, rather than one."""
+HURRY = 3.0
+"""How many times MOST_WORK, spent without an answer, after which the next run has as much as there may be."""
 SAME_TIME = 0.02
 """Part of the time at which a run failed, within which another has failed at the same time."""
 DEAR, FAR_OFF = 2.5, 10.0
@@ -271,7 +273,10 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int, t_en
     if crossed and intervals_of(last.mesh + 1) <= most_intervals:
         return Trial(last.mesh + 1, DAMPED)  # nodes were too far apart to press on each other as strands do
     if last.slow or is_viscous(last):
-        return _more_damped(last, t_end)
+        more = _more_damped(last, t_end)
+        if more and spent(history) > HURRY * budget.MOST_WORK:
+            return Trial(more.mesh, DAMPED - highest_grade(intervals_of(more.mesh)))
+        return more
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
     branch_ends = last.steps == AT_REST and len(failed) > 3 and (last.outcome != LOST or last.t > 0.0)

@@ -272,3 +272,12 @@ def test_a_finer_mesh_on_which_it_crossed_itself_gets_more_viscosity() -> None:
     assert next_trial([slow(1, 0), waited_for], [Excess()], 2000, 1.0) == Trial(2, DAMPED)
     history = [slow(0, 0), slow(0, LOOSEST), ran(0, DAMPED), failed(1, 0.1, steps=DAMPED)._replace(outcome=CROSSED)]
     assert next_trial(history, [Excess()], 10_000) == Trial(1, DAMPED - 1)
+
+
+def test_where_far_too_much_was_spent_without_an_answer_the_next_run_has_all_the_viscosity_there_may_be() -> None:
+    """DNA in tweezers that winds itself up took 115 s, of grade after grade, and had no answer."""
+    begun = [slow(4, LOOSEST, 2.2 * MOST_WORK), slow(4, DAMPED, 0.6 * MOST_WORK)._replace(t=0.7)]
+    assert next_trial(begun, [Excess()], 2000, 1.0) == Trial(4, DAMPED - 1)
+    last = slow(4, DAMPED - 1, 1.5 * MOST_WORK)._replace(t=0.7)
+    assert next_trial([*begun, last], [Excess()], 2000, 1.0) == Trial(4, DAMPED - 4)
+    assert next_trial([*begun, last, slow(4, DAMPED - 4)], [Excess()], 2000, 1.0) is None

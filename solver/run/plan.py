@@ -55,7 +55,7 @@ SAME_TIME = 0.02
 DEAR, FAR_OFF = 2.5, 10.0
 """How many times the work shorter steps took, and how many times the tolerance their error is, where the second mesh
 has the longer ones."""
-CHEAP, SAME = 0.1, 1.1
+CHEAP, SAME = 0.13, 1.1
 """Part of MOST_WORK that an attempt may always take, unless it has shorter steps than one that changed nothing: the
 error was the same to this."""
 ENOUGH = 0.5

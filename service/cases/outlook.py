@@ -121,8 +121,9 @@ def likely_seconds(scene: Scene) -> float:
     """CPU seconds at a tolerance of 1e-3, but for what very many frames or nodes cost."""
     if scene.analysis == "static":
         return _at_rest(scene)
-    kind, frames = kind_of(scene), scene.t_end / scene.output_interval
-    more = max(frames, FOR_A_TURN * Driven.of(scene).turns, FRAMES) / FRAMES
+    driven = Driven.of(scene)
+    kind, frames = _kind(scene, driven), scene.t_end / scene.output_interval
+    more = max(frames, FOR_A_TURN * driven.turns, FRAMES) / FRAMES
     seconds = SECONDS[kind]
     if kind != "still" and heavy_part(scene).any() and not _is_braked(scene):
         seconds = max(seconds, SECONDS["with a heavy piece"])
@@ -144,7 +145,11 @@ def _at_rest(scene: Scene) -> float:
 
 def kind_of(scene: Scene) -> str:
     """What moves the rod, of `SECONDS`."""
-    driven, frequency, damping = Driven.of(scene), _frequency(scene), scene.damping_rate
+    return _kind(scene, Driven.of(scene))
+
+
+def _kind(scene: Scene, driven: Driven) -> str:
+    frequency, damping = _frequency(scene), scene.damping_rate
     urged = Urged.of(scene, driven)
     heavily, held = damping > HEAVILY * frequency, _is_held(scene.start) or _is_held(scene.end)
     overdamped = damping > MUCH * frequency or (heavily and not driven.moved and urged.weight_across < LIGHT)
@@ -216,7 +221,8 @@ def kind_of(scene: Scene) -> str:
         return "flying freely"
     if len(scene.points) >= MANY:
         return "under many loads"
-    snaps = distances(scene) is not None and urged.pushed > SNAPS * urged.bent
+    between_holds = distances(scene) is not None
+    snaps = between_holds and urged.pushed > SNAPS * urged.bent
     if snaps and (urged.bent > SMALL or not urged.at_once):
         return "snapping through"
     if urged.at_once:
@@ -225,7 +231,6 @@ def kind_of(scene: Scene) -> str:
             return "let go gently"
         if max(urged.stress, urged.force) < SMALL and urged.weight < STICK:
             return "swinging as a stick"
-        between_holds = distances(scene) is not None
         if between_holds and not (_is_turned(scene.start) or _is_turned(scene.end)):
             return "let go between pins"
         if damping > SETTLING * frequency:

@@ -3,8 +3,8 @@
 Half of the time is numba's own Python, which types every call of every kernel. Of `a + b` it asks all that may ever be
 meant by +, each time; here it asks once for each kind of a and b. After each of its passes it looks which variables
 live where, which only the last pass and generators need. And it makes machine code of each kernel by itself, also of
-those that only kernels call, which are part of their callers' code; here only of what somebody asks the address of
-(docs/decisions/0005).
+those that only kernels call, which are part of their callers' code, and has LLVM optimize it twice before; here that
+code and the second round are only for what somebody asks the address of (docs/decisions/0005).
 """
 
 from __future__ import annotations
@@ -61,6 +61,15 @@ class _Library(JITCodeLibrary):
 
     has_machine_code = False
 
+    def _optimize_final_module(self) -> None:
+        """Numba's first round, in which calls are inlined; see `_make_machine_code` for the second."""
+        self._optimize(loop_vectorize=self._codegen._loopvect, slp_vectorize=False, opt=self._codegen._opt_level,
+                       cost="cheap")  # fmt: skip
+
+    def _optimize(self, **options: Any) -> None:
+        passes, builder = self._codegen._module_pass_manager(**options)
+        passes.run(self._final_module, builder)
+
     def get_pointer_to_function(self, name: str) -> Any:
         """The address of one of its functions; 0 if it has none of that name."""
         self._ensure_finalized()
@@ -72,8 +81,12 @@ class _Library(JITCodeLibrary):
         """What a cache keeps of it."""
         return super().serialize_using_object_code() if self.has_machine_code else self.serialize_using_bitcode()
 
+    @property
+    def _is_from_a_cache(self) -> bool:
+        return bool(getattr(self, "_compiled_object", None))
+
     def _finalize_final_module(self) -> None:
-        if getattr(self, "_compiled_object", None):  # from a cache
+        if self._is_from_a_cache:
             self._make_machine_code()
             return
         self._finalize_dynamic_globals()
@@ -82,6 +95,8 @@ class _Library(JITCodeLibrary):
 
     def _make_machine_code(self) -> None:
         self.has_machine_code = True
+        if not self._is_from_a_cache:
+            self._optimize()
         super()._finalize_final_module()
         for variable in self._final_module.global_variables:
             if variable.name in _WAITING:

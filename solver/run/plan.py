@@ -63,8 +63,9 @@ ENOUGH = 0.5
 WORTH = {"kappa": 4.0}
 """How many times MOST_WORK all that a quantity needs may be, as its error last fell, for it to be refined; the others
 are refined as long as their errors fall."""
-LEAST_FALL = 1.3
-"""By how much the error must have fallen last time to be thought to fall again."""
+LEAST_FALL, ONCE_MORE = 1.3, 0.3
+"""By how much the error must have fallen last time to be thought to fall again; and the part of MOST_WORK below which an
+attempt is made all the same, for what is not given up soon: two meshes may agree by chance, and then differ again."""
 
 
 class Excess(NamedTuple):
@@ -75,6 +76,7 @@ class Excess(NamedTuple):
     steps: float = inf
     before: float = inf
     worth: float = inf
+    anywhere: float = 0.0
 
     @property
     def total(self) -> float:
@@ -138,10 +140,12 @@ def _candidates(history: Sequence[Attempt], errors: Sequence[Excess], most_inter
             yield Trial(mesh, steps + 1)
         return
     for excess in sorted(errors, key=lambda excess: -excess.total):
-        if excess.total <= 1.0:
-            return
         for trial in _finer(_finest(complete), excess, chosen(history).many, diagonal=is_diagonal(history)):
-            if _may_do(history, excess, trial, most_intervals):
+            if excess.total > 1.0 and _may_do(history, excess, trial, most_intervals):
+                yield trial
+    for excess in sorted(errors, key=lambda excess: -excess.anywhere):
+        for trial in _finer(_finest(complete), excess, chosen(history).many, diagonal=is_diagonal(history)):
+            if excess.anywhere > 1.0 >= excess.total and _is_cheap(history, trial, most_intervals):
                 yield trial
 
 
@@ -252,15 +256,16 @@ def _no_third_mesh(history: Sequence[Attempt], complete: Sequence[Attempt], erro
 
 def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Trial]:
     """Finer resolutions than the finest there is, what is wanted most first. `chain`: meshes that tell its error; with
-    other steps there would be two of them."""
+    other steps there would be two of them, which is no loss where the error has not fallen with them."""
     mesh, steps = Trial(best.mesh + 1, best.steps), Trial(best.mesh, best.steps + 1)
     both = Trial(best.mesh + 1, best.steps + 1)
     if grade_of(steps.steps) is None and is_viscous(best):  # without viscosity it did not come to its end
         return [mesh]
     alone = [mesh, steps] if excess.mesh >= excess.steps else [steps, mesh]
-    alike = chain < 3 and excess.mesh <= FAR * excess.steps
-    diagonal = diagonal and excess.steps > STEP_SHARE
-    if diagonal or (alike and excess.mesh > 1.0 - STEP_SHARE and excess.steps > STEP_SHARE):
+    alike = excess.mesh <= FAR * excess.steps and excess.mesh > 1.0 - STEP_SHARE and excess.steps > STEP_SHARE
+    if alike and chain > 2 and excess.before < LEAST_FALL * excess.total:
+        return [both, steps, mesh]
+    if (alike and chain < 3) or (diagonal and excess.steps > STEP_SHARE):
         return [both, alone[0]]
     return alone[:1]
 
@@ -295,13 +300,22 @@ def _may_do(history: Sequence[Attempt], excess: Excess, trial: Trial, most_inter
         return False
     complete = [attempt for attempt in history if attempt.complete]
     fall = excess.before / excess.total
-    if expected(complete, trial) <= CHEAP * budget.MOST_WORK:
+    if _is_cheap(history, trial, most_intervals):
         by_steps = len(complete) > 2 and trial.mesh == complete[-1].mesh == complete[-2].mesh
         return not (by_steps and 1.0 / SAME < fall < SAME)
     if is_viscous(trial):
         return False  # its waves do not converge
-    work = spent(history) + _all_of(complete, excess, trial)
-    return fall >= LEAST_FALL and work <= excess.worth * budget.MOST_WORK
+    work = expected(complete, trial)
+    if excess.worth == inf and work <= ONCE_MORE * budget.MOST_WORK:
+        return True
+    all_of_them = spent(history) + _all_of(complete, excess, trial)
+    return fall >= LEAST_FALL and all_of_them <= excess.worth * budget.MOST_WORK
+
+
+def _is_cheap(history: Sequence[Attempt], trial: Trial, most_intervals: int) -> bool:
+    """Whether an attempt is nearly nothing of the work that may be done, and can be made."""
+    work = expected([attempt for attempt in history if attempt.complete], trial)
+    return work <= CHEAP * budget.MOST_WORK and suffices(history, trial, most_intervals)
 
 
 def _all_of(complete: Sequence[Attempt], excess: Excess, trial: Trial) -> float:

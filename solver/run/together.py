@@ -146,9 +146,11 @@ class Together:
             mesh.append(errors_of(self._of_mesh(here, judged=True)[1], size))
             steps.append(errors_of(self._of_steps(series, here, judged=True), size))
         unknown = np.full(len(QUANTITIES), np.inf)
-        of_mesh = excess(target, np.concatenate(mesh)) if len(self._chosen.meshes) > 1 else unknown
+        by_mesh, by_steps = np.concatenate(mesh), self._with_lost(np.concatenate(steps), size)
+        of_mesh = excess(target, by_mesh) if len(self._chosen.meshes) > 1 else unknown
         known = len(series) > 1 or self._at_rest
-        of_steps = excess(target, self._with_lost(np.concatenate(steps), size)) if known else unknown
+        of_steps = excess(target, by_steps) if known else unknown
+        anywhere = (by_mesh + by_steps).max(axis=0) / target
         if self._diagonal:
             of_steps = np.minimum(of_steps, 0.5 * of_mesh)
             of_mesh = of_mesh - of_steps
@@ -159,7 +161,8 @@ class Together:
         untold = [previous.steps == np.inf > now for previous, now in zip(before, of_steps, strict=True)]
         totals = [np.inf if any(unknown) else previous.total
                   for previous, *unknown in zip(before, far, untold, strict=True)]  # fmt: skip
-        return [Excess(*map(float, numbers)) for numbers in zip(of_mesh, of_steps, totals, worth, strict=True)]
+        each = zip(of_mesh, of_steps, totals, worth, anywhere, strict=True)
+        return [Excess(*map(float, numbers)) for numbers in each]
 
     @property
     def _untold(self) -> bool:

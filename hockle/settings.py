@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable
 from typing import Any
 
 from hockle.failure import Failure
 
+DECIMAL = re.compile(r"[+-]?(\d+\.\d*|\.\d+)([eE][+-]?\d+)?")
+"""Numbers that people write, and JSON does not know: .5, 5. and +5.0."""
+
 
 def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
-    """Values by dotted key; a value is JSON, or else a plain string. Raises Failure for one without `=`."""
+    """Values by dotted key: JSON, decimal numbers, or else plain strings. Raises Failure for one without `=`."""
     settings: dict[str, Any] = {}
     for text in texts:
         key, equals, value = text.partition("=")
@@ -19,7 +23,7 @@ def parse_settings(texts: Iterable[str]) -> dict[str, Any]:
         try:
             settings[key] = json.loads(value)
         except ValueError:
-            settings[key] = value
+            settings[key] = float(value) if DECIMAL.fullmatch(value) else value
     return settings
 
 

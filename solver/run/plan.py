@@ -64,8 +64,8 @@ WORTH = {"kappa": 4.0}
 """How many times MOST_WORK all that a quantity needs may be, as its error last fell, for it to be refined; the others
 are refined as long as their errors fall."""
 LEAST_FALL, ONCE_MORE = 1.3, 0.3
-"""By how much the error must have fallen last time to be thought to fall again; and the part of MOST_WORK below which an
-attempt is made all the same, for what is not given up soon: two meshes may agree by chance, and then differ again."""
+"""By how much the error must have fallen last time to be thought to fall again; and how long an attempt may be, as part
+of MOST_WORK, that is made all the same, for what is not given up soon: two meshes may agree by chance."""
 
 
 class Excess(NamedTuple):
@@ -263,10 +263,10 @@ def _finer(best: Attempt, excess: Excess, chain: int, diagonal: bool) -> list[Tr
         return [mesh]
     alone = [mesh, steps] if excess.mesh >= excess.steps else [steps, mesh]
     alike = excess.mesh <= FAR * excess.steps and excess.mesh > 1.0 - STEP_SHARE and excess.steps > STEP_SHARE
-    if alike and chain > 2 and excess.before < LEAST_FALL * excess.total:
-        return [both, steps, mesh]
     if (alike and chain < 3) or (diagonal and excess.steps > STEP_SHARE):
         return [both, alone[0]]
+    if alike and not diagonal and excess.worth == inf and excess.before < LEAST_FALL * excess.total:
+        return [both, steps, mesh]
     return alone[:1]
 
 

@@ -150,7 +150,7 @@ class Together:
         of_mesh = excess(target, by_mesh) if len(self._chosen.meshes) > 1 else unknown
         known = len(series) > 1 or self._at_rest
         of_steps = excess(target, by_steps) if known else unknown
-        anywhere = (by_mesh + by_steps).max(axis=0) / target
+        anywhere = (by_mesh if self._diagonal else by_mesh + by_steps).max(axis=0) / target
         if self._diagonal:
             of_steps = np.minimum(of_steps, 0.5 * of_mesh)
             of_mesh = of_mesh - of_steps

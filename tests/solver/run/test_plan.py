@@ -122,6 +122,28 @@ def test_shorter_steps_that_changed_nothing_are_not_made_shorter_again() -> None
     assert next_trial([*history[:3], ran(2, 1)], [Excess(0.2, 16.0, 16.5)], 2000) == Trial(2, 2)
 
 
+def test_where_two_meshes_agreed_by_chance_another_is_tried_unless_it_takes_long() -> None:
+    history = [ran(0, 0), ran(0, 1), ran(1, 0, 0.1 * MOST_WORK), ran(2, 0, 0.14 * MOST_WORK)]
+    risen = Excess(9.7, 0.1, 0.9)
+    assert next_trial(history, [risen], 2000) == Trial(3, 0)
+    assert next_trial(history, [risen._replace(worth=4.0)], 2000) is None
+    assert next_trial([*history[:3], ran(2, 0, 0.18 * MOST_WORK)], [risen], 2000) is None
+
+
+def test_where_meshes_do_not_make_the_error_fall_shorter_steps_are_tried() -> None:
+    history = [ran(0, 0), ran(0, 1), ran(1, 1), ran(2, 1)]
+    assert next_trial(history, [Excess(9.6, 8.9, 14.0)], 2000) == Trial(3, 2)
+    assert next_trial(history, [Excess(9.6, 8.9, 40.0)], 2000) == Trial(3, 1)
+    dear = [ran(0, 0), ran(0, 1), ran(1, 1, 0.1 * MOST_WORK), ran(2, 1, 0.16 * MOST_WORK)]  # both at once are
+    assert next_trial(dear, [Excess(9.6, 8.9, 14.0)], 2000) == Trial(2, 2)
+
+
+@pytest.mark.parametrize(("work", "then"), [(SMALL, Trial(2, 0)), (0.2 * MOST_WORK, None)])
+def test_few_frames_that_stand_out_are_resolved_where_it_is_cheap(work: float, then: Trial | None) -> None:
+    history = [ran(0, 0), ran(0, 1), ran(1, 0, work)]
+    assert next_trial(history, [Excess(0.5, 0.1, 9.0, 4.0, anywhere=3.0)], 2000) == then
+
+
 def test_what_shorter_steps_change_is_told_before_a_third_mesh() -> None:
     rattled = [slow(0, 0, 0.1 * MOST_WORK), ran(0, -2, 0.12 * MOST_WORK), ran(1, -2, 0.15 * MOST_WORK)]
     assert next_trial(rattled, [Excess(9.0, inf)], 2000) == Trial(0, -1)

@@ -31,6 +31,7 @@ from solver.run.recording import (
     BALANCE,
     BENDING,
     CURVATURE,
+    KAPPA,
     NUMBERS,
     TWIST,
     WIDTH,
@@ -183,6 +184,19 @@ def test_two_meshes_with_new_steps_are_told_apart_as_three_are() -> None:
     assert [excess.mesh for excess in told] == pytest.approx(
         [excess.mesh for excess in Together(scene, third, meshes).excesses(none)]
     )
+
+
+def test_few_frames_that_stand_out_are_left_out_of_an_error_but_not_of_what_it_is_anywhere() -> None:
+    scene, kappa = tolerated(1e-3), QUANTITIES.index("kappa")
+    scene = replace(scene, output_interval=scene.t_end / 40)
+    rows, start = on_meshes(scene, 16, 32), 1 + len(NUMBERS)
+    none = [Excess()] * len(QUANTITIES)
+    before = Together(scene, ran((0, 0), (1, 0)), rows).excesses(none)[kappa]
+    assert before.anywhere == pytest.approx(before.mesh)
+    rows[0][7, start:] += 5.0 * (np.arange(rows[0].shape[1] - start) % WIDTH == KAPPA.start)  # of one frame
+    then = Together(scene, ran((0, 0), (1, 0)), rows).excesses(none)[kappa]
+    assert then.mesh == pytest.approx(before.mesh, rel=0.2)
+    assert then.anywhere > 10.0 * then.mesh
 
 
 def test_longest_steps_of_which_nothing_is_told_are_in_error_by_as_much_as_the_mesh() -> None:

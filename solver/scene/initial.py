@@ -14,6 +14,10 @@ from solver.scene.curve import Curve
 from solver.scene.rod import Profile
 from solver.scene.view import NONE, View
 
+CLOSED, SMOOTH = 1e-9, 0.99
+"""How near, in its lengths, a curve's ends are that is closed; and the least cosine of the angle between their tangents
+for it to go on smoothly."""
+
 
 @dataclass(frozen=True)
 class Initial:
@@ -70,7 +74,8 @@ class Initial:
 
 
 def arclength_spline(points: Array, length: float) -> Callable[[Array], Array]:
-    """The C2 curve through `points` (n >= 4, 3) as a function of arclength in [0, length].
+    """The C2 curve through `points` (n >= 4, 3) as a function of arclength in [0, length]. One that ends where it
+    begins, in the same direction, goes on there as within: a ring by its points is one.
 
     Raises ValueError if the curve's own length differs from `length` by more than 0.1 %.
     """
@@ -83,6 +88,10 @@ def arclength_spline(points: Array, length: float) -> Callable[[Array], Array]:
     if not (np.diff(parameter) > 0).all():
         raise ValueError("successive points of a centreline must differ")
     raw = CubicSpline(parameter, path)
+    if np.linalg.norm(path[-1] - path[0]) <= CLOSED * parameter[-1]:
+        begin, end = (tangent / np.linalg.norm(tangent) for tangent in raw(parameter[[0, -1]], 1))
+        if begin @ end > SMOOTH:
+            raw = CubicSpline(parameter, np.vstack([path[:-1], path[:1]]), bc_type="periodic")
     fine = np.linspace(0.0, parameter[-1], 40 * len(path) + 1)
     speed = np.linalg.norm(raw(fine, 1), axis=1)
     arclength = CubicSpline(fine, speed).antiderivative()(fine)

@@ -140,6 +140,25 @@ def test_a_length_that_is_slightly_off_is_taken_up_about_the_first_point() -> No
     assert_allclose(ends[1] - ends[0], 1.0005 * (points[-1] - points[0]), rtol=1e-5, atol=1e-12)
 
 
+def directions_at_its_ends(points: Array, length: float) -> Array:
+    h = 1e-6 * length
+    along = np.diff(arclength_spline(points, length)(np.array([0.0, h, length - h, length])), axis=0)[[0, 2]]
+    return np.asarray(along / np.linalg.norm(along, axis=1)[:, None])
+
+
+def test_a_ring_goes_on_where_it_began_in_the_same_direction() -> None:
+    angle = np.linspace(0.0, 2.0 * pi, 13)
+    begin, end = directions_at_its_ends(np.stack([np.sin(angle), 1.0 - np.cos(angle), 0.0 * angle], axis=1), 2.0 * pi)
+    assert_allclose(begin, end, atol=1e-5)  # each is within 1e-6 of the length of its end
+    assert_allclose(begin, [1.0, 0.0, 0.0], atol=1e-5)
+
+
+def test_a_loop_with_a_corner_keeps_it() -> None:
+    half = np.linspace(0.0, pi, 121)
+    begin, end = directions_at_its_ends(np.stack([np.sin(half), 0.5 * np.sin(2.0 * half), 0.0 * half], axis=1), 3.04861)
+    assert abs(begin @ end) < 0.1
+
+
 @pytest.mark.parametrize("length", [0.99 * LENGTH, 1.01 * LENGTH])
 def test_a_centreline_of_another_length_than_the_rod_is_refused(length: float) -> None:
     with pytest.raises(ValueError, match=rf"the centreline is 1\.5 m long, the rod {length:.6g} m"):

@@ -43,7 +43,7 @@ JUDGED = [*range(R.start, R.stop), *range(KAPPA.start, KAPPA.stop)]
 """The components along the rod that a tolerance is for: of r, then of kappa."""
 JUDGED_R, JUDGED_KAPPA = slice(0, 3), slice(3, 6)
 """Where they stand among these."""
-OMEGA, FORCE = column("omega"), column("f")
+OMEGA, FORCE, MOMENT = column("omega"), column("f"), column("q")
 TWIST, WRITHE, BALANCE = number("Tw"), number("Wr"), number("energy_balance")
 CURVATURE, STEP = number("max_curvature"), number("dt")
 BENDING, TORSION, STRETCHING = (number(f"energy_{name}") for name in ("bending", "torsion", "stretching"))
@@ -63,10 +63,15 @@ def number_of(row: Array, index: int) -> float:
     return float(row[1 + index])
 
 
+def along_of(rows: Array) -> Array:
+    """The outputs along the rod of many frames (frames, nodes, columns), not copied."""
+    return rows[:, 1 + len(NUMBERS) :].reshape(len(rows), -1, WIDTH)
+
+
 def columns_of(rows: Sequence[Array] | Array, judged: bool) -> Columns:
     """The outputs of many frames (frames, ...), copied: all, or of those along the rod the `JUDGED` components."""
     table, end = np.asarray(rows), 1 + len(NUMBERS)
-    along = table[:, end:].reshape(len(table), -1, WIDTH)
+    along = along_of(table)
     return Columns(along[..., JUDGED] if judged else along.copy(), table[:, None, 1:end].copy())
 
 

@@ -20,8 +20,11 @@ from solver.run.recording import (
     CURVATURE,
     FORCE,
     JUDGED,
+    JUDGED_KAPPA,
+    JUDGED_R,
     KAPPA,
     KINETIC,
+    MOMENT,
     NUMBERS,
     OMEGA,
     ORIENTATION,
@@ -31,6 +34,8 @@ from solver.run.recording import (
     WIDTH,
     WRITHE,
     Columns,
+    R,
+    along_of,
     column,
     columns_of,
     frame_of,
@@ -40,6 +45,7 @@ from solver.run.recording import (
 from solver.run.richardson import alike, error_of_steps, extrapolate, nowhere_small, unextrapolated
 from solver.run.series import Attempt, chosen, is_diagonal, step_series
 from solver.run.trial import LOOSEST, grade_of, intervals_of, step_tolerance
+from solver.run.unshown import Unshown
 from solver.run.verify import VerifiedFrame, of_waves, unseen
 from solver.scene.scene import Scene
 
@@ -164,6 +170,10 @@ class Together:
         each = zip(of_mesh, of_steps, totals, worth, anywhere, strict=True)
         return [Excess(*map(float, numbers)) for numbers in each]
 
+    @cached_property
+    def _unshown(self) -> Unshown:
+        return Unshown(self._scene, self.s)
+
     @property
     def _untold(self) -> bool:
         """Whether nothing tells what the longest steps are in error: it is taken for as much as the mesh's."""
@@ -233,12 +243,24 @@ class Together:
             meshes.insert(0, Columns(longer.along + along[:, ::2], longer.numbers + numbers))
             doubled.insert(0, doubled[0] - 1)
         value, error = self._extrapolated(meshes, doubled)
+        if self._unshown.any:
+            self._widen(error.along, here, judged)
         along = finest.along + (value.along - meshes[-1].along)
         numbers = possible(finest.numbers + (value.numbers - meshes[-1].numbers), finest.numbers)
         if not judged:
             turned = along[..., ORIENTATION]
             turned /= np.sqrt(np.sum(turned**2, axis=-1))[..., None]
         return Columns(along, numbers), error
+
+    def _widen(self, errors: Array, here: slice, judged: bool) -> None:
+        """Take for errors along the rod at least what the finest mesh does not show: see `unshown`."""
+        aside, moments, kappa = self._unshown.of(along_of(self._recorded[self._chosen.finest][here]))
+        least = [(JUDGED_R, aside[:, None, None]), (JUDGED_KAPPA, kappa)]
+        if not judged:
+            least = [(R, aside[:, None, None]), (KAPPA, kappa), (MOMENT, moments)]
+        for columns_of_output, floor in least:
+            part = errors[..., columns_of_output]
+            np.maximum(part, floor, out=part)
 
     def _extrapolated(self, meshes: Sequence[Columns], doubled: Sequence[int]) -> tuple[Columns, Columns]:
         """What meshes say together, and its error; `doubled`: their numbers."""

@@ -14,9 +14,6 @@ from solver.methods.space.segments.joints import share
 from solver.physics.elasticity import stretches
 from solver.physics.ends import LOAD, RATE, RATE_LAB
 
-OF_STRAIN = 10.0
-"""How much more an increment of strain counts than one of rotation: a rod is far stiffer along itself."""
-
 
 @inner
 def widths(factors: Factors) -> tuple[int, int]:
@@ -97,8 +94,8 @@ def node_moves(chain: Chain, tangents: Tangents, factors: Factors, node: int, k:
 @kernel
 def update(chain: Chain, transform: Array, unit: float, fraction: float, stages: Stages, tangents: Tangents,
            real: Factors, pair: Factors) -> tuple[float, float, float]:  # fmt: skip
-    """Add a fraction of the increments to the stages; return their size: rotation (rad) or strain, force by the largest
-    one, and displacement of the start (m)."""
+    """Add a fraction of the increments to the stages; return their size: rotation (rad), force by the largest one, and
+    displacement of the start (m)."""
     T = transform
     turned, forced, shifted, largest = 0.0, 0.0, 0.0, unit
     for i in range(STAGES):
@@ -125,8 +122,6 @@ def update(chain: Chain, transform: Array, unit: float, fraction: float, stages:
                 change = t0 * real.x[a, 3 + k] + t1 * pair.x[a, 3 + k].real + t2 * pair.x[a, 3 + k].imag
                 stages.F[i, a, k] += change
                 forced = max(forced, abs(change))
-                if stretches(chain.elastic):
-                    turned = max(turned, OF_STRAIN * chain.elastic.compliance[a] * abs(change))
                 largest = max(largest, abs(stages.F[i, a, k]))
         for k in range(3):
             z0 = node_moves(chain, tangents, pair, 0, k)

@@ -199,13 +199,6 @@ def test_few_frames_that_stand_out_are_left_out_of_an_error_but_not_of_what_it_i
     assert then.anywhere > 10.0 * then.mesh
 
 
-def test_newtons_iteration_goes_no_further_than_the_steps_error_asks_for() -> None:
-    attempt = UnderWay(tolerated(1e-3), Trial(2, 3))
-    while not attempt.run.finished:
-        attempt.advance()
-    assert attempt.statistics.newton_iterations < 2.6 * attempt.statistics.steps
-
-
 def test_longest_steps_of_which_nothing_is_told_are_in_error_by_as_much_as_the_mesh() -> None:
     scene = tolerated(1e-3)
     rows = on_meshes(scene, 16, 32)

@@ -30,7 +30,7 @@ SCHEME = Scheme(
     tableau.C, tableau.INVERSE, tableau.TRANSFORM, tableau.BACK, tableau.GAMMA, tableau.LAMBDA, tableau.ERROR,
     tableau.TO_CUBIC, tableau.TO_PARABOLA,
 )  # fmt: skip
-NEWTON_PART = 1e-4
+NEWTON_PART = 1e-3
 """Of the tolerance of a step's error: what Newton's iteration may leave. (Nothing where steps are of fixed length.)"""
 FEEDBACK = 0.5
 """Part of an end's lag behind its prescribed place that a step takes back."""

@@ -27,16 +27,15 @@ LARGEST_ITERATIONS = 12
 LARGEST_INCREMENT = 1e3
 """Increment at which an iteration is given up."""
 TOLERANCE = 1e-10
-"""Remaining increment, rotation (rad) or strain, force in EJ/L^2 relative to its largest, and the start's place in L,
-at which an iteration has converged: far below a buckling seed. A step may leave a part of its largest departure from
-steady rotation, of the largest force, and of the start's departure from steady motion, if that is more; not of the
-rotation itself, for a rod may spin fast with a small seed. (A rod that slides without turning has no other error than
-that of its place.)"""
+"""Remaining increment, rotation (rad), force in EJ/L^2 relative to its largest, and the start's place in L, at which an
+iteration has converged: far below a buckling seed. A step may leave a part of its largest departure from steady
+rotation, and of that of the start from steady motion, if that is more; not of the rotation itself, for a rod may spin
+fast with a small seed. (A rod that slides without turning has no other error than that of its place.)"""
 OF_BODY, ROUNDING = 1e-5, 1e-14
 """What a step may leave of the force that a body at an end bears, relative to the rod's largest: its acceleration is
 that of the rod's end, in which what is left of rotations and stretch, and rounding, this part of the rod's length, are
 divided by the square of the step."""
-ROUGH = 100.0
+ROUGH = 10.0
 """How many times more a step may leave that presses strands together or the rod against a solid, whose error is that of
 what rattles."""
 STALE = 0.3
@@ -140,10 +139,9 @@ def relaxation(work: Record, part: float, first: bool) -> float:
 def step(reference: Reference, dt: float, unit: float, part: float, rough: bool, state: Record) -> tuple[int, int]:
     """Solve for the stages of a step of dt; theta, shift and F hold the first guess. `unit` = EJ/L^2 (N).
 
-    `reference`: to `StepRecords`. `part` of the step's largest departure from steady rotation, and of the largest
-    force, may be left, where that is more than TOLERANCE. `rough`: whether loads may strike or rub. Returns how it
-    ended and the iterations. Records of many arrays go only to where they are needed: each one passed on costs some ns
-    in every iteration.
+    `reference`: to `StepRecords`. `part` of the step's largest departure from steady rotation may be left, where that
+    is more than TOLERANCE. `rough`: whether loads may strike or rub. Returns how it ended and the iterations. Records
+    of many arrays go only to where they are needed: each one passed on costs some ns in every iteration.
     """
     chain, loads, driven, scheme = reference.chain, reference.loads, reference.driven, reference.scheme
     stages, touch, work = reference.stages, reference.touch, reference.work
@@ -179,8 +177,8 @@ def step(reference: Reference, dt: float, unit: float, part: float, rough: bool,
             return STALLED, iteration
         share = part * ROUGH if contact or rough else part
         enough = max(TOLERANCE, share * largest_departure(stages.theta[STAGES - 1]))
-        # forces are as large however short the step, and the motion is that of rotation and stretch
-        size = max(turned / enough, forced / max(enough, share))
+        # what presses does so by as much whatever the step: what counts is the forces' own relative error
+        size = max(turned / enough, forced / (max(enough, share) if contact or rough else enough))
         size = max(size, shifted / max(TOLERANCE * length, share * shift_departure(stages.shift, state.base, dt)))
         size = max(size, missed / OF_BODY)
         if is_enough(size, before):

@@ -45,7 +45,8 @@ def axis_kept(scene: Scene) -> int | None:
     frames = {load.frame for load in scene.points} | {load.frame for load in scene.distributed}
     turning = any(end.frame == "material" and not _held(end.rotation[:2]) and _pushes(end.translation)
                   for end in (scene.start, scene.end))  # fmt: skip
-    if turning or "material" in frames or scene.loads:
+    moments = any(load.turns for load in (*scene.points, *scene.distributed))  # which have no potential
+    if turning or moments or "material" in frames or scene.loads:
         return None
     s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)
     _, quaternion, kappa = nodes_at_rest(scene.initial, s)

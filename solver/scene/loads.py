@@ -22,6 +22,11 @@ class DistributedLoad:
     frame: Frame_ = "lab"
     schedule: Curve = field(default_factory=lambda: Curve.constant(1.0))
 
+    @property
+    def turns(self) -> bool:
+        """Whether it has a moment."""
+        return any(not isinstance(part, Curve) or not part.is_zero for part in self.moment)
+
     def keeps(self, view: View) -> bool:
         """Whether force and moment act along the motion about an axis."""
         force, moment = view.along(self.force), view.along(self.moment)
@@ -41,6 +46,11 @@ class PointLoad:
     def pulls(self) -> bool:
         """Whether it has a force."""
         return not all(component.is_zero for component in self.force)
+
+    @property
+    def turns(self) -> bool:
+        """Whether it has a moment."""
+        return not all(component.is_zero for component in self.moment)
 
     def keeps(self, view: View) -> bool:
         """Whether force and moment act along the motion about an axis, at all times."""

@@ -55,6 +55,7 @@ class Equations:
         self._units = Units(self.stiffness / length, self.stiffness / length**2, length)
         self.units = np.repeat([1.0, length, self._units.force], 3)
         self._rows = 1.0 / np.repeat(self._units, 3)
+        self._moments = any(load.turns for load in (*scene.points, *scene.distributed))
         self.compliance, self._stretches = 0.5 * axial_compliance(scene), can_stretch(scene.rod)
         places = self.start.base.copy(), self.tip()
         self.ends = [StaticEnd(end, side, state.quaternion[-side].copy(), places[side], scene.t_end, self._units,
@@ -185,12 +186,13 @@ class Equations:
         return float(self.compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
 
     def loads_turn(self) -> bool:
-        """Whether loads have no potential, of the point that was looked at last: what turns with the rod, as a moment
-        on an end that is free about more than one axis, or depends on the place in a way that no energy does."""
+        """Whether loads have no potential, of the point that was looked at last: what turns with the rod, a moment where
+        it may turn about more than one axis (Ziegler, Principles of Structural Stability, 1968), or what depends on the
+        place in a way that no energy does."""
         K = self.tangents.K
         skew = np.abs(K - np.swapaxes(K, 1, 2)).max() > SKEW * np.abs(K).max()
         turning = [end.follower.any() or (end.moment.any() and end.held[3:].sum() < 2) for end in self.ends]
-        return bool(skew or self.tangents.E.any() or any(turning))
+        return bool(skew or self.tangents.E.any() or self._moments or any(turning))
 
     def look_at(self, point: Point) -> Array:
         """The residual (N + 2, 9) at a point, with `stages` and `tangents` there."""

@@ -47,16 +47,18 @@ from tests.solver.scenes import (
     last,
     moved_clamp,
 )
-from tests.solver.statics.resting import PRESSED, ZERO, ramp, static
+from tests.solver.statics.resting import DENSITIES, PRESSED, ZERO, ramp, static
 
 
 @pytest.mark.parametrize(("loads", "turning"), [
-    (PRESSED["weight"], False), (PRESSED["lab"], False), (PRESSED["tip, lab"], False),
-    (PRESSED["pin and clamp"], False),
+    (PRESSED["weight"], False), (PRESSED["pin and clamp"], False),
+    ({"distributed": (DistributedLoad(DENSITIES),), "points": (PointLoad(LENGTH, DENSITIES),)}, False),
+    (PRESSED["lab"], True), (PRESSED["tip, lab"], True),  # their moments
     (PRESSED["following"], True), (PRESSED["current"], True),
     ({"end": End((FREE, FREE, (Condition("load", ramp(-15.0 * EJ)),)), (FREE, FREE, FREE))}, True),
     ({"end": End((FREE, FREE, FREE), (FREE, (Condition("load", ramp(EJ)),), FREE))}, True),
     ({"end": End((FREE, FREE, FREE), (FIXED, (Condition("load", ramp(EJ)),), FIXED))}, False),
+    ({"points": (PointLoad(LENGTH, moment=(Curve.constant(0.0), Curve.constant(0.0), ramp(EJ))),)}, True),
 ])  # fmt: skip
 def test_of_forces_that_turn_with_the_rod_the_run_says_that_modes_prove_nothing(
     loads: dict[str, object], turning: bool

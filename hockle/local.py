@@ -141,7 +141,7 @@ def summary(path: Path) -> str:
             stored = sum(last[name] for name in energies if not name.endswith(("_balance", "_error")))
             lines += [
                 f"  at t = {last['time']:g} s: {_topology(last)}",
-                f"  energy {stored:.4g} J, " + _trust(last),
+                f"  energy {stored:.4g} J, " + _trust(last, "turning_loads" in attributes),
             ]
         if attributes["outcome"] == Outcome.COMPLETED and attributes["message"]:
             lines.append(f"  {attributes['message']}")
@@ -155,10 +155,13 @@ def _topology(last: dict[str, float]) -> str:
     return ", ".join(f"{name} {last[name]:z.4f}" for name in ("Tw", "Wr", "Lk") if not isnan(last[name]))
 
 
-def _trust(last: dict[str, float]) -> str:
-    """What a dynamic run's last frame says of its error, or a static one's of its stability."""
+def _trust(last: dict[str, float], turning: bool) -> str:
+    """What a dynamic run's last frame says of its error, or a static one's of its stability, unless loads are
+    `turning` with the rod: then nothing follows."""
     if "negative_modes" not in last:
         return f"balance {last['energy_balance']:.2g} J"
+    if turning:
+        return f"parameter {last['parameter']:g} s"
     falling, neutral = int(last["negative_modes"]), int(last["neutral_modes"])
     verdict = f"unstable in {falling} {_directions(falling)}" if falling else "stable"
     verdict += f", free to move in {neutral} {_directions(neutral)}" if neutral else ""

@@ -24,6 +24,7 @@ from solver.kernels.rotation import rotate, rotation_of
 from solver.measures.frame import Fields
 from solver.scene.ends import Component
 from solver.scene.layout import nodes_at_rest
+from solver.scene.loads import have_moments
 from solver.scene.scene import Scene
 from solver.scene.view import View
 
@@ -45,7 +46,7 @@ def axis_kept(scene: Scene) -> int | None:
     frames = {load.frame for load in scene.points} | {load.frame for load in scene.distributed}
     turning = any(end.frame == "material" and not _held(end.rotation[:2]) and _pushes(end.translation)
                   for end in (scene.start, scene.end))  # fmt: skip
-    moments = any(load.turns for load in (*scene.points, *scene.distributed))  # which have no potential
+    moments = have_moments(*scene.points, *scene.distributed)  # which have no potential
     if turning or moments or "material" in frames or scene.loads:
         return None
     s = np.linspace(0.0, scene.rod.length, INTERVALS + 1)

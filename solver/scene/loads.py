@@ -22,11 +22,6 @@ class DistributedLoad:
     frame: Frame_ = "lab"
     schedule: Curve = field(default_factory=lambda: Curve.constant(1.0))
 
-    @property
-    def turns(self) -> bool:
-        """Whether it has a moment."""
-        return any(not isinstance(part, Curve) or not part.is_zero for part in self.moment)
-
     def keeps(self, view: View) -> bool:
         """Whether force and moment act along the motion about an axis."""
         force, moment = view.along(self.force), view.along(self.moment)
@@ -47,12 +42,13 @@ class PointLoad:
         """Whether it has a force."""
         return not all(component.is_zero for component in self.force)
 
-    @property
-    def turns(self) -> bool:
-        """Whether it has a moment."""
-        return not all(component.is_zero for component in self.moment)
-
     def keeps(self, view: View) -> bool:
         """Whether force and moment act along the motion about an axis, at all times."""
         force, moment = at_all_times(self.force), at_all_times(self.moment)
         return view.moved_by(force, self.frame) and view.turned_by(moment, self.frame)
+
+
+def have_moments(*loads: DistributedLoad | PointLoad) -> bool:
+    """Whether any of some loads has a moment."""
+    parts = [part for load in loads for part in load.moment]
+    return not all(isinstance(part, Curve) and part.is_zero for part in parts)

@@ -18,6 +18,7 @@ from solver.methods.space.segments.opening import add_levers
 from solver.physics.axial import axial_compliance, stretch_of
 from solver.physics.elasticity import can_stretch, mean_bending
 from solver.physics.loads.registry import records_with_energy
+from solver.scene.loads import have_moments
 from solver.scene.scene import Scene
 from solver.statics.contact import StaticContact
 from solver.statics.ends import StaticEnd, Units
@@ -55,7 +56,7 @@ class Equations:
         self._units = Units(self.stiffness / length, self.stiffness / length**2, length)
         self.units = np.repeat([1.0, length, self._units.force], 3)
         self._rows = 1.0 / np.repeat(self._units, 3)
-        self._moments = any(load.turns for load in (*scene.points, *scene.distributed))
+        self._moments = have_moments(*scene.points, *scene.distributed)
         self.compliance, self._stretches = 0.5 * axial_compliance(scene), can_stretch(scene.rod)
         places = self.start.base.copy(), self.tip()
         self.ends = [StaticEnd(end, side, state.quaternion[-side].copy(), places[side], scene.t_end, self._units,
@@ -186,9 +187,9 @@ class Equations:
         return float(self.compliance * np.abs(np.sum(forces * tangents, axis=1)).sum() / self.s[-1])
 
     def loads_turn(self) -> bool:
-        """Whether loads have no potential, of the point that was looked at last: what turns with the rod, a moment where
-        it may turn about more than one axis (Ziegler, Principles of Structural Stability, 1968), or what depends on the
-        place in a way that no energy does."""
+        """Whether loads have no potential, of the point that was looked at last: what turns with the rod, a moment
+        where it may turn about more than one axis (Ziegler, Principles of Structural Stability, 1968), or what depends
+        on the place in a way that no energy does."""
         K = self.tangents.K
         skew = np.abs(K - np.swapaxes(K, 1, 2)).max() > SKEW * np.abs(K).max()
         turning = [end.follower.any() or (end.moment.any() and end.held[3:].sum() < 2) for end in self.ends]

@@ -17,7 +17,7 @@ serve: .venv/.runtime  ## API, worker and broker, until Ctrl-C
 	$(BIN)/hockle serve
 
 test: .venv/.dev .venv/.docs  ## the whole test suite, three files at a time: many tests wait
-	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --durations 15
+	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --max-worker-restart 0 --durations 15
 
 lint: .venv/.dev .venv/.docs  ## style, types, and who may import whom
 	$(BIN)/ruff check .

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from typing_extensions import Self
 
 from hockle_client.documents import EnsembleState, Event, MemberState, SobolIndex, Status
-from hockle_client.reading import opened, part_query
+from hockle_client.reading import part_query, read
 from hockle_client.showing import Line
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ class AsyncEnsemble:
         it. Raises Problem."""
         query = {**part_query(variables, **part), "format": "netcdf"}
         content = (await self._client._ask("GET", self._path("/data"), params=query)).content
-        return opened(content, f"{self.id}.nc")[list(dict.fromkeys(variables))]
+        return read(content, f"{self.id}.nc")[list(dict.fromkeys(variables))]
 
     async def sensitivity(self, *variables: str) -> dict[str, dict[str, SobolIndex]]:
         """Sobol's indices of the last values, by variable and parameter; of a `saltelli` sample. Raises Problem."""

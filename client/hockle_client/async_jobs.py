@@ -19,7 +19,7 @@ from hockle_client.case import encoded
 from hockle_client.documents import Event, JobState, Link
 from hockle_client.handle import JobFacts, safe
 from hockle_client.problems import HockleError
-from hockle_client.reading import opened, opened_file, part_query
+from hockle_client.reading import opened_file, part_query, read
 from hockle_client.schema import Setting
 from hockle_client.showing import Line
 
@@ -182,7 +182,7 @@ class AsyncJob(JobFacts):
         """The same in xarray: only this is transferred. `part` as `values` takes it. Raises Problem."""
         query = {**part_query(variables, **part), "format": "netcdf"}
         content = (await self._client._ask("GET", f"/v1/jobs/{self.id}/data", params=query)).content
-        return opened(content, f"{self.id}.nc")[list(dict.fromkeys(variables))]
+        return read(content, f"{self.id}.nc")[list(dict.fromkeys(variables))]
 
     async def table(self, *variables: str, **part: Any) -> pd.DataFrame:
         """The same in pandas, a row for each time (and node, and component). Raises Problem."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
+from threading import Lock
 from typing import TYPE_CHECKING, Any, cast
 
 from hockle_client.schema import CaseSpec
@@ -13,18 +14,24 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def opened(content: bytes, name: str) -> xr.Dataset:
-    """The dataset whose file is `content`; its values are unpacked when they are looked at."""
+ONE_AT_A_TIME = Lock()
+"""The NetCDF library is not thread-safe, and programs fetch many jobs' values side by side."""
+
+
+def read(content: bytes, name: str) -> xr.Dataset:
+    """What a file's `content` holds, all of it in memory: no file is left open for some thread to close."""
     import netCDF4
 
-    return _opened(netCDF4.Dataset(name, mode="r", memory=content))
+    with ONE_AT_A_TIME, netCDF4.Dataset(name, mode="r", memory=content) as file:
+        return _opened(file).load()
 
 
 def opened_file(path: Path) -> xr.Dataset:
-    """The dataset in a file, which may be removed as soon as it is open."""
+    """The dataset in a file, which may be removed as soon as it is open; to be read and closed in one thread."""
     import netCDF4
 
-    return _opened(netCDF4.Dataset(path))
+    with ONE_AT_A_TIME:
+        return _opened(netCDF4.Dataset(path))
 
 
 def _opened(file: Any) -> xr.Dataset:

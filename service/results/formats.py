@@ -70,14 +70,11 @@ def as_netcdf(part: Part) -> bytes:
     """A NetCDF-4 file."""
     with ONE_AT_A_TIME:
         file = netCDF4.Dataset("part.nc", "w", format="NETCDF4", memory=1)
-        file.setncatts({"Conventions": "CF-1.11", **part.attributes})
-        auxiliary = [coordinate for coordinate in part.coordinates if coordinate.dimensions != (coordinate.name,)]
-        for column in (*part.coordinates, *part.variables):
-            _write(file, column)
-        for column in part.variables:
-            names = [other.name for other in auxiliary if set(other.dimensions) <= set(column.dimensions)]
-            if names:
-                file[column.name].setncattr("coordinates", " ".join(names))
+        try:
+            _fill(file, part)
+        except BaseException:
+            file.close()  # left open, it would be closed by the garbage collector, in whichever thread that runs
+            raise
         return bytes(file.close())
 
 
@@ -128,6 +125,17 @@ def _type(values: NDArray[Any]) -> Any:
 
 def _arrow(values: NDArray[Any]) -> Any:
     return np.ascontiguousarray(values) if values.dtype.kind in "fi" else values.tolist()
+
+
+def _fill(file: netCDF4.Dataset, part: Part) -> None:
+    file.setncatts({"Conventions": "CF-1.11", **part.attributes})
+    auxiliary = [coordinate for coordinate in part.coordinates if coordinate.dimensions != (coordinate.name,)]
+    for column in (*part.coordinates, *part.variables):
+        _write(file, column)
+    for column in part.variables:
+        names = [other.name for other in auxiliary if set(other.dimensions) <= set(column.dimensions)]
+        if names:
+            file[column.name].setncattr("coordinates", " ".join(names))
 
 
 def _write(file: netCDF4.Dataset, column: Column) -> None:

@@ -26,6 +26,13 @@ HOUR = 3600.0
 SMALL = {"t_end": 0.05, "output.interval": 0.01, "numerics.intervals": 8}
 
 
+def dataset_of(content: bytes) -> xr.Dataset:
+    """What a file holds. It is closed: left open, it would be by the garbage collector, in whichever thread that runs,
+    while another, of the interface, is in the NetCDF library, which is not thread-safe."""
+    with netCDF4.Dataset("x", memory=content) as file:
+        return xr.open_dataset(xr.backends.NetCDF4DataStore(file)).load()
+
+
 @pytest.fixture
 def settings(tmp_path: Path, tables: None) -> Settings:
     return Settings(data=tmp_path)
@@ -59,9 +66,7 @@ def done(client: TestClient, registry: Registry, settings: Settings, case: dict[
 @pytest.fixture
 def whole(client: TestClient, done: str) -> xr.Dataset:
     """Its dataset."""
-    content = client.get(f"/v1/jobs/{done}/dataset").content
-    file = netCDF4.Dataset("whole.nc", memory=content)
-    return xr.open_dataset(xr.backends.NetCDF4DataStore(file)).load()
+    return dataset_of(client.get(f"/v1/jobs/{done}/dataset").content)
 
 
 @pytest.fixture

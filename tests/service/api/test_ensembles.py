@@ -7,14 +7,13 @@ import json
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
-import netCDF4
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
 
 from service.jobs import Status
 from service.results.formats import FORMATS
+from tests.service.api.conftest import dataset_of
 from worker.run import run_next
 
 DAMPING = [0.0, 0.5, 1.0]
@@ -52,10 +51,6 @@ def done(client, grid, run_all):
     address = client.post("/v1/ensembles", json=grid).headers["location"]
     run_all()
     return address
-
-
-def dataset(content: bytes) -> xr.Dataset:
-    return xr.open_dataset(xr.backends.NetCDF4DataStore(netCDF4.Dataset("x", memory=content))).load()
 
 
 def test_all_members_of_a_grid_are_accepted_at_once(client, grid):
@@ -209,11 +204,11 @@ def test_members_of_which_none_has_frames_are_no_dataset(client, grid):
 
 
 def test_one_dataset_has_the_parameters_as_coordinates(client, done):
-    together = dataset(client.get(f"{done}/data?variables=r,Tw&format=netcdf&time_stride=2").content)
+    together = dataset_of(client.get(f"{done}/data?variables=r,Tw&format=netcdf&time_stride=2").content)
     assert together.r.dims == ("member", "time", "s", "lab") and together.sizes["member"] == 6
     assert {"damping", "gravity"} <= set(together.coords)
     for one in client.get(f"{done}/members").json()["members"]:
-        alone = dataset(client.get(f"/v1/jobs/{one['job']}/data?variables=r,Tw&format=netcdf&time_stride=2").content)
+        alone = dataset_of(client.get(f"/v1/jobs/{one['job']}/data?variables=r,Tw&format=netcdf&time_stride=2").content)
         member = together.isel(member=one["number"])
         assert float(member.damping) == one["values"]["damping"]
         assert np.array_equal(member.r, alone.r) and np.array_equal(member.Tw, alone.Tw)
@@ -223,10 +218,10 @@ def test_members_of_other_lengths_and_those_without_frames_are_filled_with_nan(c
     body = {"case": case, "parameters": {"t_end": [0.03, 0.05]}}
     address = client.post("/v1/ensembles", json=body).headers["location"]
     run_next(registry.database, settings)
-    both = dataset(client.get(f"{address}/data?variables=Tw,contacts&format=netcdf").content)
+    both = dataset_of(client.get(f"{address}/data?variables=Tw,contacts&format=netcdf").content)
     assert both.sizes["time"] == 4 and both.Tw.isnull().sum(dim="time").values.tolist() == [0, 4]
     run_next(registry.database, settings)
-    both = dataset(client.get(f"{address}/data?variables=Tw&format=netcdf").content)
+    both = dataset_of(client.get(f"{address}/data?variables=Tw&format=netcdf").content)
     assert both.sizes["time"] == 6 and both.Tw.isnull().sum(dim="time").values.tolist() == [2, 0]
 
 
@@ -257,7 +252,7 @@ def test_a_member_that_was_deleted_has_nothing_more(client, done):
     assert client.delete(first["links"]["job"]).status_code == 200
     told = client.get(f"{done}/scalars?variables=energy_bending").json()["members"]
     assert told[0]["values"]["energy_bending"] is None and told[1]["values"]["energy_bending"] is not None
-    both = dataset(client.get(f"{done}/data?variables=energy_bending&format=netcdf").content)
+    both = dataset_of(client.get(f"{done}/data?variables=energy_bending&format=netcdf").content)
     assert both.energy_bending.isnull().all("time").values.tolist() == [True] + [False] * 5
 
 

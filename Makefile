@@ -16,6 +16,7 @@ demo: .venv/.runtime  ## the paper's cable, over HTTP, to figures in ./demo
 serve: .venv/.runtime  ## API, worker and broker, until Ctrl-C
 	$(BIN)/hockle serve
 
+# where a test ends its process, the run ends: files are dealt out, and the others would wait for its rest forever
 test: .venv/.dev .venv/.docs  ## the whole test suite, three files at a time: many tests wait
 	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --max-worker-restart 0 --durations 15
 

@@ -107,7 +107,7 @@ class Outcome(StrEnum):
         "the linear system has no single solution",
         "check that the end conditions leave no motion undetermined: in statics a floor or an obstacle holds only what "
         "is in it at the start, so let a rod that rests on one begin a little below its surface, and a rod on one pin "
-        "hangs only from loads that are there at the start; by the box method, a "
+        "hangs, and an arch between two swings, only from loads that are there at the start; by the box method, a "
         "straight rod that is held along its axis at both ends needs the method staggered",
         "solver",
     )

@@ -266,10 +266,19 @@ def test_two_sliders_across_each_other_hold_a_rod_in_place() -> None:
     assert last(static(start=ALONG_LAB, end=across)).r[-1] == pytest.approx([0.0, 0.0, LENGTH])
 
 
-def test_a_rod_on_a_pin_before_there_is_a_load_ends_by_name() -> None:
-    pull = PointLoad(LENGTH, (ramp(EJ), ZERO, ZERO))
-    with pytest.raises(RunFailed) as failure:
-        list(simulate(static(start=End.pin(), points=(pull,))))
+SMOOTH = Curve.table([0.0, 1.0], [0.0, EJ], "smoothstep")
+TURNED_BY_LOADS = {
+    "on a pin": static(start=End.pin(), points=(PointLoad(LENGTH, (ramp(EJ), ZERO, ZERO)),)),
+    "on a pin, smoothly": static(start=End.pin(), points=(PointLoad(LENGTH, (SMOOTH, ZERO, ZERO)),)),
+    "an arch between pins": static(rod=ARC_ROD, initial=ARC, start=End.pin(), end=End.pin(),
+                                   points=(PointLoad(0.6 * LENGTH, (ZERO, SMOOTH, ZERO)),)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("scene", TURNED_BY_LOADS.values(), ids=TURNED_BY_LOADS)
+def test_a_rod_that_its_first_loads_turn_as_a_whole_ends_by_name(scene: Scene) -> None:
+    with pytest.raises(RunFailed, match="nothing holds the rod against its first loads") as failure:
+        list(simulate(scene))
     assert failure.value.outcome == Outcome.SINGULAR_SYSTEM
 
 

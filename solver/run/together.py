@@ -57,6 +57,9 @@ BESIDE = 3
 UNFOLLOWED = 0.02
 """Part of the tolerance of a step: by what of their largest value omega and f are in error at least, because of the
 waves that no attempt follows and none therefore shows."""
+TURNED_OVER = [number(name) for name in ("energy_potential", "work_ends", "work_loads", "dissipation")]
+ROUNDING = 1e-14
+"""Part of the largest of TURNED_OVER by which the balance of energies is off for rounding alone."""
 AT_ONCE = 50_000
 """Nodes times frames that are looked at together."""
 FALL = 3.0
@@ -197,7 +200,9 @@ class Together:
         """
         if self._at_rest:
             return np.zeros(self.frames)
-        balances = [abs(number_of(row, BALANCE)) for row in self._recorded[self._chosen.finest]]
+        rows = self._recorded[self._chosen.finest]
+        rounded = [ROUNDING * max(abs(number_of(row, index)) for index in TURNED_OVER) for row in rows]
+        balances = [max(abs(number_of(row, BALANCE)) - least, 0.0) for row, least in zip(rows, rounded, strict=True)]
         return np.asarray(self._unfollowed * np.maximum.accumulate(balances))
 
     @cached_property

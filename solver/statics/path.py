@@ -54,9 +54,12 @@ leads to the stable branch; and where strands press: what is wound may slide alo
 rises and falls with every node that it passes."""
 WITHOUT_END = 1e3
 """In rod lengths a unit of the branch: beside such a displacement only `SOFTEST_PLACE` stands against the loads."""
-UNHELD = "nothing holds the rod against its first loads"
 LEAST = 1e-7
 """By how much q changes at the least where the schedules begin, a unit of the branch."""
+SOON, SMOOTHLY = 0.1, 1e-3
+"""How far ahead loads are looked at that set in smoothly: their slope at the start is less than this part of that."""
+LOOSE = 1e5
+"""Rotation (rad rms) by a load of EJ/L^2, or a moment of EJ/L, with which nothing holds a rod."""
 REACHED = 1e-10
 STEEP = 0.005
 """Least dq at which a step may end at a given q."""
@@ -97,8 +100,6 @@ class Path:
         """Go on with q from 0, from where the path is; the schedules bend at `corners`."""
         self.point.q, self.travelled, self.last_dq = 0.0, 0.0, 0.0
         self._corners, self._length, self._begun, self._idle, self._crossed = corners, FIRST, False, 0, False
-        self._loose = False
-        """Whether the rod was free to turn as a whole where it began, from where no stop has been reached yet."""
         self._bend = 0.0 * self.direction
         """How the direction changes along the branch, as its last step had it."""
 
@@ -110,9 +111,9 @@ class Path:
         if not self._begun:
             _, self.direction = self._at(self.point, 1.0)
             self.modes = negative_modes(self._equations)
-            self._begun, self._loose = True, len(self._neutral.turns) > 0
-            if self.direction.dq < LEAST and not self._equations.letting_go:
-                raise self._failure(Outcome.SINGULAR_SYSTEM, UNHELD)
+            self._begun = True
+            if not self._equations.letting_go and (self.direction.dq < LEAST or self._is_turned_as_a_whole()):
+                raise self._failure(Outcome.SINGULAR_SYSTEM, "nothing holds the rod against its first loads")
         if self._left(stop) > REACHED:
             if self._idle == (self._patience if self._equations.letting_go else MOST_STEPS):
                 raise self._failure(Outcome.EQUILIBRIUM_LOST, f"{MOST_STEPS} steps did not reach the next frame")
@@ -121,13 +122,22 @@ class Path:
             self._step(self._left(stop))
             self._idle += 1
             if self.point.q < -REACHED and not self._equations.letting_go:
-                if self._loose:  # loads that set in smoothly: the first of them are nothing
-                    raise self._failure(Outcome.SINGULAR_SYSTEM, UNHELD)
                 raise self._failure(Outcome.PATH_TURNED_BACK)
         if self._left(stop) > REACHED:
             return False
-        self.travelled, self._idle, self._loose = stop, 0, self._loose and stop == 0.0
+        self.travelled, self._idle = stop, 0
         return True
+
+    def _is_turned_as_a_whole(self) -> bool:
+        """Whether the rod turns as a whole by its first loads, for nothing holds it against them."""
+        if not len(self._neutral.turns):
+            return False
+        slope, soon = (self._equations.slope(self.point, ahead) for ahead in (AHEAD, SOON))
+        if np.abs(slope).max() < SMOOTHLY * np.abs(soon).max():
+            slope = soon
+        _, solver = self._equations.linearise(self.point)
+        turned = Direction(solver.solve(slope), 0.0)
+        return bool(turned.dot(turned.z, 0.0) > (LOOSE * np.abs(slope).max()) ** 2)
 
     def _left(self, stop: float) -> float:
         """How far q is to travel to a stop. What holds the initial shape is let go where q is there, by any way."""

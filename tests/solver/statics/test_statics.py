@@ -269,6 +269,7 @@ def test_two_sliders_across_each_other_hold_a_rod_in_place() -> None:
 SMOOTH = Curve.table([0.0, 1.0], [0.0, EJ], "smoothstep")
 TURNED_BY_LOADS = {
     "on a pin": static(start=End.pin(), points=(PointLoad(LENGTH, (ramp(EJ), ZERO, ZERO)),)),
+    "on a pin, by little": static(start=End.pin(), points=(PointLoad(LENGTH, (ramp(1e-3 * EJ), ZERO, ZERO)),)),
     "on a pin, smoothly": static(start=End.pin(), points=(PointLoad(LENGTH, (SMOOTH, ZERO, ZERO)),)),
     "an arch between pins": static(rod=ARC_ROD, initial=ARC, start=End.pin(), end=End.pin(),
                                    points=(PointLoad(0.6 * LENGTH, (ZERO, SMOOTH, ZERO)),)),

@@ -35,7 +35,7 @@ def period(t: Array, x: Array) -> float:
 
 @pytest.mark.parametrize("frame", ["lab", "material"])
 @pytest.mark.parametrize("side", ["start", "end"])
-@pytest.mark.parametrize("numerics", [FIXED_STEPS, Numerics("staggered", tolerance=1e-3)])
+@pytest.mark.parametrize("numerics", [FIXED_STEPS, Numerics("staggered", tolerance=1e-3, most_intervals=64)])
 def test_a_heavy_bob_swings_as_a_pendulum(side: str, frame: str, numerics: Numerics) -> None:
     """T = 2 pi sqrt(I / (L g (M + m/2))) (1 + a^2/16), I = (M + m/3) L^2, where its weight keeps the rod straight."""
     M, angle = 100.0 * MASS, 0.1
@@ -43,7 +43,7 @@ def test_a_heavy_bob_swings_as_a_pendulum(side: str, frame: str, numerics: Numer
     ends = (End.pin(), with_body(M, frame))
     start, end = ends if side == "end" else ends[::-1]
     hung = Initial.straight(direction=tuple(down if side == "end" else -down))
-    frames = list(simulate(Scene(ROD, hung, start, end, 5.0, 0.05, gravity=(0.0, 0.0, -G), numerics=numerics)))
+    frames = list(simulate(Scene(ROD, hung, start, end, 2.7, 0.05, gravity=(0.0, 0.0, -G), numerics=numerics)))
     at, pin = (-1, 0) if side == "end" else (0, -1)
     swing = np.array([frame.r[at, 0] - frame.r[pin, 0] for frame in frames])
     exact = 2.0 * pi * sqrt(LENGTH * (M + MASS / 3.0) / (G * (M + MASS / 2.0))) * (1.0 + angle**2 / 16.0)

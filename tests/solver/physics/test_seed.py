@@ -38,7 +38,9 @@ def elastica(shorter: float) -> float:
 
 
 @pytest.mark.parametrize("analysis", ["dynamic", "static"])
-@pytest.mark.parametrize("numerics", [Numerics("staggered", intervals=20), Numerics("staggered", tolerance=1e-2)])
+@pytest.mark.parametrize("numerics", [
+    Numerics("staggered", intervals=20), Numerics("staggered", tolerance=1e-2, most_intervals=80),
+])  # fmt: skip
 def test_it_buckles_and_says_so(numerics: Numerics, analysis: str) -> None:
     run = simulate(shortened(0.2, numerics=numerics, analysis=analysis))
     *_, frame = run

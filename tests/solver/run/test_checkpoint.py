@@ -46,7 +46,7 @@ def pressed() -> Scene:
 
 def staggered() -> Scene:
     """The switched scene by the staggered method."""
-    numerics = Numerics(method="staggered", intervals=20, dt_max=0.2, increment_tolerance=1e-2)
+    numerics = Numerics(method="staggered", intervals=20, dt_max=0.2, increment_tolerance=4e-2)
     return replace(switched(), numerics=numerics)
 
 
@@ -62,7 +62,7 @@ def about_one_axis() -> Scene:
 
 def staggered_pressed() -> Scene:
     """The pressed strands by the staggered method."""
-    numerics = Numerics(method="staggered", intervals=40, dt_max=0.02, increment_tolerance=3e-2)
+    numerics = Numerics(method="staggered", intervals=30, dt_max=0.02, increment_tolerance=3e-2)
     return replace(pressed(), numerics=numerics)
 
 
@@ -128,13 +128,14 @@ def assert_same(one: list[Frame], other: list[Frame]) -> None:
 
 @pytest.mark.parametrize("make", [switched, shot, pressed, staggered, about_one_axis, staggered_pressed, stretched,
                                   balanced, verified])  # fmt: skip
-@pytest.mark.parametrize("after", [1, 3, 10])
+@pytest.mark.parametrize("after", [1, 7])
 def test_an_interrupted_run_gives_the_same_frames_to_the_bit(make: Callable[[], Scene], after: int) -> None:
     assert_same(undisturbed(make), interrupted(make(), after))
 
 
-@pytest.mark.parametrize("after", [7, 40, 300])
-@pytest.mark.parametrize("make", [refined, damped, refined_at_rest])
+@pytest.mark.parametrize(("make", "after"), [
+    *((make, after) for make in (refined, damped, refined_at_rest) for after in (7, 40)), (damped, 300),
+])  # fmt: skip
 def test_a_run_that_is_interrupted_while_it_is_refined_gives_the_same_frames_to_the_bit(
     make: Callable[[], Scene], after: int
 ) -> None:

@@ -21,6 +21,8 @@ from stress.ending import Ending, Result, Task
 PROCESSES = 2
 GRACE = 20.0
 """CPU seconds beyond its budget after which a run that does not stop by itself hangs: it looks at every step."""
+LOOK = 5.0
+"""Seconds between looks at processes that say nothing."""
 WALL = 10.0
 """Wall-clock seconds to a CPU second, and as many minutes more, after which a run that uses no CPU hangs."""
 
@@ -108,7 +110,7 @@ def results(work: Work, tasks: Iterable[Task], grace: float = GRACE) -> Iterator
         for child in children:
             _next(child, waiting)
         while any(child.task for child in children):
-            wait([child.line for child in children if child.task], timeout=5.0)
+            wait([child.line for child in children if child.task], timeout=LOOK)
             for child in (child for child in children if child.task):
                 task, result = child.task, child.take()
                 if task is not None and result is not None:

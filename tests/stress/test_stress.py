@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,12 +14,13 @@ from solver import Frame, Scene, simulate
 from stress import drawn, scenes
 from stress.books import Books
 from stress.crossing import Crossings
-from stress.ending import FAILURES, Ending, Result, Task
+from stress.ending import FAILURES, Ending, Task
 from stress.pool import results
 from stress.run import run
 from stress.sweeps import MAPS, SWEEPS
+from tests.stress.misbehaving import misbehave
 
-SEED, SHORT = 20260101, 60
+SEED, SHORT = 20260101, 40
 
 
 @pytest.fixture(scope="module")
@@ -99,19 +99,10 @@ def test_a_rod_that_turns_back_within_an_interval_is_where_its_arcs_are(end, cro
     assert watch.passed(rod - tilt) is crossed
 
 
-def misbehave(task: Task) -> Result:
-    """What a run must not do."""
-    if task.at == ("spins",):
-        while True:
-            pass
-    if task.at == ("dies",):
-        os.abort()
-    return Result(task.group, task.at, Ending.CORRECT)
-
-
-def test_a_run_that_hangs_or_dies_is_told_and_the_others_go_on():
+def test_a_run_that_hangs_or_dies_is_told_and_the_others_go_on(monkeypatch):
+    monkeypatch.setattr("stress.pool.LOOK", 0.1)
     names = ["well", "spins", "dies", "well", "well"]
-    found = list(results(misbehave, [Task("", (name,), {}, cpu=0.5) for name in names], grace=0.5))
+    found = list(results(misbehave, [Task("", (name,), {}, cpu=0.2) for name in names], grace=0.2))
     assert sorted((result.at[0], result.ending) for _, result in found) == [
         ("dies", Ending.CRASH), ("spins", Ending.HANG), *[("well", Ending.CORRECT)] * 3,
     ]  # fmt: skip

@@ -77,9 +77,9 @@ def connect(request: pytest.FixtureRequest) -> Iterator[Any]:
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A server that the tests of a module share."""
-    with serving(tmp_path_factory.mktemp("data")) as server:
+def server(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server that the tests of a module share; the module may say of how many processes its API is."""
+    with serving(tmp_path_factory.mktemp("data"), apis=getattr(request.module, "APIS", 1)) as server:
         assert server.address, server.first_line + server.process.stdout.read()
         yield server
 

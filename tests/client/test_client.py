@@ -12,6 +12,7 @@ import xarray as xr
 from hockle_client import Case, HockleError, Problem, case_of
 from service.cases import load_case, parse_case
 
+APIS = 2
 
 @pytest.fixture
 def done(client, quick):

@@ -73,7 +73,7 @@ def test_a_server_is_stopped_and_started_under_waiting_clients(client_of, slow, 
 
 
 def test_submissions_go_on_while_the_interface_is_killed_and_none_is_made_twice(client_of, quick, tmp_path, until):
-    with serving(tmp_path) as server, Client(server.address) as looking:
+    with serving(tmp_path, apis=2) as server, Client(server.address) as looking:
         assert server.address
         stop = threading.Event()
 

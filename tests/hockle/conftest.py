@@ -25,6 +25,7 @@ from service.cases import apply_settings, load_case
 
 QUICK = {"t_end": 0.5, "output.interval": 0.1, "numerics.intervals": 20}
 SLOW = {"t_end": 2.0, "output.interval": 0.1, "numerics.dt_max": 0.0005}
+SERVE = "import sys, hockle.supervisor as serve; from hockle.cli import main; serve.APIS = {}; sys.exit(main())"
 SHORT_LEASES = {"HOCKLE_LEASE": "5"}  # a machine with other work to do may hold a beat back for seconds
 
 
@@ -87,11 +88,11 @@ def alive(pid: int) -> bool:
 
 
 @contextmanager
-def serving(data: Path, tree: Path | None = None, port: int = 0, **told: str) -> Iterator[Server]:
+def serving(data: Path, tree: Path | None = None, port: int = 0, apis: int = 1, **told: str) -> Iterator[Server]:
     """A server that keeps what is its own in `data`, of the packages in `tree` if one is named; `told` are more
-    environment variables."""
+    environment variables. Each of the processes of its API takes two seconds to start."""
     solver.warm()  # else the first worker may compile for longer than a test waits
-    command = [sys.executable, "-m", "hockle", "serve", "--port", str(port), "--workers", "1",
+    command = [sys.executable, "-c", SERVE.format(apis), "serve", "--port", str(port), "--workers", "1",
                "--data", str(data)]
     environment = {**os.environ, **SHORT_LEASES, "REDIS_URL": "", **told}
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -135,9 +136,9 @@ def broker() -> Iterator[int]:
 
 
 @pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
-    """A server that the tests of a module share."""
-    with serving(tmp_path_factory.mktemp("data")) as server:
+def server(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """A server that the tests of a module share; the module may say of how many processes its API is."""
+    with serving(tmp_path_factory.mktemp("data"), apis=getattr(request.module, "APIS", 1)) as server:
         assert server.address, server.first_line + server.process.stdout.read()
         yield server
 

@@ -141,7 +141,7 @@ def fetched(client, job_id: str, path: Path) -> tuple[str, str]:
 def test_hosts_are_upgraded_one_by_one_while_jobs_run(
     start, newer, registry, postgresql, broker, held, slow, quick, until, tmp_path
 ):
-    slow = apply_settings(slow, {"t_end": 6.0, "numerics.dt_max": 0.001})
+    slow = apply_settings(slow, {"t_end": 3.0, "numerics.dt_max": 0.001})
     no_lease_runs_out = {"HOCKLE_LEASE": "300"}
     shared = {"HOCKLE_STORE": str(tmp_path / "store"), "HOCKLE_DATABASE": postgresql.url(),
               "REDIS_URL": f"redis://127.0.0.1:{broker}/0"} | no_lease_runs_out  # fmt: skip

@@ -15,6 +15,7 @@ from hockle_client import Client
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
 
 API, WORKER, BROKER = "hockle api", "hockle worker", "unixsocket:"
+APIS = 2
 
 
 def readiness(server) -> dict:

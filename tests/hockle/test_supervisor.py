@@ -17,6 +17,7 @@ from service.settings import Settings
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
 
 API, WORKER, BROKER = "hockle api", "hockle worker", "unixsocket:"
+APIS = 2
 
 
 def running(client, case, until) -> str:

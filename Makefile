@@ -17,8 +17,8 @@ serve: .venv/.runtime  ## API, worker and broker, until Ctrl-C
 	$(BIN)/hockle serve
 
 # where a test ends its process, the run ends: files are dealt out, and the others would wait for its rest forever
-test: .venv/.dev .venv/.docs  ## the whole test suite, four files at a time: many tests wait
-	$(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder --max-worker-restart 0 --durations 15
+test: .venv/.dev .venv/.docs  ## the whole test suite, three files at a time: many tests wait
+	$(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder --max-worker-restart 0 --durations 15
 
 lint: .venv/.dev .venv/.docs  ## style, types, and who may import whom
 	$(BIN)/ruff check .

@@ -23,6 +23,7 @@ from solver.physics.section import Beside
 from solver.physics.seed import size_of_seed
 from solver.run.linking import LinkingNumber
 from solver.run.run import Run
+from solver.run.settling import settled
 from solver.run.watch import Watch
 from solver.scene.contact import Contact
 from solver.scene.ends import End
@@ -37,10 +38,10 @@ from solver.statics.path import MOST_STEPS, Path
 from solver.statics.point import Point
 from solver.statics.stability import negative_modes, neutral_modes
 
-WAYS = ((True, True), (False, True), (False, False))
-"""In which to let go of the initial shape, the one to try first before the others: whether the forces that hold it turn
-with the rod, and whether the rod begins with a tension."""
-PATIENCE = 500
+WAYS = ("held", "settled")
+"""In which to let go of the initial shape, the one to try first before the other: where the rod is held as it lies, or
+where it has come to rest in motion, see `solver.run.settling`."""
+PATIENCE = 200
 """Steps after which another one is tried."""
 WIDEST_TURN = 0.9 * pi
 """Rotation (rad) within an interval that a step must not reach: beyond pi it would be told from the other side, and a
@@ -78,16 +79,29 @@ class Equilibria(Run):
     def _begin(self, way: int) -> None:
         """Lay the rod down, held in one of the WAYS, by its index."""
         self._way, self._equations, self._linking = way, Equations(self._scene), LinkingNumber()
-        turning, tense = WAYS[way]
         elastic = self._equations.chain.elastic
         self._layers = Layers.of(self._scene, self.s)
         self._beside = Beside.steps(self._scene.rod, self.s, elastic.K, elastic.kappa0 - self._equations.offset)
-        self._equations.hold(first_forces(self._equations) if tense else None, turning)
-        self._path = Path(self._equations, MOST_STEPS if WAYS[way] is WAYS[-1] else PATIENCE)
         start = self._equations.start  # from whose shape the turns are counted
         self._equations.residual(start)
         self._follow_ends(start)
         self._linking.of(0.0, self._twist(start), self._writhe(self._fields(start)))
+        if WAYS[way] == "settled":
+            self._settle()
+        else:
+            self._equations.hold(first_forces(self._equations), turning=True)
+        self._path = Path(self._equations, PATIENCE if way + 1 < len(WAYS) else MOST_STEPS)
+        self._follow_ends(self._path.point)
+
+    def _settle(self) -> None:
+        """Hold the rod where it comes to rest in motion; if it does not, where it lies."""
+        try:
+            rest = settled(self._equations, self._scene)
+        except RunFailed:
+            return
+        self._equations.begin(rest.point, rest.energy_contact)
+        self._equations.hold(rest.point.F, turning=True)
+        self.statistics.newton_iterations += round(rest.work / self.counted(0, 1))
 
     @property
     def s(self) -> Array:
@@ -134,7 +148,8 @@ class Equilibria(Run):
             return True
         self._falling.append(falling)
         last = len(self._falling) == len(WAYS)
-        following = self._falling.index(min(self._falling)) if last else len(self._falling)
+        best = max(way for way, fewest in enumerate(self._falling) if fewest == min(self._falling))
+        following = best if last else len(self._falling)
         if following != self._way:
             self._begin(following)
             return False

@@ -8,6 +8,7 @@ from math import pi
 from solver.arrays import Array
 from solver.measures.frame import Frame, Statistics, complete
 from solver.measures.ring import is_ring
+from solver.methods.method import Method
 from solver.methods.registry import discretized, tolerated_increment
 from solver.methods.status import CONVERGED, LOST_DIGITS, SINGULAR
 from solver.outcome import Outcome, RunFailed
@@ -31,12 +32,14 @@ part of the largest energy that there ever was, a loss of which a run that goes 
 class Simulation(Run):
     """Motion, by steps in time."""
 
-    def __init__(self, scene: Scene, statistics: Statistics | None = None, goes_on: bool = False) -> None:
-        """`goes_on`: energy that went nowhere is a remark, and does not end the run by `energy_lost`; energy that came
-        from nowhere ends it at its last frame only, if it is much then."""
+    def __init__(self, scene: Scene, statistics: Statistics | None = None, goes_on: bool = False,
+                 method: Method | None = None) -> None:  # fmt: skip
+        """`method`: that of the scene, if not the one that it asks for. `goes_on`: energy that went nowhere is a
+        remark, and does not end the run by `energy_lost`; energy that came from nowhere ends it at its last frame only,
+        if it is much then."""
         super().__init__(scene, statistics)
         self._goes_on = goes_on
-        self._method = discretized(scene)
+        self._method = method or discretized(scene)
         self._accounts = Accounts(scene, self._method)
         ends = self._method.start.corners() + self._method.end.corners()
         self._control = StepControl(

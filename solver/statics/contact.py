@@ -36,6 +36,10 @@ class StaticContact(SelfContact):
         self._kept = r.copy(), self.rest
         self.energy = 0.0
 
+    def begin(self, r: Array, energy: float) -> None:
+        """Begin with nodes r, with the forces that `push` was asked for last, which store `energy` (J)."""
+        self._kept, self.energy = (r.copy(), self.push(r).copy()), energy
+
     def look_ahead(self, bending: float, r: Array, moved: Array) -> None:
         """Before a step from nodes r, which may move by about `moved` (N + 1, 3): list who may touch."""
         self.prepare(bending, r, moved, 1.0, anew=True)

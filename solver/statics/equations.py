@@ -79,6 +79,13 @@ class Equations:
             self.holding[1:-1, X] = _turned_by(self.stages.R[0].transpose(0, 2, 1), self.holding[1:-1, X])
         self.letting_go = True
 
+    def begin(self, start: Point, energy: float) -> None:
+        """Begin elsewhere: where contact stores `energy` (J)."""
+        self.start = start
+        lay_down(self.chain, start.quaternion, start.base, start.F, self.stages)
+        self.contact.look_ahead(self.bending(), self.nodes(), self.contact.rest)
+        self.contact.begin(self.nodes(), energy)
+
     def let_go(self) -> None:
         """Nothing holds the initial shape any more; q is now the schedules' time."""
         self.letting_go = False

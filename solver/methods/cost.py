@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 POINT = 0.4
-"""Microseconds that each point of self-contact adds to a step."""
+"""Microseconds that each point of self-contact adds to a step in which it is looked where it is."""
 ROUGH = 1.3
 """Microseconds that each iteration after a step's second takes more for each interval where loads may set in all of a
 sudden: tangents are renewed."""
@@ -20,19 +20,18 @@ other; and those that each pair of points which do adds to them: of many, more d
 
 
 class Cost(NamedTuple):
-    """Microseconds: of a `step`, and for each interval in a step (`interval`) and in a Newton iteration (`iteration`);
-    `points`: how many of self-contact there are."""
+    """Microseconds: of a `step`, and for each interval in a step (`interval`) and in a Newton iteration (`iteration`).
+    """
 
     step: float
     interval: float
     iteration: float
-    points: int = 0
 
-    def of(self, intervals: int, steps: int, iterations: int, pressing: int, rough: bool = False) -> float:
-        """Of some steps (us); `iterations`: of all of them; `pressing`: how many pairs of points press on each other;
-        `rough`: whether loads may set in all of a sudden."""
+    def of(self, intervals: int, steps: int, iterations: int, placed: int, pressing: int, rough: bool = False) -> float:
+        """Of some steps (us); `iterations`: of all of them; `placed`: how many points of contact are looked at;
+        `pressing`: how many pairs of them press on each other; `rough`: whether loads may set in all of a sudden."""
         renewed = ROUGH * intervals * max(iterations - 2 * steps, 0) if rough else 0.0
-        each = self.step + self.interval * intervals + POINT * self.points
+        each = self.step + self.interval * intervals + POINT * placed
         pressed = (intervals + OVERHEAD) * (PRESSED + PAIR * pressing) if pressing else 0.0
         return steps * each + iterations * (self.iteration * intervals + pressed) + renewed
 

@@ -126,5 +126,9 @@ class Method(Protocol):
         """Number of pairs of points that press on each other."""
         return 0
 
+    def contact_points_placed(self) -> int:
+        """Number of points of self-contact that the last step looked at."""
+        return 0
+
     def compile(self) -> None:
         """Have every kernel compiled that a run may need."""

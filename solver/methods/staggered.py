@@ -108,8 +108,7 @@ class StaggeredMethod(RadauMethod):
         self._joints = self._bend(self.state.quaternion)[0]
         self._R = R = np.zeros((N + 2, 3, 3))
         matrices_of(self.state.quaternion, R)
-        points = 0 if scene.contact is None else len(self._touch.points.p)
-        self.cost = (STRETCHED if can_stretch(scene.rod) else IN_SPACE)._replace(points=points)
+        self.cost = STRETCHED if can_stretch(scene.rod) else IN_SPACE
         if can_stretch(scene.rod):
             self._stretch_at_start(scene)
         follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)
@@ -258,6 +257,10 @@ class StaggeredMethod(RadauMethod):
     def pressing(self) -> int:
         """Number of pairs of points that press on each other."""
         return self.contact.pressing
+
+    def contact_points_placed(self) -> int:
+        """Number of points of self-contact that the last step looked at."""
+        return self.contact.placed
 
     def compile(self) -> None:
         """Have every kernel compiled that a run may need, after its first step."""

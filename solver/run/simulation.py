@@ -70,7 +70,8 @@ class Simulation(Run):
     def counted(self, steps: int, iterations: int) -> float:
         """About how long steps like the last one take (us), by their number and all their `iterations`."""
         rough = self._method.applied.strikes
-        return self._method.cost.of(len(self.s) - 1, steps, iterations, self.pressing, rough)
+        placed = self._method.contact_points_placed()
+        return self._method.cost.of(len(self.s) - 1, steps, iterations, placed, self.pressing, rough)
 
     def warm(self) -> None:
         """Have every kernel compiled."""

@@ -47,9 +47,9 @@ def harmless_bending(distance: float, law: Law) -> float:
 
 
 @kernel
-def straight_intervals(r: Array, bending: float) -> int:
-    """How many intervals in succession, of those between the nodes at `r` (n, 3), bend by at most `bending` (rad), at
-    any place along the rod."""
+def straight_arc(r: Array, bending: float) -> float:
+    """How long an arc, in intervals between the nodes at `r` (n, 3), bends by at most `bending` (rad), wherever along
+    the rod it lies; where that is none from node to node, within an interval."""
     bent, first, fewest = 0.0, 0, len(r) - 1
     for last in range(len(r) - 1):
         bent += _bend(r, last)
@@ -57,19 +57,41 @@ def straight_intervals(r: Array, bending: float) -> int:
             fewest = min(fewest, last - first)
             bent -= _bend(r, first)
             first += 1
-    return fewest
+    if fewest > 1:
+        return fewest - 1.0  # an arc that lies between nodes is part of one interval more
+    return min(bending / _sharpest(r), 1.0)
 
 
 @kernel
-def most_bent(r: Array, many: int) -> float:
-    """The largest bending (rad) of `many` intervals in succession, of those between the nodes at `r` (n, 3)."""
-    bent, largest = 0.0, 0.0
+def most_bent(r: Array, arc: float) -> float:
+    """The largest bending (rad) of an arc so long, in intervals between the nodes at `r` (n, 3): one, or less, or so
+    many."""
+    if arc < 1.0:
+        return _sharpest(r) * arc
+    bent, largest, many = 0.0, 0.0, int(arc + 0.5) + 1
     for last in range(len(r) - 1):
         bent += _bend(r, last)
         if last >= many:
             bent -= _bend(r, last - many)
         largest = max(largest, bent)
     return largest
+
+
+@inner
+def _sharpest(r: Array) -> float:
+    """The largest curvature (rad for each interval) of the curve through the nodes at `r` (n, 3), wherever it is.
+
+    No more than 3.2 x / cos(x/2), times the longest chord by the shortest, for an angle x between the chords at a node:
+    of 40,000 intervals that were drawn, with a smaller angle at their other node, it is 3 x where x is small, 3.4 x at
+    1.2, 5.3 x at 2.2.
+    """
+    x, shortest, longest = 0.0, np.inf, 0.0
+    for i in range(len(r)):
+        x = max(x, _angle(r, i))
+        if i > 0:
+            chord = _distance(r, i, i - 1)
+            shortest, longest = min(shortest, chord), max(longest, chord)
+    return 3.2 * x / np.cos(0.5 * x) * longest / shortest  # type: ignore[no-any-return]
 
 
 @inner

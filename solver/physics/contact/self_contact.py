@@ -67,10 +67,12 @@ class SelfContact:
         self._share = float(np.abs(points.weights).sum(axis=1).max())
         self.rest, self._points_at_rest = np.zeros((len(s), 3)), np.zeros_like(points.p)
         """Velocities of nodes that do not move."""
-        self._skip, self._straight = self._law.skip, 0
-        """The arc (m) up to which the last search has left out pairs; and the intervals in succession whose bending has
-        to stay harmless for that, none where it is the law's own."""
+        self._skip, self._straight = self._law.skip, 0.0
+        """The arc (m) up to which the last search has left out pairs; and that in intervals, as its bending has to stay
+        harmless for that; none where it is the law's own."""
         self._looked = False
+        self.placed = 0
+        """Points that the last step had to place, see `solver.methods.cost`."""
         self._make_room(points, 1024 if contact else 1)
         self.step_limit = inf
         """The longest next step (s)."""
@@ -87,16 +89,16 @@ class SelfContact:
 
     def prepare(self, bending: float, r: Array, velocity: Array, dt: float, anew: bool = False) -> None:
         """Before a step of dt (s) from a state: make the list of pairs good for it; `anew`: also if it is yet."""
+        self.placed = 0
         if bending < self._not_to_be_searched:
             if self._looked:
                 self.touch.pairs.counts[:] = 0
-                self._looked, self._slack, self._straight = False, 0.0, 0
+                self._looked, self._slack, self._straight = False, 0.0, 0.0
             return
         bent = anew or self._is_bent(r, 0.5 * (1.0 + BENT))
         if not bent and self._share * search.largest_displacement(r, self._checked) < 0.5 * self._slack:
             return
-        points = self.touch.points
-        place_points(points, r, velocity)
+        points = self._placed(r, velocity)
         if bent or not self._looked or search.used(points.p, points.checked, points.slack) > 0.5:
             self._checked[:] = r
             self._search(dt)
@@ -114,8 +116,7 @@ class SelfContact:
             speed = self._share * search.largest_displacement(velocity, self.rest)
             self.step_limit = LARGEST_SHIFT * self._slack / speed if speed > 0.0 else inf
             return ""
-        points, pairs = self.touch.points, self.touch.pairs
-        place_points(points, r, velocity)
+        points, pairs = self._placed(r, velocity), self.touch.pairs
         if not self._looked:
             near = search.smallest_distance(points, self._law.skip, self._farthest, 0.0) <= self._reach
             return "the rod came near itself within one step" if near else ""
@@ -130,9 +131,15 @@ class SelfContact:
             return "two parts of the rod slipped into each other between contact points"
         return ""
 
+    def _placed(self, r: Array, velocity: Array) -> Points:
+        """The points, on a rod with nodes r that move at `velocity`."""
+        self.placed = len(self.touch.points.p)
+        place_points(self.touch.points, r, velocity)
+        return self.touch.points
+
     def _is_bent(self, r: Array, part: float) -> bool:
         """Whether an arc that the last search has left out bends by more than a part of what is harmless."""
-        return self._straight > 0 and search.most_bent(r, self._straight) > part * self._not_to_be_checked
+        return self._straight > 0.0 and search.most_bent(r, self._straight) > part * self._not_to_be_checked
 
     def smallest_gap(self, bending: float, r: Array) -> float:
         """Smallest surface-to-surface distance (m) of points more than the skip apart; NaN if contact is ruled out."""
@@ -155,7 +162,7 @@ class SelfContact:
         points, pairs = self.touch.points, self.touch.pairs
         search.smallest_distance(points, self._law.skip, inf, 0.5)
         approaches(points, pairs), links_meet(points, pairs)
-        search.used(points.p, points.checked, points.slack), search.most_bent(self._checked, 1)
+        search.used(points.p, points.checked, points.slack), search.most_bent(self._checked, 1.0)
 
     def _search(self, dt: float) -> None:
         """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
@@ -179,10 +186,10 @@ class SelfContact:
 
     def _leave_out(self) -> None:
         """See which arcs bend so little that their ends cannot be near. (Around a ring they are not looked at.)"""
-        straight = search.straight_intervals(self._checked, BENT * self._not_to_be_checked)
-        arc = (straight - 1) * self._interval  # one that lies between nodes is part of one interval more
+        straight = search.straight_arc(self._checked, BENT * self._not_to_be_checked)
+        arc = straight * self._interval
         further = arc > self._law.skip and self.touch.points.closing == inf
-        self._skip, self._straight = (arc, straight) if further else (self._law.skip, 0)
+        self._skip, self._straight = (arc, straight) if further else (self._law.skip, 0.0)
 
     def _make_room(self, points: Points, capacity: int) -> None:
         n, M = self._nodes, len(points.p)

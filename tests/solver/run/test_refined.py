@@ -362,5 +362,5 @@ def test_the_work_of_an_attempt_is_that_of_its_steps_and_frames() -> None:
     while not attempt.run.finished:
         frames += attempt.advance() is not None
     tried = attempt.statistics.steps + attempt.statistics.failed_steps
-    counted = ABOUT_AXIS.of(16, tried, attempt.statistics.newton_iterations, 0)
+    counted = ABOUT_AXIS.of(16, tried, attempt.statistics.newton_iterations, 0, 0)
     assert attempt.work == pytest.approx(counted + frames * FRAME)

@@ -23,9 +23,10 @@ from solver.physics.contact.search import (
     largest_displacement,
     most_bent,
     smallest_distance,
-    straight_intervals,
+    straight_arc,
     used,
 )
+from solver.physics.contact.self_contact import BENT
 from solver.scene.contact import Contact
 from solver.scene.rod import Rod
 
@@ -281,20 +282,23 @@ def test_arcs_that_bend_little_are_as_long_as_brute_force_has_it(seed: int, ampl
     angles = np.pad(np.arccos(np.clip(np.sum(chords[1:] * chords[:-1], axis=1), -1.0, 1.0)), 1)
     bent = 0.5 * (angles[1:] + angles[:-1])
     most = [np.convolve(bent, np.ones(many), "valid").max() for many in range(1, len(bent) + 1)]
-    straight = straight_intervals(nodes, bending)
-    assert straight == sum(each <= bending for each in most)
-    assert [most_bent(nodes, many) for many in range(1, len(bent) + 1)] == pytest.approx(most, abs=1e-6)
+    straight = sum(each <= bending for each in most)
+    arc = straight_arc(nodes, bending)
+    assert arc == straight - 1 if straight > 1 else arc <= 1.0
+    assert most_bent(nodes, arc) <= bending * (1.0 + 1e-9)
+    assert [most_bent(nodes, many) for many in range(1, len(bent))] == pytest.approx(most[1:], abs=1e-6)
 
 
+@pytest.mark.parametrize("intervals", [8, 12, 20, INTERVALS])
 @given(seeds, wildness)
-@settings(max_examples=60, deadline=None)
-def test_no_two_points_on_an_arc_that_bends_little_are_near(seed: int, amplitude: float) -> None:
-    """Schur's bound for each arc of the length that a search leaves out."""
-    law = Law.of(CONTACT, SPACING)
-    nodes = curve_of(tangents(S, seed, amplitude), S[1])
-    points = contact_points(CONTACT, ROD, S)
+@settings(max_examples=30, deadline=None)
+def test_no_two_points_on_an_arc_that_bends_little_are_near(intervals: int, seed: int, amplitude: float) -> None:
+    """Schur's bound for each arc of the length that a search leaves out, on meshes down to such as arcs lie within."""
+    law, s = Law.of(CONTACT, SPACING), np.linspace(0.0, LENGTH, intervals + 1)
+    nodes = curve_of(tangents(s, seed, amplitude), s[1])
+    points = contact_points(CONTACT, ROD, s)
     place_points(points, nodes, np.zeros_like(nodes))
-    arc = (straight_intervals(nodes, harmless_bending(CONTACT.cutoff, law)) - 1) * S[1]
+    arc = straight_arc(nodes, BENT * harmless_bending(CONTACT.cutoff, law)) * s[1]
     near = {pair for pair, d in distances(points).items() if d < CONTACT.cutoff}
     assert all((b - a) * points.spacing > arc for a, b in near)
 

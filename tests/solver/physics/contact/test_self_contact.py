@@ -195,6 +195,19 @@ def test_a_helix_that_swings_far_from_itself_is_not_held_back() -> None:
     assert steps(Contact()) < 1.3 * steps(None)
 
 
+def test_a_fine_thread_lists_no_neighbours_along_itself_however_coarse_the_mesh() -> None:
+    """A curl of hair, .08 mm thick in turns of 25 mm, has points that are near along it within every interval."""
+    turns, s = 12.0, np.linspace(0.0, LENGTH, 49)
+    turn = 2.0 * pi * turns / LENGTH
+    radius = 0.8 / turn
+    curl = np.column_stack([radius * np.cos(turn * s), radius * np.sin(turn * s), 0.6 * s])
+    contact = SelfContact(Contact(), Rod.circular(LENGTH, 8e-5, 4e9, 1.2e9, 1300.0), s, stages=1)
+    contact.prepare(2.0 * pi * turns, curl, np.ones_like(curl), 1e-3)
+    assert contact.touch.points.slack.max() > 10.0 * 8e-5 / 2.0
+    assert contact.touch.pairs.counts.tolist() == [0, 0]
+    assert refusal_of(contact, 2.0 * pi * turns, curl, np.ones_like(curl)) == ""
+
+
 def test_the_smallest_gap_is_between_surfaces() -> None:
     frame = next(iter(simulate(looped(CONTACT, 0.001, t_end=0.05))))
     s = np.linspace(0.0, LENGTH, 1501)

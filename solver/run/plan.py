@@ -281,7 +281,9 @@ def _until_one_is_complete(history: Sequence[Attempt], most_intervals: int, t_en
         more = _more_damped(last, t_end)
         if more and spent(history) > HURRY * budget.MOST_WORK:
             return Trial(more.mesh, DAMPED - highest_grade(intervals_of(more.mesh)))
-        return more
+        if more or last.slow or intervals_of(last.mesh + 1) > most_intervals or remaining(history) < 0.0:
+            return more
+        return Trial(last.mesh + 1, DAMPED)  # a rope may be too limp for coarse meshes, whatever damps it
     failed = [attempt for attempt in history if not attempt.slow]
     same = len(failed) > 2 and abs(failed[-1].t - failed[-2].t) <= SAME_TIME * failed[-1].t
     branch_ends = last.steps == AT_REST and len(failed) > 3 and (last.outcome != LOST or last.t > 0.0)

@@ -75,7 +75,11 @@ def slow(mesh: int, steps: int, work: float = SMALL) -> Attempt:
         ([slow(0, 0), slow(0, -2), failed(0, 0.5, steps=-11)], Excess(), Trial(0, -12)),
         ([slow(2, 0), slow(2, -2), slow(2, -11)], Excess(), Trial(2, -14)),
         ([slow(0, -12)], Excess(), Trial(0, -13)),  # the highest grade that a mesh may have
-        ([failed(0, 0.5, steps=-13)], Excess(), None),
+        ([failed(0, 0.5, steps=-13)], Excess(), Trial(1, DAMPED)),  # too limp for the mesh
+        ([failed(0, 0.5, MOST_WORK, steps=-13)], Excess(), Trial(1, DAMPED)),
+        ([failed(0, 0.5, 1.1 * MOST_WORK, steps=-13)], Excess(), None),
+        ([slow(0, -13)], Excess(), None),
+        ([failed(6, 0.5, steps=-17)], Excess(), None),  # of most_intervals
         ([slow(2, -2), ran(2, -11)], Excess(), Trial(3, -11)),
         ([slow(2, -2), ran(2, -11), failed(3, 0.2, steps=-11)], Excess(), Trial(1, -11)),
         ([slow(2, -2), ran(2, -11, MOST_WORK)], Excess(), Trial(1, -11)),

@@ -50,7 +50,7 @@ class FieldError:
     @property
     def missing(self) -> bool:
         """Whether a field that must be there is not."""
-        return self.rule == RULES["missing"]
+        return self.rule.startswith(RULES["missing"])
 
     def __str__(self) -> str:
         fault = f"{self.pointer or 'the case'} {self.rule}"

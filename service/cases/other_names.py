@@ -51,6 +51,9 @@ NOT_THERE = (
      "an end is held, or its load is given: it has no spring"),
     ("start end", "inertia moment_of_inertia", "a body at an end is a point: it has a mass alone"),
     ("", "rods", "a case has one rod"),
+    ("", "supports support", "what bears a rod within is an obstacle, or the floor, of loads"),
+    ("", "_comment comment comments note notes", "what a case is stands in its title and description"),
+    ("fluid", "wave waves wave_height wave_period", "waves are a current with a schedule"),
     ("", "walls wall", "a wall is the floor, with its normal, or a row of obstacles"),
 )
 """What some look for and hockle does not have: the last part of the place (nothing: the case itself), names in small

@@ -36,6 +36,8 @@ RULES = {
 NUMBERS = (
     (r"[-+]?\d+\.?\d*([eE][-+]?\d+)?", " without quotation marks"),
     (r"[-+]?\d+,\d+.*", " with a point, not a comma"),
+    (r".*\b(sin|cos|exp|sqrt|tanh)\s*\(.*",
+     ", not a formula: a function of time is a table, of some 20 points a period with interpolation cubic"),
     (r"[-+]?\d+\.?\d*([eE][-+]?\d+)?\s*[^\W\d].*", " alone, in SI units"),
 )
 """Texts that were meant as numbers, and what is said of them."""
@@ -46,6 +48,14 @@ KINDS = ("float_type", "model_type", "tuple_type", "literal_error")
 ALSO = {"<number>": " or a table, which is an object", "<end>": " or the name of a preset",
          "<three>": " or 'initial'", "<word>": " or a list of 3 entries"}  # fmt: skip
 """What such a value may be besides, by the tag of the kind that it was taken for."""
+REQUIRED: dict[object, str] = {
+    "interpolation": ": linear, smoothstep, pchip or cubic; smoothstep begins and ends at rest",
+}
+"""What is said of a field that is missing, by its name."""
+STAYS: dict[object, str] = {
+    ("loads", "gravity"): "; gravity stays the same: a load that changes is in loads.distributed, with a schedule",
+}
+"""What is said where a number is given as a function, by the place."""
 
 
 def rule_of(detail: ErrorDetails) -> str:
@@ -54,7 +64,9 @@ def rule_of(detail: ErrorDetails) -> str:
     rule = RULES[kind].format(**detail.get("ctx", {}))
     if kind == "missing":
         short_list = isinstance(value, (list, tuple)) and isinstance(place[-1], int)
-        return rule + (f": the list ends after {len(value)} entries" if short_list else "")
+        return rule + (f": the list ends after {len(value)} entries" if short_list else REQUIRED.get(place[-1], ""))
+    if isinstance(value, dict) and place[:2] in STAYS:
+        return rule + STAYS[place[:2]]
     if kind in ("float_type", "int_type") and isinstance(value, str) and len(value) <= LONGEST_NUMBER:
         meant = next((words for text, words in NUMBERS if re.fullmatch(text, value.strip())), "")
         if meant:

@@ -22,7 +22,7 @@ from service.cases.solids import touching_of
 from service.cases.units import units_of
 from solver import Curve, End, Scene
 from solver.physics.axial import distances, largest_strain
-from solver.physics.elasticity import Stretch
+from solver.physics.elasticity import Stretch, can_stretch
 
 WIDEST, THICKEST = 10.0, 0.2
 """Diameter in m, as of the largest chimneys, and in rod lengths, beyond which the theory of thin rods says little."""
@@ -30,6 +30,8 @@ GRAVITY = (1.0, 30.0)
 """m/s²: less than on the moon, more than on Jupiter."""
 RUBBER = 0.3
 """Strain beyond that of any material but rubber."""
+FAR = 0.05
+"""Strain beyond that of metals, glass and most threads."""
 ALIKE = 2.0
 """How many times larger or smaller an axial stiffness may be than that of a solid circle to be taken for one."""
 BEYOND = 1.0 + 1e-6
@@ -82,10 +84,13 @@ def _stretched(scene: Scene) -> Iterator[FieldError]:
 
 
 def _pulled_apart(scene: Scene) -> Iterator[FieldError]:
-    """Ends that come farther apart than the rod is long."""
+    """Ends that come farther apart than the rod is long, by more than it stretches."""
     apart, length = distances(scene), scene.rod.length
-    if apart is not None and float(apart.max()) > (1.0 + largest_strain(scene)) * length:
-        rule = f"come up to {apart.max():.3g} m apart, and the rod is {length:.3g} m long: it would be torn"
+    strain = 0.0 if apart is None else float(apart.max()) / length - 1.0
+    torn = strain > largest_strain(scene)
+    if torn or (strain > FAR and not can_stretch(scene.rod)):
+        then = "it would be torn" if torn else f"it has to stretch by {100 * strain:.2g} %, as axial_stiffness lets it"
+        rule = f"come up to {(1.0 + strain) * length:.3g} m apart, and the rod is {length:.3g} m long: {then}"
         yield FieldError("/ends", None, rule)
 
 

@@ -102,6 +102,15 @@ def test_every_other_name_is_of_a_field_that_there_is():
     ("output.topology", "yes", "/output/topology must be true or false, got 'yes'"),
     ("name", 3, "/name must be a text, got 3"),
     ("loads.gravity", [0.0, -9.81], "/loads/gravity/2 is required: the list ends after 2 entries"),
+    ("loads.gravity", [0.0, 0.0, {"t": [0, 1]}],
+     "/loads/gravity/2 must be a number; gravity stays the same: a load that changes is in loads.distributed, with a "
+     'schedule, got {"t": [0, 1]}'),
+    ("ends.start", {"preset": "clamp", "v1": "5*sin(t)"},
+     "/ends/start/v1 must be a number, not a formula: a function of time is a table, of some 20 points a period with "
+     "interpolation cubic, got '5*sin(t)'"),
+    ("ends.start", {"preset": "clamp", "v1": {"t": [0, 1], "value": [0, 1]}},
+     "/ends/start/v1/interpolation is required: linear, smoothstep, pchip or cubic; "
+     "smoothstep begins and ends at rest"),
     ("loads.gravity", -9.81, "/loads/gravity must be a list of 3 entries, got -9.81"),
     ("loads.gravity", None, "/loads/gravity must be a list of 3 entries, not null"),
     ("loads.point", {"s": 0.5}, '/loads/point must be a list of objects: [{...}], got {"s": 0.5}'),
@@ -153,7 +162,8 @@ def test_an_unknown_field_in_angle_brackets_is_told_too(setting: str):
 @pytest.mark.parametrize(("setting", "value", "instead"), [
     ("fluid", {"density": 1e3, "drag_linear": 0.1}, "viscosity"),
     ("contact", {"friction": 0.3}, "without friction"), ("ends.end", {"preset": "free", "stiffness": 5.0}, "no spring"),
-    ("rods", [{}, {}], "a case has one rod"),
+    ("rods", [{}, {}], "a case has one rod"), ("supports", [], "is an obstacle"), ("_comment", "a note", "description"),
+    ("fluid", {"density": 1e3, "wave_height": 2.0}, "a current with a schedule"),
     ("ends.end", {"preset": "free", "f3": {"amplitude": 1.0, "frequency": 2.0}}, "a table of t and value"),
 ])  # fmt: skip
 def test_what_hockle_does_not_have_is_told_with_what_there_is_instead(setting: str, value: Any, instead: str):

@@ -251,11 +251,14 @@ def test_a_profile_that_goes_on_beyond_the_rod_is_told():
     assert "beyond the rod" in warning.rule
 
 
-@pytest.mark.parametrize(("moved", "warned"), [(0.05, False), (0.5, True)])
-def test_ends_that_would_tear_the_rod_are_told(moved: float, warned: bool):
+@pytest.mark.parametrize(("moved", "words"), [(0.02, ""), (0.08, "has to stretch by 8 %"), (0.5, "torn")])
+@pytest.mark.parametrize("elastic", [False, True])
+def test_ends_that_would_stretch_or_tear_the_rod_are_told(moved: float, words: str, elastic: bool):
     pulled = {"t": [0.0, 1.0], "value": [0.0, moved], "interpolation": "linear"}
-    found = told({"ends.start": "clamp", "ends.end": {"preset": "clamp", "x3": pulled}, "t_end": 2.0})
-    assert any("torn" in warning.rule for warning in found) == warned
+    case = {"ends.start": "clamp", "ends.end": {"preset": "clamp", "x3": pulled}, "t_end": 2.0}
+    found = [w.rule for w in told(case | ({"rod.axial_stiffness": 1e3} if elastic else {})) if w.pointer == "/ends"]
+    assert len(found) == (0 if elastic or not words else 1)
+    assert all(words in rule for rule in found)
 
 
 @pytest.mark.parametrize(("heavy", "places", "warned"), [

@@ -64,7 +64,8 @@ def costs() -> str:
         return f"{rate * 1e6:g}"
 
     more = f"frames / {outlook.FRAMES}"
-    least = "; ".join(f"{kind}: {seconds:g}" for kind, seconds in outlook.SECONDS.items())
+    least, most = (extreme(outlook.SECONDS.items(), key=lambda item: item[1]) for extreme in (min, max))
+    kinds = f"one of {len(outlook.SECONDS)} figures, from {least[1]:g} ({least[0]}) to {most[1]:g} ({most[0]})"
     rows = [
         ("a step", f"{micro(cost.STEP)} + {micro(cost.STEP_NODE)} nodes"),
         ("a step of a static analysis", f"{micro(cost.STATIC_NODE)} nodes, {cost.ON_SOLIDS} times on solids"),
@@ -74,7 +75,7 @@ def costs() -> str:
         ("a frame with `output.topology`, besides", f"{micro(cost.WRITHE)} nodes²"),
         ("steps with an `increment_tolerance` below the usual one", "(usual / given)^(1/2) times, `staggered` ^(1/4)"),
         ("all of it with a `tolerance` below 1e-3", "(1e-3 / given)^(1/2) times, up to 10 s"),
-        ("and no less, by what sets the rod moving, than so many seconds", least),
+        ("and no less, by what sets the rod moving, than so many seconds", kinds),
         (f"these, with more than {outlook.FRAMES} frames",
          f"{more} times below {outlook.FOLLOWED:g} s, else ({more})^{outlook.BY_FRAMES:g} times, "
          f"up to {outlook.MOST:g} s"),

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.cases.driven import Driven
+from service.cases.imbalance import imbalance
 from service.cases.stability import critical_twist, pull, stiffness_and_mass
 from solver import Scene
 from solver.arrays import Array
@@ -37,6 +38,7 @@ from solver.scene.layout import nodes_at_rest
 
 SECONDS = {
     "wound up": 10.0, "lies on itself": 7.0, "may spring onto itself": 3.5, "taut": 6.0,
+    "taut and light": 1.2, "taut and heavy": 8.0,
     "taut and stretching": 1.6, "still": 0.1, "under many loads": 2.0, "struck": 5.0,
     "struck in water": 3.2, "held straight and twisted": 1.8,
     "held straight and twisted alone": 0.15, "held straight and springing": 6.0,
@@ -44,11 +46,12 @@ SECONDS = {
     "overdamped": 0.18, "overdamped and wound up": 3.0, "limp and moved": 5.0, "in space and moved or let go": 4.0,
     "with a heavy piece": 2.3, "a coil that is moved": 0.45, "moved and settling in space": 0.4, "spun": 1.6,
     "flying freely": 0.11, "settling in space": 0.14, "limp in space": 3.2, "swinging in space": 4.0,
-    "slow in space": 0.4, "long and heavy in water": 1.1, "shaken in water": 0.6, "shaken in air": 1.5,
-    "shaken under tension": 3.2, "towed through water": 0.4, "in water": 0.4, "in space and in water": 0.5,
+    "slow in space": 0.25, "long and heavy in water": 1.1, "shaken in water": 0.6,
+    "shaken in air": 1.5,
+    "shaken under tension": 3.2, "towed through water": 0.4, "in water": 0.4, "in space and in water": 0.25,
     "let go in water": 2.6, "let go or loaded at once": 5.5, "let go and settling": 2.5,
     "let go and settling between holds": 0.6, "let go gently": 0.2, "swinging as a stick": 0.3,
-    "let go between pins": 5.5, "loaded on a slide": 2.7, "let go and stretching": 2.2, "snapping through": 5.0,
+    "let go between pins": 5.5, "loaded on a slide": 4.5, "let go and stretching": 2.2, "snapping through": 5.0,
     "twisted to and fro": 1.7, "moved and ringing": 3.0, "undamped": 0.45, "followed by the frames": 0.3,
 }  # fmt: skip
 """CPU seconds at a tolerance of 1e-3, by what moves the rod, of FRAMES frames."""
@@ -71,6 +74,9 @@ INTERVALS, FINELY = 16, 2001
 """Intervals of a rod, and times of a schedule, that are looked at."""
 SMALL, DRIVEN = 1e-3, 0.02
 """Moment, in EJ/L, that sets nothing moving; and that of the rod's inertia where its ends are moved."""
+BALANCED, LITTLE, GENTLY = 2e-3, 0.02, 0.3
+"""Imbalance, in what urges the rod, with which it lies at rest; and, in EJ/L, with which it hardly moves by itself,
+and nor does it by its inertia if that is less than the last."""
 STRUCK, DEADENED = 1.5, 0.5
 """By how much a force in a point changes, in EJ/L^2, within a radian of the first frequency, if it is a blow;
 and damping, in that frequency, with which its waves do not matter."""
@@ -175,7 +181,10 @@ def _kind(scene: Scene, driven: Driven) -> str:
         if overdamped and not driven.turned and (not driven.moved or damping > MUCH * frequency):
             return "overdamped"
         if _come_apart(scene) or (urged.weight_across > SMALL and not overdamped):
-            return "taut and stretching" if can_stretch(scene.rod) else "taut"
+            if can_stretch(scene.rod):
+                return "taut and stretching"
+            heavy = urged.weight_across > SMALL
+            return "taut and heavy" if heavy else "taut" if urged.pushed > TAUT else "taut and light"
         if driven.turned:
             return "held straight and twisted" if driven.moved else "held straight and twisted alone"
         springs = urged.inertia > DRIVEN or urged.stress > STRESSED
@@ -184,7 +193,7 @@ def _kind(scene: Scene, driven: Driven) -> str:
         return "slides as a whole" if urged.weight < STIFF and not held and _lies(scene) else "on a floor"
     if overdamped:
         return "overdamped"
-    if scene.fluid is not None and urged.weight < LIMP and urged.stress > SMALL and _is_braked(scene):
+    if scene.fluid is not None and urged.weight < LIMP and urged.springs and _is_braked(scene):
         return "let go in water"
     loaded = max(urged.weight_across, urged.force) > SMALL
     if loaded and urged.bent < SMALL and (_slides(scene.start) or _slides(scene.end)):
@@ -201,7 +210,8 @@ def _kind(scene: Scene, driven: Driven) -> str:
                 return "a coil that is moved"
             if damping > frequency:
                 return "moved and settling in space"
-        if urged.inertia > DRIVEN or springs_back or (urging and damping == 0.0):
+        gentle = urged.imbalance < LITTLE and urged.inertia < GENTLY and urged.force < SMALL
+        if not gentle and (urged.inertia > DRIVEN or springs_back or (urging and damping == 0.0)):
             limp = urged.weight > LIMP or urged.inertia > WHIPPED
             return "limp and moved" if limp else "in space and moved or let go"
         if not (urging or held):
@@ -212,7 +222,7 @@ def _kind(scene: Scene, driven: Driven) -> str:
             limp = urged.weight_across > (FALLS if heavily else HANGS)
             return "limp in space" if limp else "settling in space"
         swings = urged.weight_across > SWINGS or damping < HARDLY * frequency
-        return "swinging in space" if urged.at_once and swings else "slow in space"
+        return "swinging in space" if urged.at_once and swings and not gentle else "slow in space"
     if scene.fluid is not None:
         if urged.weight > LIMP:
             return "long and heavy in water" if _is_braked(scene) or not driven.moved else "limp and moved"
@@ -265,6 +275,7 @@ class Urged:
     pushed: float
     struck: float
     bent: float
+    imbalance: float
     thrown: bool
 
     @classmethod
@@ -290,13 +301,19 @@ class Urged:
                         *(_fastest_at(end, scene.t_end, length) for end in (scene.start, scene.end))])
             * length**2 / stiffness,
             bent=float(np.linalg.norm(kappa[:, :2], axis=1).mean()) * length,
-            thrown=any((*scene.initial.velocity, *scene.initial.angular_velocity)),
+            imbalance=imbalance(scene), thrown=any((*scene.initial.velocity, *scene.initial.angular_velocity)),
         )  # fmt: skip
 
     @property
     def at_once(self) -> bool:
         """Whether the rod is not at rest where it begins."""
-        return self.thrown or max(self.weight_across, self.stress, self.force) > SMALL
+        urging = max(self.weight_across, self.stress, self.force)
+        return self.thrown or (urging > SMALL and self.imbalance > BALANCED * urging)
+
+    @property
+    def springs(self) -> bool:
+        """Whether it has stress that is not borne by its ends."""
+        return self.stress > SMALL and self.imbalance > BALANCED * self.stress
 
 
 def heavy_part(scene: Scene) -> NDArray[np.bool_]:

@@ -8,6 +8,7 @@ from math import ceil, log2
 import numpy as np
 
 from solver.arrays import Array
+from solver.kernels.rotation import rotate
 from solver.physics.ends import ABOUT_A3, DrivenEnd
 from solver.run.hidden import Creases, Hidden, hidden_in
 from solver.run.trial import FIRST_INTERVALS, intervals_of
@@ -42,11 +43,13 @@ def first_mesh(scene: Scene, pressed: bool) -> int:
     """How many times to double `first_intervals`, see `plan`. `pressed`: whether strands press on each other."""
     largest = LARGEST_TURN_PRESSED if pressed and not scene.at_rest else LARGEST_TURN
     s = np.linspace(0.0, scene.rod.length, LOOKED_AT)
-    places, _, kappa = nodes_at_rest(scene.initial, s)
+    places, quaternion, kappa = nodes_at_rest(scene.initial, s)
     turned = _turned(s, kappa), _turned(s, np.stack([profile(s) for profile in scene.rod.kappa0], axis=1))
     bent = float(turned[0][-1])
     twist = twisted(scene) / (LARGEST_TWIST_AT_REST if scene.at_rest else largest)
-    scales = [load.scale for load in scene.loads if hasattr(load, "scale")]  # longer intervals may not feel the load
+    tangents = rotate(quaternion, np.tile([0.0, 0.0, 1.0], (LOOKED_AT, 1)))
+    # longer intervals may not feel the load
+    scales = [load.scale(tangents) for load in scene.loads if hasattr(load, "scale")]
     intervals = bent / largest, twist, *(float(scene.rod.length) / scale for scale in scales)
     mesh = max(ceil(log2(max(intervals) / first_intervals(scene) + 1e-9)), 0)
     hidden = hidden_in(scene, s, kappa)

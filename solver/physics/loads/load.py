@@ -3,7 +3,7 @@
 A load is a module of this folder, entered in `registry.LOADS`, with
 
     Given       what a scene's `loads` hold, if it is no other part of a scene that gives the load; its `scale`, if it
-                has one, is the length (m) of a rod's interval that may be too long to feel it;
+                has one, gives the length (m) of an interval that may be too long to feel it, by the rod's tangents;
     Record      a NamedTuple of `present` and arrays, a line for each point: what its kernels read;
     of          makes the `Source` of a scene: its record, and how that changes with time;
     force       kernel: force (lab) and moment (material) per length at point j at the i-th time within a step;

@@ -37,6 +37,8 @@ FOLLOWED = 2.0
 """By how much (rad) a swing in a blow goes on in a step, at a tolerance of 1: times its 4th root, so that the error of
 order 5 falls somewhat faster than it."""
 SMALLEST = 1e-300
+ASLANT = 0.1
+"""Sine of the angle between a rod and an obstacle that it lies along, at the least, as the rod will bend."""
 
 
 @dataclass(frozen=True)
@@ -79,10 +81,11 @@ class Obstacle:
     friction: float = 0.0
     slip: float = 1e-3
 
-    @property
-    def scale(self) -> float:
-        """Nodes farther apart than this may lie on both sides of it."""
-        return self.radius
+    def scale(self, tangents: Array) -> float:
+        """Nodes farther apart (m) than this, of a rod with `tangents` (n, 3), may lie on both sides of it."""
+        axis = np.array(self.end) - np.array(self.start)
+        across = np.linalg.norm(np.cross(tangents, axis), axis=1).max() / max(float(np.linalg.norm(axis)), SMALLEST)
+        return self.radius / max(float(across), ASLANT) if axis.any() else self.radius
 
     def __post_init__(self) -> None:
         require_finite("obstacle start", self.start)

@@ -12,6 +12,7 @@ from solver import Curve, DistributedLoad, Initial, Numerics, PointLoad, constan
 from solver.arrays import Array
 from solver.measures.topology import writhe
 from solver.methods.space.segments.initial import chain_of, lay_out, segments_of
+from solver.physics.loads.solids import Obstacle
 from solver.run.first_mesh import first_mesh
 from solver.run.hidden import cancelled
 from solver.run.trial import intervals_of
@@ -137,6 +138,17 @@ def test_loads_that_do_not_cancel_ask_for_no_finer_mesh() -> None:
         loads = [PointLoad(s, constant_vector(tuple(EJ / LENGTH**2 * np.array(force))))
                  for s, force in ((0.3 * LENGTH, one), ((0.3 + apart) * LENGTH, other))]  # fmt: skip
         assert first_mesh(static(points=tuple(loads), numerics=BY_TOLERANCE), pressed=False) == 0
+
+
+@pytest.mark.parametrize(("axis", "intervals"), [
+    ((0.01, 0.0, 0.0), 128), ((0.0, 0.0, 0.01), 16), ((0.0, 0.0, 0.0), 128), ((0.0, 0.004, 0.01), 64),
+])  # fmt: skip
+def test_an_obstacle_lies_between_no_two_nodes_of_a_rod_that_does_not_lie_along_it(
+    axis: tuple[float, float, float], intervals: int
+) -> None:
+    bar = Obstacle((0.0, 0.0, 0.0), axis, 0.01 * LENGTH, 1e3)
+    mesh = first_mesh(replace(static(numerics=BY_TOLERANCE, loads=(bar,)), analysis="dynamic"), pressed=False)
+    assert intervals_of(mesh) == intervals
 
 
 @pytest.mark.parametrize(("h", "most"), [(0.1, 0.0), (0.25, 2.0), (1.0, 4.0)])

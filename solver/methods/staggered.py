@@ -111,10 +111,8 @@ class StaggeredMethod(RadauMethod):
         self.cost = STRETCHED if can_stretch(scene.rod) else IN_SPACE
         if can_stretch(scene.rod):
             self._stretch_at_start(scene)
-        follow_segments(R, self.state.omega, self.state.alpha, self.state.base, self.chain.h, *self._centres)
-        shift_segments(R, self.state.omega, self.state.alpha, self.state.opening, *self._centres)
         self._nodes, self._strain = np.zeros((2, N + 1, 3)), np.zeros(len(chain.elastic.compliance))
-        self._place_nodes()
+        self._place_all()
         if self._ends_give:
             self._bear_along()
         self._R_within = np.zeros_like(R)
@@ -126,6 +124,24 @@ class StaggeredMethod(RadauMethod):
     def of(cls, scene: Scene) -> StaggeredMethod:
         """The method for a scene."""
         return cls(scene)
+
+    def lay_at_rest(self, quaternion: Array, base: Array, F: Array) -> None:
+        """Have the rod begin at rest elsewhere: orientations (N + 2, 4), the start's place (3,), forces (N + 1, 3)."""
+        state = self.state
+        for part in (state.omega, state.alpha, state.base, state.opening):
+            part[:] = 0.0
+        state.quaternion[:], state.base[0], state.F[:] = quaternion, base, F
+        matrices_of(quaternion, self._R)
+        self._joints = self._bend(quaternion)[0]
+        measure_openings(self.chain, self._R, F, self._joints, state.opening[0])
+        self._place_all()
+
+    def _place_all(self) -> None:
+        """Write centres and nodes of the state."""
+        state = self.state
+        follow_segments(self._R, state.omega, state.alpha, state.base, self.chain.h, *self._centres)
+        shift_segments(self._R, state.omega, state.alpha, state.opening, *self._centres)
+        self._place_nodes()
 
     def _stretch_at_start(self, scene: Scene) -> None:
         """Open the joints by the forces that the rod would bear at t = 0 if it could not stretch.

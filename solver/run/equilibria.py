@@ -23,7 +23,7 @@ from solver.physics.section import Beside
 from solver.physics.seed import size_of_seed
 from solver.run.linking import LinkingNumber
 from solver.run.run import Run
-from solver.run.settling import settled
+from solver.run.settling import settled, turned
 from solver.run.watch import Watch
 from solver.scene.contact import Contact
 from solver.scene.ends import End
@@ -74,6 +74,8 @@ class Equilibria(Run):
         self._watch = Watch(self.remarks, scene.contact is not None, self._ring)
         self._falling: list[float] = []
         """Directions of falling energy where each of the WAYS led; inf where it led nowhere."""
+        self._loose = False
+        """Whether the rod has yet to be turned by its first loads."""
         self._begin(0)
 
     def _begin(self, way: int) -> None:
@@ -130,7 +132,12 @@ class Equilibria(Run):
             return None
         self._equations.let_go()
         self._path.begin(self._corners())
-        self._path.advance(0.0)
+        try:
+            self._path.advance(0.0)
+        except RunFailed as failure:
+            if failure.outcome is not Outcome.SINGULAR_SYSTEM or not all(end.stays for end in self._equations.ends):
+                raise
+            self._loose = True
         return self._frame(0.0)
 
     def _let_go(self) -> bool:
@@ -159,7 +166,17 @@ class Equilibria(Run):
         """Whether there is another way, and the branch of this one goes far back instead of letting go."""
         return self._way + 1 < len(WAYS) and self._path.point.q < -FAR_BACK
 
+    def _turn(self, t: float) -> None:
+        """Turn the rod, which nothing holds against its first loads, to where it rests under those of t."""
+        rest = turned(self._equations, self._scene, self._path.point, t)
+        self._equations.begin(rest.point, rest.energy_contact)
+        self._path.resume(rest.point)
+        self.statistics.newton_iterations += round(rest.work / self.counted(0, 1))
+        self._loose = False
+
     def _next_frame(self, output: float) -> Frame | None:
+        if self._loose:
+            self._turn(output)
         reached = self._advance(output / self._scene.t_end)
         self.t = self._path.travelled * self._scene.t_end
         return self._frame(output) if reached else None

@@ -6,7 +6,8 @@ It is damped at the rate `BRAKING` w by the frequency of its slowest motion acro
 
     w^2 = 3.516^2 EJ / (m L^4) + b / (m L),
 
-with m its mass per length and b the mean force per length that holds its initial shape.
+with m its mass per length and b the mean force per length that holds its initial shape. A rod that turns as a whole, as
+nothing holds it against its first loads, bends by far faster: there w is by the second part alone, with b those loads.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from solver.arrays import Array
 from solver.methods.staggered import StaggeredMethod
 from solver.outcome import RunFailed
 from solver.run.simulation import Simulation
@@ -55,15 +57,39 @@ def settled(equations: Equations, scene: Scene) -> Rest:
 
     Raises RunFailed where the motion cannot be followed.
     """
+    stiffness = CANTILEVER**2 * equations.stiffness / float(scene.rod.length) ** 2
+    return _settled(equations, scene, None, stiffness + _sum_of(equations.holding, equations), 0.0)
+
+
+def turned(equations: Equations, scene: Scene, point: Point, t: float) -> Rest:
+    """Where the rod rests with its loads as they are at t, which turn it as a whole from a `point`. Its ends stay.
+
+    Raises RunFailed where the motion cannot be followed.
+    """
+    point = replace(point, q=t / scene.t_end)
+    rest = _settled(equations, scene, point, _sum_of(equations.residual(point), equations), t)
+    return rest._replace(point=replace(rest.point, q=point.q))
+
+
+def _sum_of(residual: Array, equations: Equations) -> float:
+    """Of all forces (N) on segments and ends, by their size, of what is not balanced."""
+    return float(np.linalg.norm(residual[:, X], axis=1).sum() * equations.units[-1])
+
+
+def _settled(equations: Equations, scene: Scene, begin: Point | None, force: float, t: float) -> Rest:
+    """From a point, or the scene's initial shape; `force` (N): by which the rod goes to where it rests."""
+    frequency = float(np.sqrt(force / (equations.chain.mass.sum() * scene.rod.length)))
     try:
-        return _rest(_braked(equations, scene, BRAKING[0]))
+        return _rest(_braked(scene, frequency, BRAKING[0], t), begin)
     except RunFailed:
-        return _rest(_braked(equations, scene, BRAKING[1]))
+        return _rest(_braked(scene, frequency, BRAKING[1], t), begin)
 
 
-def _rest(moving: Scene) -> Rest:
-    """Where the rod of a scene of motion rests."""
+def _rest(moving: Scene, begin: Point | None) -> Rest:
+    """Where the rod of a scene of motion rests that begins at a point, or in its initial shape."""
     method = StaggeredMethod(moving)
+    if begin:
+        method.lay_at_rest(begin.quaternion, begin.base, begin.F)
     run = Simulation(moving, goes_on=True, method=method)
     fastest, stored, looks = 0.0, 0.0, 0
     while not run.finished and run.statistics.steps < MOST_STEPS:
@@ -79,39 +105,36 @@ def _rest(moving: Scene) -> Rest:
     return Rest(point, stored, run.counted(statistics.steps, statistics.newton_iterations))
 
 
-def _braked(equations: Equations, scene: Scene, braking: float) -> Scene:
-    """The scene as one of motion, whose loads and ends stay as they are at t = 0."""
-    length, mass = float(scene.rod.length), float(equations.chain.mass.sum())
-    holding = np.linalg.norm(equations.holding[1:-1, X], axis=1).sum() * equations.units[-1]
-    stiffness = CANTILEVER**2 * equations.stiffness / length**3 + holding / length
-    frequency = float(np.sqrt(stiffness / mass))
+def _braked(scene: Scene, frequency: float, braking: float, t: float) -> Scene:
+    """The scene as one of motion, whose loads stay as they are at t, and its ends where they are."""
+    fluid = scene.fluid and replace(scene.fluid, schedule=_constant(scene.fluid.schedule, t))
     return replace(
         scene, analysis="dynamic", topology=scene.contact is not None, damping=scene.damping + braking * frequency,
-        start=_at_first(scene.start), end=_at_first(scene.end), t_end=LONGEST / frequency,
-        output_interval=LOOKS / frequency,
-        distributed=tuple(replace(load, schedule=_constant(load.schedule)) for load in scene.distributed),
-        points=tuple(replace(load, force=_constants(load.force), moment=_constants(load.moment))
+        start=_kept(scene.start, t), end=_kept(scene.end, t), t_end=LONGEST / frequency,
+        output_interval=LOOKS / frequency, fluid=fluid,
+        distributed=tuple(replace(load, schedule=_constant(load.schedule, t)) for load in scene.distributed),
+        points=tuple(replace(load, force=_constants(load.force, t), moment=_constants(load.moment, t))
                      for load in scene.points),
         numerics=Numerics(method="staggered", intervals=scene.numerics.intervals, dt_max=LOOKS / frequency,
                           increment_tolerance=LOOSELY),
     )  # fmt: skip
 
 
-def _constant(curve: Curve) -> Curve:
-    return Curve.constant(curve.value(0.0))
+def _constant(curve: Curve, t: float) -> Curve:
+    return Curve.constant(curve.value(t))
 
 
-def _constants(curves: Vector) -> Vector:
-    one, two, three = (_constant(curve) for curve in curves)
+def _constants(curves: Vector, t: float) -> Vector:
+    one, two, three = (_constant(curve, t) for curve in curves)
     return one, two, three
 
 
-def _at_first(end: End) -> End:
-    """An end that is held where it is, and loaded as at t = 0."""
+def _kept(end: End, t: float) -> End:
+    """An end that is held where it is, and loaded as at t."""
 
     def component(given: Component) -> Component:
         first = given[0]
-        return (Condition("load", _constant(first.curve)) if first.kind == "load" else Condition("rate"),)
+        return (Condition("load", _constant(first.curve, t)) if first.kind == "load" else Condition("rate"),)
 
     (one, two, three), (a, b, c) = end.translation, end.rotation
     return replace(end, translation=(component(one), component(two), component(three)),

@@ -103,6 +103,11 @@ class StaticEnd:
         self._turns_held = int(self.held[3:].sum())
         self.follower, self.moment, self.pin = np.zeros(3), np.zeros(3), place
 
+    @property
+    def stays(self) -> bool:
+        """Whether it stays where, and as, it is held."""
+        return all(_is_still(c) for c in self._conditions if c.kind != "load")
+
     def corners(self) -> list[float]:
         """Times at which a schedule bends."""
         return [corner for condition in self._conditions for corner in condition.curve.corners]

@@ -103,6 +103,14 @@ class Path:
         self._bend = 0.0 * self.direction
         """How the direction changes along the branch, as its last step had it."""
 
+    def resume(self, point: Point) -> None:
+        """Go on from near a point, with its q. Raises RunFailed where no equilibrium is near."""
+        self._neutral.look(self._equations.linearise(point)[1])
+        there = self._correct(point, None)
+        if there is None:
+            raise self._failure(Outcome.EQUILIBRIUM_LOST, "nothing holds the rod against its first loads")
+        self.point, self.travelled, self._begun = there, there.q, False
+
     def advance(self, stop: float) -> bool:
         """Take one step towards where q has travelled as far as `stop`; whether it is there.
 

@@ -9,13 +9,26 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solver import Condition, Contact, Curve, DistributedLoad, End, Frame, Initial, Numerics, PointLoad, Scene, simulate
+from solver import (
+    Condition,
+    Contact,
+    Curve,
+    DistributedLoad,
+    End,
+    Frame,
+    Initial,
+    Numerics,
+    PointLoad,
+    RunFailed,
+    Scene,
+    simulate,
+)
 from solver.arrays import Array
 from solver.physics.loads.solids import Floor
 from solver.run.settling import settled
 from solver.statics.equations import Equations
 from solver.statics.point import FORCE, X
-from tests.solver.scenes import LENGTH, ROPE
+from tests.solver.scenes import ARC, ARC_ROD, EJ, LENGTH, ROPE
 from tests.solver.statics.resting import ramp, static
 
 WEIGHT = (0.0, 0.0, -9.81)
@@ -80,6 +93,56 @@ def test_a_rod_that_falls_onto_a_floor_lies_on_it() -> None:
     first: Frame = next(iter(simulate(above_its_pin(loads=(floor,)))))
     assert first.negative_modes == 0
     assert first.r[:, 2].min() > -0.3 - ROPE.diameter(0.0)
+
+
+ASIDE = (ramp(3.0 * EJ / LENGTH**2), ramp(-4.0 * EJ / LENGTH**2), Curve.constant(0.0))
+
+
+def test_a_rod_on_a_pin_turns_to_where_its_first_loads_pull() -> None:
+    """Nothing holds it at t = 0: there it stays as it was laid."""
+    pulled = (PointLoad(LENGTH, ASIDE),)
+    first, *later = simulate(static(start=End.pin(), points=pulled, output_interval=0.25))
+    assert_allclose(first.r[-1], [0.0, 0.0, LENGTH], atol=1e-9)
+    for frame in later:
+        assert_allclose(frame.r[-1], [0.6 * LENGTH, -0.8 * LENGTH, 0.0], atol=1e-6)
+        assert frame.negative_modes == 0
+        assert_allclose(np.linalg.norm(frame.f, axis=1), 5.0 * EJ / LENGTH**2 * frame.t, rtol=1e-6)
+
+
+def test_a_hook_that_hangs_turns_about_the_vertical_to_its_first_load() -> None:
+    """Its tip goes where the load has it lowest, in the plane of weight and load."""
+    hook = static(rod=ARC_ROD, initial=ARC, start=End.pin(), gravity=(0.0, 0.0, 1.0), output_interval=0.1,
+                  points=(PointLoad(LENGTH, ASIDE),))  # fmt: skip
+    first, *later = simulate(hook)
+    assert_allclose(first.r[:, 1], 0.0, atol=1e-9)
+    across = np.array([0.8, 0.6, 0.0])
+    for frame in later:
+        assert_allclose(frame.r @ across, 0.0, atol=1e-4 * LENGTH)
+        assert frame.r[-1] @ [0.6, -0.8, 0.0] > 0.0
+        assert frame.negative_modes == 0
+
+
+@pytest.mark.parametrize("scene", [
+    above_its_pin(output_interval=0.25, points=(PointLoad(LENGTH, ASIDE),)),
+    static(start=End.pin(), points=(PointLoad(LENGTH, ASIDE),), output_interval=0.25),
+], ids=["settled", "turned"])  # fmt: skip
+@pytest.mark.parametrize("many", [1, 2])
+def test_a_run_that_is_restored_goes_on_as_it_would_have(scene: Scene, many: int) -> None:
+    run, again = simulate(scene), simulate(scene)
+    frames = iter(run)
+    for _ in range(many):
+        next(frames)
+    again.restore(run.checkpoint())
+    for expected, frame in zip(frames, again, strict=True):
+        assert (frame.r == expected.r).all()
+        assert frame.negative_modes == expected.negative_modes
+
+
+def test_what_turns_as_a_whole_while_an_end_moves_is_refused() -> None:
+    pin = End.pin()
+    moved = replace(pin, frame="lab", translation=((Condition("position", ramp(0.2)),), *pin.translation[1:]))
+    with pytest.raises(RunFailed, match="nothing holds the rod"):
+        list(simulate(static(start=moved, points=(PointLoad(LENGTH, ASIDE),))))
 
 
 def test_a_rod_whose_first_way_is_stable_is_not_set_in_motion(monkeypatch: pytest.MonkeyPatch) -> None:

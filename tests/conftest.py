@@ -32,7 +32,7 @@ COMPILED = (
 """All kernels that tests need, in two parts that take as long as each other."""
 
 LONG = (
-    "service/api/test_fuzz.py", "docs/test_site.py", "docs/test_pages.py", "hockle/test_supervisor.py",
+    "service/api/test_fuzz.py", "docs/test_site.py", "hockle/test_supervisor.py", "docs/test_pages.py",
     "chaos/test_campaign.py", "hockle/test_standing_still.py", "hockle/test_rolling_upgrade.py",
     "client/test_restarts.py", "hockle/test_two_hosts.py", "service/dashboard/test_loss.py",
     "service/dashboard/test_cable.py", "hockle/test_strict_host.py", "client/test_ensembles.py",

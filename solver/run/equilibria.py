@@ -166,17 +166,26 @@ class Equilibria(Run):
         """Whether there is another way, and the branch of this one goes far back instead of letting go."""
         return self._way + 1 < len(WAYS) and self._path.point.q < -FAR_BACK
 
-    def _turn(self, t: float) -> None:
-        """Turn the rod, which nothing holds against its first loads, to where it rests under those of t."""
-        rest = turned(self._equations, self._scene, self._path.point, t)
+    def _turns(self, t: float) -> bool:
+        """Turn the rod, which nothing holds against its first loads, to where it rests under those of t, if it has any
+        by then; whether it has."""
+        try:
+            rest = turned(self._equations, self._scene, self._path.point, t)
+        except RunFailed as failure:
+            raise RunFailed(Outcome.SINGULAR_SYSTEM, t, self.statistics.steps, "its first loads turn it") from failure
+        if rest is None:
+            self._path.point.q = t / self._scene.t_end
+            return False
         self._equations.begin(rest.point, rest.energy_contact)
         self._path.resume(rest.point)
         self.statistics.newton_iterations += round(rest.work / self.counted(0, 1))
         self._loose = False
+        return True
 
     def _next_frame(self, output: float) -> Frame | None:
-        if self._loose:
-            self._turn(output)
+        if self._loose and not self._turns(output):
+            self.t = output
+            return self._frame(output)
         reached = self._advance(output / self._scene.t_end)
         self.t = self._path.travelled * self._scene.t_end
         return self._frame(output) if reached else None

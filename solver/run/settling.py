@@ -39,6 +39,8 @@ AT_REST = 1e-10
 """Part of the largest kinetic energy with which the rod rests."""
 MOST_STEPS = 5000
 """Steps after which it is taken as it is."""
+NOTHING = 1e-4
+"""Force, in EJ/L^2, that does not turn a rod yet."""
 LOOSELY = 0.1
 """Part of its motion that an error of a step may be: where the rod rests there is none."""
 
@@ -61,13 +63,17 @@ def settled(equations: Equations, scene: Scene) -> Rest:
     return _settled(equations, scene, None, stiffness + _sum_of(equations.holding, equations), 0.0)
 
 
-def turned(equations: Equations, scene: Scene, point: Point, t: float) -> Rest:
-    """Where the rod rests with its loads as they are at t, which turn it as a whole from a `point`. Its ends stay.
+def turned(equations: Equations, scene: Scene, point: Point, t: float) -> Rest | None:
+    """Where the rod rests with its loads as they are at t, which turn it as a whole from a `point`; None where they are
+    next to nothing. Its ends stay.
 
     Raises RunFailed where the motion cannot be followed.
     """
     point = replace(point, q=t / scene.t_end)
-    rest = _settled(equations, scene, point, _sum_of(equations.residual(point), equations), t)
+    force = _sum_of(equations.residual(point), equations)
+    if force < NOTHING * equations.units[-1]:
+        return None
+    rest = _settled(equations, scene, point, force, t)
     return rest._replace(point=replace(rest.point, q=point.q))
 
 

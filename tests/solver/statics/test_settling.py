@@ -109,6 +109,19 @@ def test_a_rod_on_a_pin_turns_to_where_its_first_loads_pull() -> None:
         assert_allclose(np.linalg.norm(frame.f, axis=1), 5.0 * EJ / LENGTH**2 * frame.t, rtol=1e-6)
 
 
+@pytest.mark.parametrize(("load", "free"), [(Curve.table([0.05, 1.0], [0.0, EJ]), 5),
+                                            (Curve.table([0.0, 1.0], [0.0, EJ], "smoothstep"), 0)])  # fmt: skip
+def test_until_its_first_loads_are_there_a_rod_stays_as_it_lies(load: Curve, free: int) -> None:
+    still = Curve.constant(0.0)
+    pulled = static(start=End.pin(), points=(PointLoad(LENGTH, (load, still, still)),), output_interval=0.01)
+    frames = list(simulate(pulled))
+    assert [frame.parameter for frame in frames] == pytest.approx(np.linspace(0.0, 1.0, 101), abs=1e-9)
+    for frame in frames[: free + 1]:
+        assert_allclose(frame.r[-1], [0.0, 0.0, LENGTH], atol=1e-9)
+    for frame in frames[free + 1 :]:
+        assert_allclose(frame.r[-1], [LENGTH, 0.0, 0.0], atol=1e-6)
+
+
 def test_a_hook_that_hangs_turns_about_the_vertical_to_its_first_load() -> None:
     """Its tip goes where the load has it lowest, in the plane of weight and load."""
     hook = static(rod=ARC_ROD, initial=ARC, start=End.pin(), gravity=(0.0, 0.0, 1.0), output_interval=0.1,

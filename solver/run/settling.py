@@ -19,7 +19,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.methods.staggered import StaggeredMethod
-from solver.outcome import RunFailed
+from solver.outcome import Outcome, RunFailed
 from solver.run.simulation import Simulation
 from solver.scene.curve import Curve, Vector
 from solver.scene.ends import Component, Condition, End
@@ -57,7 +57,7 @@ class Rest(NamedTuple):
 def settled(equations: Equations, scene: Scene) -> Rest:
     """Where the rod of a scene rests with loads and ends as they are at t = 0. `equations` hold it where it lies.
 
-    Raises RunFailed where the motion cannot be followed.
+    Raises RunFailed where the motion cannot be followed, or a run of motion does not take the scene.
     """
     stiffness = CANTILEVER**2 * equations.stiffness / float(scene.rod.length) ** 2
     return _settled(equations, scene, None, stiffness + _sum_of(equations.holding, equations), 0.0)
@@ -67,7 +67,7 @@ def turned(equations: Equations, scene: Scene, point: Point, t: float) -> Rest |
     """Where the rod rests with its loads as they are at t, which turn it as a whole from a `point`; None where they are
     next to nothing. Its ends stay.
 
-    Raises RunFailed where the motion cannot be followed.
+    Raises RunFailed likewise.
     """
     point = replace(point, q=t / scene.t_end)
     force = _sum_of(equations.residual(point), equations)
@@ -86,7 +86,11 @@ def _settled(equations: Equations, scene: Scene, begin: Point | None, force: flo
     """From a point, or the scene's initial shape; `force` (N): by which the rod goes to where it rests."""
     frequency = float(np.sqrt(force / (equations.chain.mass.sum() * scene.rod.length)))
     try:
-        return _rest(_braked(scene, frequency, BRAKING[0], t), begin)
+        moving = _braked(scene, frequency, BRAKING[0], t)
+    except ValueError as refusal:
+        raise RunFailed(Outcome.NO_CONSISTENT_START, t, 0, str(refusal)) from refusal
+    try:
+        return _rest(moving, begin)
     except RunFailed:
         return _rest(_braked(scene, frequency, BRAKING[1], t), begin)
 

@@ -158,6 +158,14 @@ def test_what_turns_as_a_whole_while_an_end_moves_is_refused() -> None:
         list(simulate(static(start=moved, points=(PointLoad(LENGTH, ASIDE),))))
 
 
+def test_what_motion_does_not_take_is_held_where_it_lies() -> None:
+    """A force that follows the rod, at an end that is free along lab axes: a static analysis alone takes it."""
+    free = replace(End.free(), frame="lab")
+    push = PointLoad(LENGTH, (Curve.constant(0.0), Curve.constant(0.0), Curve.constant(-30.0 * EJ)), frame="material")
+    first = next(iter(simulate(static(end=free, points=(push,)))))
+    assert first.negative_modes > 0
+
+
 def test_a_rod_whose_first_way_is_stable_is_not_set_in_motion(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("solver.run.equilibria.settled", lambda *_: pytest.fail("it was"))
     first = next(iter(simulate(static(gravity=(0.0, 1.0, 0.0)))))

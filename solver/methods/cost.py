@@ -14,9 +14,12 @@ POINT = 0.4
 ROUGH = 1.3
 """Microseconds that each iteration after a step's second takes more for each interval where loads may set in all of a
 sudden: tangents are renewed."""
-PRESSED, PAIR, OVERHEAD = 0.3, 0.0123, 60
-"""Microseconds that an iteration takes more for each interval, and for OVERHEAD besides, where strands press on each
-other; and those that each pair of points which do adds to them: of many, more directions have to be searched."""
+PRESSED, BESIDES = 0.5, 60
+"""Microseconds that an iteration takes more for each interval, and for so many besides, where strands press on each
+other."""
+PAIR, BESIDES_PAIR = 0.0017, 280
+"""Those that each pair of points that does adds for each interval, and for so many besides: of many, more directions
+have to be searched."""
 
 
 class Cost(NamedTuple):
@@ -32,7 +35,8 @@ class Cost(NamedTuple):
         `pressing`: how many pairs of them press on each other; `rough`: whether loads may set in all of a sudden."""
         renewed = ROUGH * intervals * max(iterations - 2 * steps, 0) if rough else 0.0
         each = self.step + self.interval * intervals + POINT * placed
-        pressed = (intervals + OVERHEAD) * (PRESSED + PAIR * pressing) if pressing else 0.0
+        pairs = PAIR * pressing * (intervals + BESIDES_PAIR)
+        pressed = PRESSED * (intervals + BESIDES) + pairs if pressing else 0.0
         return steps * each + iterations * (self.iteration * intervals + pressed) + renewed
 
 

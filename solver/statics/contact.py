@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
-from solver.physics.contact.forces import Touch, allowed_fraction, move_points, press
+from solver.physics.contact.forces import Touch, allowed_fraction, press
 from solver.physics.contact.points import REACH
 from solver.physics.contact.recipe import Hardness, foreseen
 from solver.physics.contact.self_contact import SelfContact
@@ -49,16 +49,14 @@ class StaticContact(SelfContact):
         if not self.touching:
             return self.rest
         touch = self.touch
-        press(touch, touch.pressing, r[None], self.rest[None])
+        press(touch, r[None], self.rest[None], 0)
         return np.asarray(touch.push[0])
 
     def allowed(self, moved: Array) -> float:
         """The part of a change of the nodes (N + 1, 3) that may be taken without using up a pair's distance."""
         if not self.touching:
             return 1.0
-        touch = self.touch
-        move_points(touch, touch.pairs.members, moved, self.rest)
-        return float(allowed_fraction(touch, touch.pressing, 0))
+        return float(allowed_fraction(self.touch, moved, 0))
 
     def stiffness(self) -> tuple[Array, NDArray[np.bool_]]:
         """How the forces on the nodes change with their places (n, 3, n, 3), with the sign of a stiffness, N/m; and
@@ -72,9 +70,8 @@ class StaticContact(SelfContact):
         """Have every kernel compiled that contact needs."""
         super().compile()
         touch, r = self.touch, self.rest
-        press(touch, touch.pressing, r[None], r[None])
-        move_points(touch, touch.pairs.members, r, r)
-        allowed_fraction(touch, touch.pressing, 0)
+        press(touch, r[None], r[None], 0)
+        allowed_fraction(touch, r, 0)
         self.stiffness()
         self.look_ahead(inf, r, r)
         self.refusal(inf, lambda: (r, r))
@@ -92,10 +89,10 @@ class StaticContact(SelfContact):
 def _stiffen(touch: Touch, S: Array, coupled: NDArray[np.bool_]) -> None:
     """Add the stiffness of the pairs that press: as one's place and tangent change from the other's by dp, dt_a and
     dt_b, the force on it changes by n (g . dp + k0 n . dt_a + k1 n . dt_b) + pull dp (see `pair_force`)."""
-    points, pressing = touch.points, touch.pressing
-    for pair in range(pressing.many[0]):
-        ends = pressing.first[0, pair], pressing.second[0, pair]
-        n, g, k, pull = pressing.n[0, pair], pressing.g[0, pair], pressing.k[0, pair], pressing.pull[0, pair]
+    points, tangents = touch.points, touch.tangents
+    for pair in range(tangents.many[0]):
+        ends = tangents.first[pair], tangents.second[pair]
+        n, g, k, pull = tangents.n[pair], tangents.g[pair], tangents.k[pair], tangents.pull[pair]
         for other in range(2 * REACH):
             b, e = ends[other // REACH], other % REACH
             share, along = points.weights[b, e], k[other // REACH] * points.slopes[b, e]

@@ -12,7 +12,7 @@ from solver.kernels.kernel import inlined, inner, kernel
 from solver.methods.linear.krylov import Krylov, begin, combine, follow, set_out, unsolved
 from solver.methods.linear.system import LinearSolver, System, solve
 from solver.methods.space.box.fields import Nodes, State, V
-from solver.physics.contact.forces import Touch, allowed_fraction, change_forces, move_points, press
+from solver.physics.contact.forces import Touch, allowed_fraction, change_forces, press
 from solver.physics.contact.members import Members
 
 SOLVED = 1e-6
@@ -21,20 +21,18 @@ SOLVED = 1e-6
 
 class Coupling(NamedTuple):
     """Scratch of the solve with contact: `krylov`; a right-hand side `force` (N, 12) and its solution `x` (n, 12);
-    changes of the nodes' places and velocities `moved`, `accelerated` (n, 3)."""
+    changes of the nodes' places `moved` (n, 3)."""
 
     krylov: Krylov
     force: Array
     x: Array
     moved: Array
-    accelerated: Array
 
     @classmethod
     def empty(cls, intervals: int) -> Coupling:
         """Zeros for a rod of `intervals` intervals; 0 where there is no contact."""
         n = intervals + 1
-        moves = np.zeros((n, 3)), np.zeros((n, 3))
-        return cls(Krylov.empty(3 * n), np.zeros((intervals, 12)), np.zeros((n, 12)), *moves)
+        return cls(Krylov.empty(3 * n), np.zeros((intervals, 12)), np.zeros((n, 12)), np.zeros((n, 3)))
 
 
 @inlined
@@ -46,8 +44,8 @@ def _length(j: int, last: int, h: float) -> float:
 @kernel
 def add_contact(new: State, nodes: Nodes, h: float, touch: Touch) -> None:
     """Subtract the densities of the forces of contact from nodes.P, and keep the tangents."""
-    press(touch, touch.pressing, new.r.reshape((1, -1, 3)), new.Y.reshape((1, -1, 12)))
-    members, last = touch.pressing.members, len(new.Y) - 1
+    press(touch, new.r.reshape((1, -1, 3)), new.Y.reshape((1, -1, 12)), 0)
+    members, last = touch.tangents.members, len(new.Y) - 1
     for m in range(members.counts[1]):
         j = members.nodes[m]
         for k in range(3):
@@ -55,21 +53,19 @@ def add_contact(new: State, nodes: Nodes, h: float, touch: Touch) -> None:
 
 
 @kernel
-def _move(x: Array, c0: float, system: System, touch: Touch, members: Members, coupling: Coupling) -> None:
-    """Move the points of `members` by the scaled unknowns x (n, 12)."""
+def _move(x: Array, c0: float, system: System, members: Members, coupling: Coupling) -> None:
+    """Write the changes of place of the nodes of `members`, by the scaled unknowns x (n, 12)."""
     for m in range(members.counts[1]):
         j = members.nodes[m]
         for k in range(3):
-            coupling.accelerated[j, k] = system.columns[V + k] * x[j, V + k]
-            coupling.moved[j, k] = coupling.accelerated[j, k] / c0
-    move_points(touch, members, coupling.moved, coupling.accelerated)
+            coupling.moved[j, k] = system.columns[V + k] * x[j, V + k] / c0
 
 
 @inner
 def _change(c0: float, system: System, touch: Touch, coupling: Coupling, y: Array) -> None:
     """y = S x: the change of the forces that belongs to coupling.x."""
-    _move(coupling.x, c0, system, touch, touch.pressing.members, coupling)
-    change_forces(touch, touch.pressing, 0, y)
+    _move(coupling.x, c0, system, touch.tangents.members, coupling)
+    change_forces(touch, c0, coupling.moved, touch.passed, y)
 
 
 @inner
@@ -114,5 +110,5 @@ def solve_with_contact(linear: LinearSolver, c0: float, h: float, system: System
 @inner
 def contact_fraction(c0: float, system: System, touch: Touch, coupling: Coupling) -> float:
     """How much of the update system.x may be taken without using up a pair's distance."""
-    _move(system.x, c0, system, touch, touch.pairs.members, coupling)
-    return float(allowed_fraction(touch, touch.pressing, 0))
+    _move(system.x, c0, system, touch.pairs.members, coupling)
+    return float(allowed_fraction(touch, coupling.moved, 0))

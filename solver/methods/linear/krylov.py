@@ -1,5 +1,5 @@
 """Generalized conjugate residuals (Eisenstat, Elman & Schultz 1983) for the forces of contact, in pieces that a method
-puts around its own solve.
+puts around its own solve; of real or of complex numbers.
 
 A rod's tangent K is banded; contact adds E S, where S maps motion to forces y on the nodes and E puts them into the
 balances. From K x + E y = b and y = S x follows A y = (1 + S K^-1 E) y = S K^-1 b, a system for the few nodes in
@@ -40,11 +40,13 @@ class Krylov(NamedTuple):
     left: Array
 
     @classmethod
-    def empty(cls, size: int) -> Krylov:
+    def empty(cls, size: int, dtype: type = np.float64) -> Krylov:
         """Zeros for vectors of up to `size` numbers."""
         n = LARGEST_NUMBER
-        return cls(np.zeros((n, size)), np.zeros((n, size)), np.zeros((n, n)), np.zeros(n), np.zeros(size),
-                   np.zeros(size), np.zeros(2))  # fmt: skip
+        directions: Array = np.zeros((n, size), dtype)
+        R: Array = np.zeros((n, n), dtype)
+        return cls(directions, directions.copy(), R, R[0].copy(), directions[0].copy(), directions[0].copy(),
+                   np.zeros(2))  # fmt: skip
 
 
 @kernel
@@ -74,16 +76,17 @@ def follow(krylov: Krylov, m: int, size: int) -> None:
         z[c] += krylov.directions[m, c]
     whole = _norm(z, size)
     for k in range(m):
-        R[k, m] = np.dot(V[k, :size], z[:size])
+        R[k, m] = np.vdot(V[k, :size], z[:size])
         for c in range(size):
             z[c] -= R[k, m] * V[k, c]
-    R[m, m] = _norm(z, size)
-    if not R[m, m] > DEPENDENT * whole:
+    left = _norm(z, size)
+    if not left > DEPENDENT * whole:
         R[m, m], krylov.parts[m] = 1.0, 0.0
         V[m, :size] = 0.0
         return
+    R[m, m] = left
     for c in range(size):
-        V[m, c] = z[c] / R[m, m]
+        V[m, c] = z[c] / left
     _go_along(krylov, m, size)
     krylov.left[1] = _norm(krylov.y, size)
 
@@ -92,7 +95,7 @@ def follow(krylov: Krylov, m: int, size: int) -> None:
 def _go_along(krylov: Krylov, m: int, size: int) -> None:
     """Take out of the residual its part along the image of direction m."""
     V, y = krylov.images, krylov.y
-    krylov.parts[m] = np.dot(V[m, :size], y[:size])
+    krylov.parts[m] = np.vdot(V[m, :size], y[:size])
     for c in range(size):
         y[c] -= krylov.parts[m] * V[m, c]
 
@@ -120,4 +123,4 @@ def combine(krylov: Krylov, used: int, size: int) -> None:
 
 @inner
 def _norm(z: Array, size: int) -> float:
-    return float(np.sqrt(np.dot(z[:size], z[:size])))
+    return float(np.sqrt(np.vdot(z[:size], z[:size]).real))

@@ -229,9 +229,9 @@ def solve(factors: Factors) -> None:
 
 
 @kernel
-def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transform: Array, back: Array, inverse: Array,
-                       gamma: float, lam: complex, dt: float, residuals: Residuals, real: Factors, pair: Factors,
-                       touch: None, coupling: None, first: bool, fresh: bool) -> float:  # fmt: skip
+def solve_with_contact(chain: Chain, driven: Driven, tangents: Tangents, transform: Array, gamma: float, lam: complex,
+                       residuals: Residuals, real: Factors, pair: Factors, touch: None, coupling: None,
+                       first: bool, fresh: bool) -> float:  # fmt: skip
     """There is no contact."""
     return 1.0
 

@@ -54,9 +54,9 @@ def solve(factors: Record) -> None:
 
 
 @dispatched
-def solve_with_contact(chain: Record, driven: Record, tangents: Record, transform: Array, back: Array, inverse: Array,
-                       gamma: float, lam: complex, dt: float, residuals: Record, real: Record, pair: Record,
-                       touch: Record, coupling: Record, first: bool, fresh: bool) -> float:  # fmt: skip
+def solve_with_contact(chain: Record, driven: Record, tangents: Record, transform: Array, gamma: float, lam: complex,
+                       residuals: Record, real: Record, pair: Record, touch: Record, coupling: Record,
+                       first: bool, fresh: bool) -> float:  # fmt: skip
     """As `solve_stages`, with the tangents of contact; return the part of the increments that may be taken."""
     raise NotImplementedError
 
@@ -79,16 +79,29 @@ def widths(factors: Record) -> tuple[int, int]:
 def solve_stages(chain: Record, driven: Record, tangents: Record, gamma: float, pair: complex, rows: Record,
                  real_factors: Record, pair_factors: Record) -> None:  # fmt: skip
     """Solve both systems for the transformed residuals `rows`."""
-    _load_real(rows, real_factors)
-    complete(chain, driven, tangents, gamma, real_factors)
-    solve(real_factors)
-    _load_pair(rows, pair_factors)
-    complete(chain, driven, tangents, pair, pair_factors)
-    solve(pair_factors)
+    load_real(rows, real_factors)
+    solve_loaded(chain, driven, tangents, gamma, real_factors)
+    load_pair(rows, pair_factors)
+    solve_loaded(chain, driven, tangents, pair, pair_factors)
 
 
 @inner
-def _load_real(rows: Record, factors: Record) -> None:
+def solve_loaded(chain: Record, driven: Record, tangents: Record, eigenvalue: complex, factors: Record) -> None:
+    """Solve one system for what is loaded as its right-hand side."""
+    complete(chain, driven, tangents, eigenvalue, factors)
+    solve(factors)
+
+
+@inner
+def clear(factors: Record) -> None:
+    """No right-hand side."""
+    factors.x[:] = 0.0
+    factors.load[:] = 0.0
+    factors.ends[:] = 0.0
+
+
+@inner
+def load_real(rows: Record, factors: Record) -> None:
     """The first of the transformed residuals as a right-hand side."""
     n, (turned, _) = len(factors.x), widths(factors)
     rotation = rows.rotation.reshape(STAGES, n, turned)
@@ -100,7 +113,7 @@ def _load_real(rows: Record, factors: Record) -> None:
 
 
 @inner
-def _load_pair(rows: Record, factors: Record) -> None:
+def load_pair(rows: Record, factors: Record) -> None:
     """The second and third of the transformed residuals as the right-hand side of the complex system."""
     n, load, ends, (turned, moved) = len(factors.x), factors.load, factors.ends, widths(factors)
     rotation = rows.rotation.reshape(STAGES, n, turned)

@@ -24,14 +24,15 @@ def repulsion(d: float, D: float, pole: float) -> tuple[float, float, float]:
     """f, f' (1/m) and f'' (1/m^2)."""
     gap = d - pole * D
     at = max(gap, FLOOR * D)
-    x = 2.0 * (1.0 - pole) * D / at - 1.0
+    inverse = 1.0 / at
+    x = 2.0 * (1.0 - pole) * D * inverse - 1.0
     if x <= 0.0:
         return 0.0, 0.0, 0.0
-    slope_of_x = -(x + 1.0) / at
-    value, slope = x**4, 4.0 * x**3 * slope_of_x
+    slope_of_x, square = -(x + 1.0) * inverse, x * x
+    value, slope = square * square, 4.0 * x * square * slope_of_x
     if gap < at:
         return value + slope * (gap - at), slope, 0.0
-    return value, slope, 12.0 * x * x * slope_of_x * slope_of_x - 8.0 * x**3 * slope_of_x / at
+    return value, slope, square * slope_of_x * (12.0 * slope_of_x - 8.0 * x * inverse)
 
 
 @inner
@@ -44,9 +45,10 @@ def automatic_force(relaxation: float, pole: float, scale: float, d: float, D: f
     f, slope, bend = repulsion(d, D, pole)
     if f == 0.0:
         return 0.0, 0.0, 0.0
-    elastic, damping = scale * f, scale * relaxation * slope * closing
-    by_d = scale * (slope + relaxation * bend * closing)
-    k[0], k[1], k[2] = 0.0, 0.0, scale * relaxation * slope
+    elastic, damping, drag = scale * f, scale * relaxation * slope * closing, scale * relaxation * slope
+    turned = drag / d
+    along = scale * (slope + relaxation * bend * closing) - (elastic + damping) / d - turned * closing
+    k[0], k[1], k[2] = 0.0, 0.0, drag
     for j in range(3):
-        g[j] = (by_d - (elastic + damping) / d) * n[j] + k[2] / d * (points.w[a, j] - points.w[b, j] - closing * n[j])
+        g[j] = along * n[j] + turned * (points.w[a, j] - points.w[b, j])
     return elastic, damping, d - pole * D

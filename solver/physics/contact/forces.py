@@ -8,9 +8,10 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.kernels.kernel import inner, kernel
+from solver.kernels.scratch import scratch
 from solver.physics.contact.law import Law, pair_force, sees
 from solver.physics.contact.members import Members, dismiss, take_in
-from solver.physics.contact.points import REACH, Points, between_nodes, place_point
+from solver.physics.contact.points import REACH, Points, move_point, place_point, square_between, turn_point
 from solver.physics.contact.search import Pairs
 
 LARGEST_APPROACH = 0.6
@@ -24,10 +25,32 @@ LARGEST_FORESEEN = 0.5
 class Pressing(NamedTuple):
     """The pairs that press on each other at the current iterate, at each stage of a step.
 
-    `many` (stages,): their numbers; `first`, `second` (stages, capacity) their points; `n`, `g`, `k`
-    (stages, capacity, 3): see `pair_force`; `pull` (stages, capacity): force/d (N/m); `gap` likewise: by how much d is
-    more than where the force has its pole (m);
-    `power` (stages, 2): into the elastic part and taken by damping, W. `members` that take part at some stage.
+    `many` (stages,): their numbers; `first`, `second` (stages, capacity) their points; `n` (stages, capacity, 3): see
+    `pair_force`; `gap` (stages, capacity): by how much d is more than where the force has its pole (m); `nearest`
+    (stages,): the least d (m) of all listed pairs; `power` (stages, 2): into the elastic part and taken by damping, W.
+    """
+
+    many: Array
+    first: Array
+    second: Array
+    n: Array
+    gap: Array
+    nearest: Array
+    power: Array
+
+    @classmethod
+    def empty(cls, stages: int, capacity: int) -> Pressing:
+        """No pairs, with room for `capacity`."""
+        each = (stages, capacity)
+        return cls(np.zeros(stages, np.int64), np.zeros(each, np.int64), np.zeros(each, np.int64), np.zeros((*each, 3)),
+                   np.zeros(each), np.zeros(stages), np.zeros((stages, 2)))  # fmt: skip
+
+
+class Tangents(NamedTuple):
+    """How the forces of the pairs change that pressed on each other at one stage of some iterate.
+
+    `many` (1,): their number; `first`, `second` (capacity,) their points; `n`, `g`, `k` (capacity, 3): see
+    `pair_force`; `pull` (capacity,): force/d (N/m). `members` that take part.
     """
 
     many: Array
@@ -37,27 +60,34 @@ class Pressing(NamedTuple):
     g: Array
     k: Array
     pull: Array
-    gap: Array
-    power: Array
     members: Members
 
     @classmethod
-    def empty(cls, stages: int, capacity: int, points: int, nodes: int) -> Pressing:
+    def empty(cls, capacity: int, points: int, nodes: int) -> Tangents:
         """No pairs, with room for `capacity`."""
-        each = (stages, capacity)
-        return cls(
-            np.zeros(stages, np.int64), np.zeros(each, np.int64), np.zeros(each, np.int64), np.zeros((*each, 3)),
-            np.zeros((*each, 3)), np.zeros((*each, 3)), np.zeros(each), np.zeros(each), np.zeros((stages, 2)),
-            Members.none(points, nodes),
-        )  # fmt: skip
+        n, g, k = np.zeros((3, capacity, 3))
+        return cls(np.zeros(1, np.int64), np.zeros(capacity, np.int64), np.zeros(capacity, np.int64), n, g, k,
+                   np.zeros(capacity), Members.none(points, nodes))  # fmt: skip
+
+
+class Passed(NamedTuple):
+    """What points pass on between the nodes: their changes `moved` (M, 6) of p and t, and the forces `borne` (M, 3) on
+    them; real, or complex as the motion of the nodes is."""
+
+    moved: Array
+    borne: Array
+
+    @classmethod
+    def empty(cls, points: int, dtype: type = np.float64) -> Passed:
+        """Zeros."""
+        return cls(np.zeros((points, 6), dtype), np.zeros((points, 3), dtype))
 
 
 class Touch(NamedTuple):
     """Everything that contact needs in a step; `present` is False in a scene without contact.
 
-    `pressing`: the pairs at the current iterate; `tangents`: at an earlier one, whose tangents serve on.
-    `moved` (M, 9): changes of p, t, w of the points; `borne` (M, 3): forces on them. `push` (stages, n, 3): forces on
-    the nodes, lab, N.
+    `pressing`: the pairs at the current iterate; `tangents`: of one stage, perhaps of an earlier iterate. `passed` by
+    the points, and `passed_pair` likewise for complex motion. `push` (stages, n, 3): forces on the nodes, lab, N.
     """
 
     present: bool
@@ -65,10 +95,20 @@ class Touch(NamedTuple):
     points: Points
     pairs: Pairs
     pressing: Pressing
-    tangents: Pressing
-    moved: Array
-    borne: Array
+    tangents: Tangents
+    passed: Passed
+    passed_pair: Passed
     push: Array
+
+    @classmethod
+    def empty(cls, present: bool, law: Law, points: Points, nodes: int, stages: int, capacity: int) -> Touch:
+        """No pairs of these points on so many nodes, with room for `capacity`."""
+        M = len(points.p)
+        return cls(
+            present, law, points, Pairs.empty(capacity, M, nodes), Pressing.empty(stages, capacity),
+            Tangents.empty(capacity, M, nodes), Passed.empty(M), Passed.empty(M, np.complex128),
+            np.zeros((stages, nodes, 3)),
+        )  # fmt: skip
 
 
 @kernel
@@ -78,52 +118,65 @@ def touching(touch: Touch) -> bool:
 
 
 @kernel
-def press(touch: Touch, pressing: Pressing, r: Array, velocity: Array) -> None:
+def press(touch: Touch, r: Array, velocity: Array, tangent: int) -> None:
     """Write the forces on the nodes at all stages into `push`, from nodes `r` (stages, n, 3) and their lab velocities
-    (stages, n, >= 3); list the pairs that press, with their tangents, in `pressing`."""
-    dismiss(pressing.members)
-    for stage in range(len(pressing.many)):
-        _press_at(touch, pressing, r[stage], velocity[stage], stage)
-        for pair in range(pressing.many[stage]):
-            take_in(pressing.members, touch.points, pressing.first[stage, pair])
-            take_in(pressing.members, touch.points, pressing.second[stage, pair])
+    (stages, n, >= 3); list the pairs that press, and write the tangents of the stage `tangent`, of none where it is -1.
+    """
+    for stage in range(len(touch.pressing.many)):
+        _press_at(touch, r[stage], velocity[stage], stage, stage == tangent)
+    if tangent >= 0:
+        tangents = touch.tangents
+        dismiss(tangents.members)
+        for pair in range(tangents.many[0]):
+            take_in(tangents.members, touch.points, tangents.first[pair])
+            take_in(tangents.members, touch.points, tangents.second[pair])
 
 
 @inner
-def _press_at(touch: Touch, pressing: Pressing, r: Array, velocity: Array, stage: int) -> None:
-    points, pairs, push, borne = touch.points, touch.pairs, touch.push[stage], touch.borne
+def _press_at(touch: Touch, r: Array, velocity: Array, stage: int, wanted: bool) -> None:
+    """See `press`, of one stage, with its tangents if these are `wanted`."""
+    points, pairs, push, borne = touch.points, touch.pairs, touch.push[stage], touch.passed.borne
+    pressing, tangents, spare = touch.pressing, touch.tangents, scratch((2, 3))
     push[:, :] = 0.0
-    stored, lost, many = 0.0, 0.0, 0
+    stored, lost, nearest, many = 0.0, 0.0, np.inf, 0
     for m in range(pairs.members.counts[0]):
         i = pairs.members.points[m]
         place_point(points, i, r, velocity)
         borne[i, 0], borne[i, 1], borne[i, 2] = 0.0, 0.0, 0.0
     for pair in range(pairs.counts[0]):
         a, b = pairs.first[pair], pairs.second[pair]
-        if not sees(touch.law, points, a, b):  # most pairs: before any view of an array is made
+        square = square_between(points.p, a, b)
+        nearest = min(nearest, square)
+        if not sees(touch.law, points, a, b, square):  # most pairs: before any view of an array is made
             continue
         n = pressing.n[stage, many]
-        elastic, damping, gap = pair_force(touch.law, points, a, b, n, pressing.g[stage, many], pressing.k[stage, many])
+        g, k = (tangents.g[many], tangents.k[many]) if wanted else (spare[0], spare[1])
+        elastic, damping, gap = pair_force(touch.law, points, a, b, n, g, k)
         if elastic == 0.0:
             continue
+        force = elastic + damping
         pressing.first[stage, many], pressing.second[stage, many], pressing.gap[stage, many] = a, b, gap
-        pole = touch.law.pole * (0.5 * (points.diameter[a] + points.diameter[b]))
-        pressing.pull[stage, many] = (elastic + damping) / (gap + pole)
+        if wanted:
+            tangents.first[many], tangents.second[many] = a, b
+            tangents.n[many, 0], tangents.n[many, 1], tangents.n[many, 2] = n[0], n[1], n[2]
+            tangents.pull[many] = force / np.sqrt(square)
         many += 1
         opening = 0.0
-        for k in range(3):
-            opening += n[k] * (points.w[a, k] - points.w[b, k])
-            borne[a, k] += (elastic + damping) * n[k]
-            borne[b, k] -= (elastic + damping) * n[k]
+        for c in range(3):
+            opening += n[c] * (points.w[a, c] - points.w[b, c])
+            borne[a, c] += force * n[c]
+            borne[b, c] -= force * n[c]
         stored -= elastic * opening
         lost -= damping * opening
     for m in range(pairs.members.counts[0]):
         i = pairs.members.points[m]
         for e in range(REACH):
-            for k in range(3):
-                push[points.first[i] + e, k] += points.weights[i, e] * borne[i, k]
-    pressing.many[stage] = many
+            for c in range(3):
+                push[points.first[i] + e, c] += points.weights[i, e] * borne[i, c]
+    pressing.many[stage], pressing.nearest[stage] = many, np.sqrt(nearest)
     pressing.power[stage, 0], pressing.power[stage, 1] = stored, lost
+    if wanted:
+        tangents.many[0] = many
 
 
 @kernel
@@ -145,36 +198,32 @@ def keeps_apart(points: Points, pairs: Pairs, r: Array) -> bool:
 
 
 @kernel
-def move_points(touch: Touch, members: Members, moved: Array, accelerated: Array) -> None:
-    """Write the changes of p, t, w of the points of `members`, for changes of the nodes' own (n, 3)."""
-    change = touch.moved
+def change_forces(touch: Touch, rate: complex, nodes: Array, passed: Passed, y: Array) -> None:
+    """Write the changes of the forces on the nodes near others (3 per node), by the tangents, into y: as the nodes move
+    by `nodes` (n, 3) and their velocities change by `rate` (1/s) times that; all real or complex."""
+    points, tangents, moved, borne = touch.points, touch.tangents, passed.moved, passed.borne
+    slot, members, turns = touch.pairs.members.slot, tangents.members, not touch.law.automatic
+    first, second, n, g, k, pull = (
+        tangents.first, tangents.second, tangents.n, tangents.g, tangents.k, tangents.pull
+    )  # fmt: skip
     for m in range(members.counts[0]):
         i = members.points[m]
-        for k in range(3):
-            change[i, k], change[i, 3 + k], change[i, 6 + k] = between_nodes(touch.points, i, k, moved, accelerated)
-
-
-@kernel
-def change_forces(touch: Touch, pressing: Pressing, stage: int, y: Array) -> None:
-    """Write the changes of the forces on the nodes near others (3 per node) that belong to `touch.moved` into y."""
-    points, moved, borne = touch.points, touch.moved, touch.borne
-    slot, members = touch.pairs.members.slot, pressing.members
-    first, second = pressing.first[stage], pressing.second[stage]
-    n, g, k, pull = pressing.n[stage], pressing.g[stage], pressing.k[stage], pressing.pull[stage]
-    for m in range(members.counts[0]):
-        i = members.points[m]
+        move_point(points, i, nodes, moved)
+        if turns:
+            turn_point(points, i, nodes, moved)
         borne[i, 0], borne[i, 1], borne[i, 2] = 0.0, 0.0, 0.0
-    for pair in range(pressing.many[stage]):
+    for pair in range(tangents.many[0]):
         a, b = first[pair], second[pair]
-        along = 0.0
-        for c in range(3):
-            turned = k[pair, 0] * moved[a, 3 + c] + k[pair, 1] * moved[b, 3 + c]
-            turned += k[pair, 2] * (moved[a, 6 + c] - moved[b, 6 + c])
-            along += n[pair, c] * turned + g[pair, c] * (moved[a, c] - moved[b, c])
-        for c in range(3):
-            force = n[pair, c] * along + pull[pair] * (moved[a, c] - moved[b, c])
-            borne[a, c] += force
-            borne[b, c] -= force
+        x, v, z = moved[a, 0] - moved[b, 0], moved[a, 1] - moved[b, 1], moved[a, 2] - moved[b, 2]
+        along = g[pair, 0] * x + g[pair, 1] * v + g[pair, 2] * z
+        along += k[pair, 2] * rate * (n[pair, 0] * x + n[pair, 1] * v + n[pair, 2] * z)
+        if turns:
+            for c in range(3):
+                along += n[pair, c] * (k[pair, 0] * moved[a, 3 + c] + k[pair, 1] * moved[b, 3 + c])
+        x, v, z = (pull[pair] * x + n[pair, 0] * along, pull[pair] * v + n[pair, 1] * along,
+                    pull[pair] * z + n[pair, 2] * along)  # fmt: skip
+        borne[a, 0], borne[a, 1], borne[a, 2] = borne[a, 0] + x, borne[a, 1] + v, borne[a, 2] + z
+        borne[b, 0], borne[b, 1], borne[b, 2] = borne[b, 0] - x, borne[b, 1] - v, borne[b, 2] - z
     y[: 3 * touch.pairs.members.counts[1]] = 0.0
     for m in range(members.counts[0]):
         i = members.points[m]
@@ -185,17 +234,20 @@ def change_forces(touch: Touch, pressing: Pressing, stage: int, y: Array) -> Non
 
 
 @kernel
-def allowed_fraction(touch: Touch, pressing: Pressing, stage: int) -> float:
-    """How much of the change `touch.moved` may be taken without using up a pair's distance or gap."""
-    fraction, pairs, points, moved = 1.0, touch.pairs, touch.points, touch.moved
-    for pair in range(pairs.counts[0]):
-        a, b = pairs.first[pair], pairs.second[pair]
-        change, distance = 0.0, 0.0
-        for k in range(3):
-            change += (moved[a, k] - moved[b, k]) ** 2
-            distance += (points.p[a, k] - points.p[b, k]) ** 2
-        if change * fraction**2 > LARGEST_APPROACH**2 * distance:
-            fraction = LARGEST_APPROACH * np.sqrt(distance / change)
+def allowed_fraction(touch: Touch, nodes: Array, stage: int) -> float:
+    """How much of the nodes' change (n, 3) at a stage may be taken without using up a pair's distance or gap."""
+    fraction, pairs, points, moved, pressing = 1.0, touch.pairs, touch.points, touch.passed.moved, touch.pressing
+    farthest = 0.0
+    for m in range(pairs.members.counts[0]):
+        i = pairs.members.points[m]
+        move_point(points, i, nodes, moved)
+        farthest = max(farthest, moved[i, 0] ** 2 + moved[i, 1] ** 2 + moved[i, 2] ** 2)
+    if not 4.0 * farthest <= (LARGEST_APPROACH * pressing.nearest[stage]) ** 2:
+        for pair in range(pairs.counts[0]):
+            a, b = pairs.first[pair], pairs.second[pair]
+            change, distance = square_between(moved, a, b), square_between(points.p, a, b)
+            if change * fraction**2 > LARGEST_APPROACH**2 * distance:
+                fraction = LARGEST_APPROACH * np.sqrt(distance / change)
     for pair in range(pressing.many[stage]):
         a, b, n = pressing.first[stage, pair], pressing.second[stage, pair], pressing.n[stage, pair]
         closing = 0.0

@@ -16,7 +16,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.kernel import inlined, inner, kernel
 from solver.physics.contact.automatic import automatic_force
-from solver.physics.contact.points import Points
+from solver.physics.contact.points import Points, square_between
 from solver.scene.contact import Contact
 
 PAPER_SPACING = 1e-3
@@ -82,12 +82,13 @@ def _repulsion(law: Law, gap: float, floor: float) -> tuple[float, float]:
 
 
 @inlined
-def sees(law: Law, points: Points, a: int, b: int) -> bool:
-    """Whether points a and b are within the cutoff and in each other's aperture."""
-    x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
-    square = x * x + y * y + z * z
+def sees(law: Law, points: Points, a: int, b: int, square: float) -> bool:
+    """Whether points a and b, whose distance has this `square`, are within the cutoff and in each other's aperture."""
     if square >= law.cutoff * law.cutoff:
         return False
+    if law.automatic:
+        return True
+    x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
     c_a = x * points.t[a, 0] + y * points.t[a, 1] + z * points.t[a, 2]
     c_b = x * points.t[b, 0] + y * points.t[b, 1] + z * points.t[b, 2]
     widest = law.sine * law.sine * square
@@ -102,11 +103,13 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, g: Array, k: 
     n k[1] n by t_b and n k[2] n by the relative velocity. Three zeros beyond the cutoff or outside the aperture, where
     nothing is written.
     """
-    if not sees(law, points, a, b):
+    square = square_between(points.p, a, b)
+    if not sees(law, points, a, b, square):
         return 0.0, 0.0, 0.0
-    x, y, z = points.p[a, 0] - points.p[b, 0], points.p[a, 1] - points.p[b, 1], points.p[a, 2] - points.p[b, 2]
-    d = np.sqrt(x * x + y * y + z * z)
-    n[0], n[1], n[2] = x / d, y / d, z / d
+    d = np.sqrt(square)
+    inverse = 1.0 / d
+    for i in range(3):
+        n[i] = (points.p[a, i] - points.p[b, i]) * inverse
     D = 0.5 * (points.diameter[a] + points.diameter[b])
     scale = 0.5 * (points.mass[a] + points.mass[b]) * law.weight
     closing = 0.0
@@ -116,12 +119,12 @@ def pair_force(law: Law, points: Points, a: int, b: int, n: Array, g: Array, k: 
         return automatic_force(law.relaxation, law.pole, scale, d, D, closing, points, a, b, n, g, k)
     c_a = n[0] * points.t[a, 0] + n[1] * points.t[a, 1] + n[2] * points.t[a, 2]
     c_b = n[0] * points.t[b, 0] + n[1] * points.t[b, 1] + n[2] * points.t[b, 2]
-    inverse = 1.0 / (law.sine * law.sine)
-    S_a, dS_a = _fade(1.0 - c_a * c_a * inverse)
-    S_b, dS_b = _fade(1.0 - c_b * c_b * inverse)
+    widest = 1.0 / (law.sine * law.sine)
+    S_a, dS_a = _fade(1.0 - c_a * c_a * widest)
+    S_b, dS_b = _fade(1.0 - c_b * c_b * widest)
     S_d, dS_d = _fade((law.cutoff - d) / (TAPER * law.cutoff))
-    dS_a *= -2.0 * c_a * inverse
-    dS_b *= -2.0 * c_b * inverse
+    dS_a *= -2.0 * c_a * widest
+    dS_b *= -2.0 * c_b * widest
     dS_d *= -1.0 / (TAPER * law.cutoff)
     gap = d - 0.5 * D
     push, slope = _repulsion(law, gap, LINEAR_BELOW * D)

@@ -112,22 +112,41 @@ def _shares(interval: Array, first: Array, last: int, start: Array, leave: Array
 
 
 @inlined
-def between_nodes(points: Points, i: int, k: int, r: Array, velocity: Array) -> tuple[float, float, float]:
-    """Component k of p, t and w of point i, of places (n, 3) and velocities (n, >= 3) of the nodes."""
-    place, along, speed = 0.0, 0.0, 0.0
-    for m in range(REACH):
-        node = points.first[i] + m
-        place += points.weights[i, m] * r[node, k]
-        along += points.slopes[i, m] * r[node, k]
-        speed += points.weights[i, m] * velocity[node, k]
-    return place, along, speed
+def square_between(p: Array, a: int, b: int) -> float:
+    """The square of the distance of rows a and b of p (M, >= 3)."""
+    x, y, z = p[a, 0] - p[b, 0], p[a, 1] - p[b, 1], p[a, 2] - p[b, 2]
+    return x * x + y * y + z * z  # type: ignore[no-any-return]
 
 
 @inlined
 def place_point(points: Points, i: int, r: Array, velocity: Array) -> None:
     """Write p, t and w of point i from the nodes' positions (n, 3) and lab velocities (n, >= 3)."""
     for k in range(3):
-        points.p[i, k], points.t[i, k], points.w[i, k] = between_nodes(points, i, k, r, velocity)
+        place, along, speed = 0.0, 0.0, 0.0
+        for m in range(REACH):
+            node = points.first[i] + m
+            place += points.weights[i, m] * r[node, k]
+            along += points.slopes[i, m] * r[node, k]
+            speed += points.weights[i, m] * velocity[node, k]
+        points.p[i, k], points.t[i, k], points.w[i, k] = place, along, speed
+
+
+@inlined
+def move_point(points: Points, i: int, nodes: Array, moved: Array) -> None:
+    """Write the change of p of point i into the first columns of `moved`, from those of the nodes (n, 3)."""
+    first, w = points.first[i], points.weights
+    for k in range(3):
+        moved[i, k] = (w[i, 0] * nodes[first, k] + w[i, 1] * nodes[first + 1, k] + w[i, 2] * nodes[first + 2, k]
+                       + w[i, 3] * nodes[first + 3, k])  # fmt: skip
+
+
+@inlined
+def turn_point(points: Points, i: int, nodes: Array, moved: Array) -> None:
+    """Write the change of t of point i into the next columns of `moved`, from those of the nodes (n, 3)."""
+    first, w = points.first[i], points.slopes
+    for k in range(3):
+        moved[i, 3 + k] = (w[i, 0] * nodes[first, k] + w[i, 1] * nodes[first + 1, k] + w[i, 2] * nodes[first + 2, k]
+                           + w[i, 3] * nodes[first + 3, k])  # fmt: skip
 
 
 @kernel

@@ -10,7 +10,7 @@ import numpy as np
 from solver.arrays import Array
 from solver.kernels.kernel import kernel
 from solver.physics.contact import search
-from solver.physics.contact.forces import Pressing, Touch
+from solver.physics.contact.forces import Touch
 from solver.physics.contact.law import Law
 from solver.physics.contact.links import links_meet, links_reach
 from solver.physics.contact.points import Points, contact_points, place_points
@@ -192,11 +192,7 @@ class SelfContact:
         self._skip, self._straight = (arc, straight) if further else (self._law.skip, 0.0)
 
     def _make_room(self, points: Points, capacity: int) -> None:
-        n, M = self._nodes, len(points.p)
-        pairs = Pairs.empty(capacity, M, n)
-        pressing, tangents = (Pressing.empty(self._stages, capacity, M, n) for _ in range(2))
-        changes = np.zeros((M, 9)), np.zeros((M, 3)), np.zeros((self._stages, n, 3))
-        self.touch = Touch(self.present, self._law, points, pairs, pressing, tangents, *changes)
+        self.touch = Touch.empty(self.present, self._law, points, self._nodes, self._stages, capacity)
 
 
 def _points_and_law(contact: Contact, rod: Rod, s: Array, ends: Foreseen,

@@ -159,8 +159,8 @@ class Problem:
         for column in range(12 * len(x)):
             x[:] = 0.0
             x.ravel()[column] = 1.0
-            call(_move, x, self.c0, system, touch, near, self.work.coupling)
-            call(change_forces, touch, touch.pressing, 0, y)
+            call(_move, x, self.c0, system, near, self.work.coupling)
+            call(change_forces, touch, self.c0, self.work.coupling.moved, touch.passed, y)
             at = size * (column // 12) + column % 12
             for m in range(near.counts[1]):
                 node = near.nodes[m]

@@ -163,8 +163,8 @@ def step(reference: Reference, dt: float, unit: float, part: float, rough: bool,
         fraction, gamma, lam = 1.0, scheme.gamma / dt, scheme.pair / dt
         if contact:
             fraction = linear.solve_with_contact(
-                chain, driven, tangents, scheme.transform, scheme.back, scheme.inverse, gamma, lam, dt, transformed,
-                real, pair, touch, work.coupling, stale, fresh,
+                chain, driven, tangents, scheme.transform, gamma, lam, transformed, real, pair, touch, work.coupling,
+                stale, fresh,
             )  # fmt: skip
         else:
             linear.solve_stages(chain, driven, tangents, gamma, lam, transformed, real, pair)

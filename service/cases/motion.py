@@ -12,6 +12,7 @@ from service.cases.errors import FieldError
 from service.cases.quantities import ScheduleTable
 from service.cases.size import tables_in
 from solver import Scene
+from solver.physics.elasticity import Stretch
 from solver.scene.layout import nodes_at_rest
 
 PLACES = 401
@@ -47,16 +48,19 @@ def _jerked(scene: Scene) -> Iterator[FieldError]:
     """An end that begins to move at once, where the rod is at rest."""
     if scene.at_rest or any(scene.initial.velocity) or any(scene.initial.angular_velocity):
         return
-    times = np.linspace(0.0, scene.t_end, PLACES)
     for name, end in (("start", scene.start), ("end", scene.end)):
-        for i, component in enumerate(end.translation):
-            kind, curve = component[0].kind, component[0].curve
-            speed = {"rate": curve.value, "position": curve.derivative}.get(kind, lambda _: 0.0)
-            first = speed(0.0)
-            if first and abs(first) > AT_ONCE * max(abs(speed(t)) for t in times.tolist()):
+        conditions = [component[0] for component in end.translation]
+        last = max((t for condition in conditions for t in condition.curve.corners), default=scene.t_end)
+        times = np.linspace(0.0, min(last, scene.t_end), PLACES).tolist()
+        speeds = [{"rate": condition.curve.value, "position": condition.curve.derivative}.get(condition.kind)
+                  for condition in conditions]  # fmt: skip
+        largest = max((abs(speed(t)) for speed in speeds if speed for t in times), default=0.0)
+        for i, (condition, speed) in enumerate(zip(conditions, speeds, strict=True)):
+            first = speed(0.0) if speed else 0.0
+            if abs(first) > AT_ONCE * largest:
                 rule = (f"begins at {first:.3g} m/s, and the rod is at rest: it begins with a jerk; let it begin at 0 "
                         "and gain speed (smoothstep), or give the rod its initial.velocity")  # fmt: skip
-                yield FieldError(f"/ends/{name}/{'v' if kind == 'rate' else 'x'}{i + 1}", None, rule)
+                yield FieldError(f"/ends/{name}/{'v' if condition.kind == 'rate' else 'x'}{i + 1}", None, rule)
 
 
 def _moves(scene: Scene) -> Any:
@@ -69,11 +73,14 @@ def _moves(scene: Scene) -> Any:
 
 
 def _too_fast(spec: CaseSpec, scene: Scene) -> Iterator[FieldError]:
-    """What moves faster than a push runs along the rod, sqrt(EA / m) with EA of a solid section: an end, or the rod
-    itself as it begins."""
+    """What moves faster than a push runs along the rod, sqrt(EA / m), EA being that of a solid section where it is not
+    given: an end, or the rod itself as it begins. In a static analysis nothing has a speed."""
+    if scene.at_rest:
+        return
     s = np.linspace(0.0, scene.rod.length, 11)
-    EJ = np.max([profile(s) for profile in scene.rod.stiffness[:2]])
-    sound = float(4.0 * np.sqrt(EJ / np.min(scene.rod.mass(s))) / np.min(scene.rod.diameter(s)))
+    EA = [law.EA(s) for law in scene.rod.laws if isinstance(law, Stretch)]
+    EA = EA or [16.0 * profile(s) / scene.rod.diameter(s) ** 2 for profile in scene.rod.stiffness[:2]]
+    sound = float(np.sqrt(np.max(np.array(EA) / scene.rod.mass(s))))
     speeds = {where: float(np.max(np.abs(np.diff(table.value) / np.diff(table.t))))
               for where, table in tables_in(spec.ends, "/ends")
               if where.rpartition("/")[2] in ("x1", "x2", "x3") and isinstance(table, ScheduleTable)}  # fmt: skip

@@ -50,13 +50,18 @@ NOT_THERE = (
     ("start end", "stiffness spring spring_stiffness k damping",
      "an end is held, or its load is given: it has no spring"),
     ("start end", "inertia moment_of_inertia", "a body at an end is a point: it has a mass alone"),
+    ("point", "schedule", "each component of its force and moment is a function of time itself"),
+    ("point", "mass m", "a body within the rod is a short piece of it with a larger mass_per_length"),
+    ("obstacles floor", "velocity motion rotation angular_velocity", "what the rod meets stands still"),
+    ("fluid", "surface water_level level depth", "a fluid fills all space"),
+    ("loads", "temperature thermal", "thermal strain of a held rod is ends that move by it; heat has no field"),
     ("", "rods", "a case has one rod"),
     ("", "supports support", "what bears a rod within is an obstacle, or the floor, of loads"),
     ("", "_comment comment comments note notes", "what a case is stands in its title and description"),
     ("fluid", "wave waves wave_height wave_period", "waves are a current with a schedule"),
     ("", "walls wall", "a wall is the floor, with its normal, or a row of obstacles"),
 )
-"""What some look for and hockle does not have: the last part of the place (nothing: the case itself), names in small
+"""What some look for and hockle does not have: the last name of the place (nothing: the case itself), names in small
 letters, and what there is instead."""
 OTHER_KINDS = (
     ("'clamp'", "clamp", "fixed clamped encastre built-in cantilever rigid"),
@@ -86,7 +91,7 @@ def not_there(name: str, path: Sequence[str], known: Sequence[str]) -> str:
     nothing."""
     if set(TABLES) <= set(known) and name.lower() in WAVES.split():
         return "a function of time is a table of t and value: some 20 points a period, with interpolation cubic"
-    place = path[-1] if path else ""
+    place = next((part for part in reversed(path) if not part.isdigit()), "")
     words = (instead for places, names, instead in NOT_THERE
              if place in (places.split() or [""]) and name.lower() in names.split())  # fmt: skip
     return next(words, "")

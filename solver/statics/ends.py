@@ -22,6 +22,8 @@ from solver.statics.turning import Turning
 
 ALONG = 1e-6
 """Cosine below which a direction that is held counts as across another one."""
+CLOSED = 1e-3
+"""Part of the rod's length below which its ends meet."""
 
 
 class Units(NamedTuple):
@@ -58,7 +60,7 @@ def check_place(scene: Scene) -> None:
     """
     if scene.loads:
         return
-    _, orientation, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, 2))
+    r, orientation, _ = nodes_at_rest(scene.initial, np.linspace(0.0, scene.rod.length, 2))
     held = np.zeros((6, 3))
     for i, end in enumerate((scene.start, scene.end)):
         axes = np.eye(3) if end.frame == "lab" else rotate(np.tile(orientation[-i], (3, 1)), np.eye(3))
@@ -69,8 +71,10 @@ def check_place(scene: Scene) -> None:
     _, sizes, directions = np.linalg.svd(held)
     if sizes[-1] < ALONG:
         loose = ", ".join(f"{x:.3g}" for x in directions[-1] + 0.0)
+        closed = np.linalg.norm(r[1] - r[0]) < CLOSED * scene.rod.length
+        remedy = "clamp both of them, as this is a ring" if closed else "clamp or pin one of them"
         raise ValueError(f"ends must hold the rod's place in a static analysis, and neither holds it along ({loose}): "
-                         "clamp or pin one of them")  # fmt: skip
+                         f"{remedy}")  # fmt: skip
 
 
 def _is_still(condition: Condition) -> bool:

@@ -162,6 +162,10 @@ def test_an_unknown_field_in_angle_brackets_is_told_too(setting: str):
 @pytest.mark.parametrize(("setting", "value", "instead"), [
     ("fluid", {"density": 1e3, "drag_linear": 0.1}, "viscosity"),
     ("contact", {"friction": 0.3}, "without friction"), ("ends.end", {"preset": "free", "stiffness": 5.0}, "no spring"),
+    ("loads.point", [{"s": 0.5, "schedule": 2.0}], "a function of time itself"),
+    ("fluid", {"surface": 60.0}, "fills all"),
+    ("loads.point", [{"s": 0.5, "mass": 2.0}], "a larger mass_per_length"), ("loads", {"temperature": 2.0}, "thermal"),
+    ("loads.obstacles", [{"point": [0, 0, 0], "velocity": [1, 0, 0]}], "stands still"),
     ("rods", [{}, {}], "a case has one rod"), ("supports", [], "is an obstacle"), ("_comment", "a note", "description"),
     ("fluid", {"density": 1e3, "wave_height": 2.0}, "a current with a schedule"),
     ("ends.end", {"preset": "free", "f3": {"amplitude": 1.0, "frequency": 2.0}}, "a table of t and value"),

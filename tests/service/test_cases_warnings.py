@@ -326,6 +326,33 @@ def test_an_end_that_moves_at_once_is_told_where_the_rod_is_at_rest(component: s
     assert not any("at rest" in warning.rule for warning in _warned(case | moving))
 
 
+def test_an_end_that_moves_at_once_is_told_however_long_the_run_goes_on_and_not_what_is_little_beside():
+    soon = {"t": [0.0, 1.0], "value": [0.0, 1.0], "interpolation": "linear"}
+    slow = {"t": [0.0, 0.2, 1.0], "value": [0.0, 1e-4, 1.0], "interpolation": "pchip"}
+    little = {"t": [0.0, 1.0], "value": [0.0, 1e-3], "interpolation": "linear"}
+    for motion, t_end, pointers in (({"x1": soon, "x2": little}, 2.0, ["/ends/start/x1"]),
+                                    ({"x1": slow}, 2.0, []), ({"x1": slow}, 2000.0, [])):  # fmt: skip
+        end = {"preset": "clamp", "frame": "lab"} | motion
+        case = PRESSED | {"t_end": t_end, "ends": {"start": end, "end": "free"}}
+        assert [warning.pointer for warning in _warned(case) if "jerk" in warning.rule] == pointers
+
+
+@pytest.mark.parametrize(("stiffer", "analysis", "warned"), [
+    (None, "dynamic", True), (1.0, "dynamic", True), (100.0, "dynamic", False), (None, "static", False),
+])  # fmt: skip
+def test_an_end_that_is_faster_than_sound_is_told_where_it_has_a_speed(stiffer: float | None, analysis: str,
+                                                                       warned: bool):  # fmt: skip
+    """Sound runs by the axial stiffness that the rod has; in a static analysis the time is no time."""
+    scene = build_scene(parse_case(PRESSED))
+    EA = 16.0 * float(scene.rod.stiffness[0](0.0)) / float(scene.rod.diameter(0.0)) ** 2
+    sound = float(np.sqrt(EA / scene.rod.mass(0.0)))
+    fast = {"t": [0.0, 0.1 / sound], "value": [0.0, 0.2], "interpolation": "linear"}
+    rod = PRESSED["rod"] | ({"axial_stiffness": stiffer * EA} if stiffer else {})
+    case = PRESSED | {"rod": rod, "analysis": analysis,
+                      "ends": {"start": {"preset": "clamp", "frame": "lab", "x1": fast}, "end": "free"}}  # fmt: skip
+    assert any("faster than sound" in warning.rule for warning in _warned(case)) == warned
+
+
 @pytest.mark.parametrize(("rise", "warned"), [(0.0, True), (0.03, False)])
 def test_a_shape_that_begins_within_itself_is_told_where_there_is_contact(rise: float, warned: bool):
     """Two turns of a helix of radius 1 / 4 pi, which lie in each other or above each other; a ring touches its end."""

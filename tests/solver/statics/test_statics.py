@@ -261,6 +261,15 @@ def test_a_rod_that_no_end_holds_in_place_is_refused(ends: tuple[End, End]) -> N
         simulate(static(start=start, end=end))
 
 
+def test_a_ring_that_no_end_holds_in_place_is_told_to_be_held_at_both() -> None:
+    def ring(s: Array) -> Array:
+        angle = 2.0 * np.pi * s / LENGTH
+        return LENGTH / (2.0 * np.pi) * np.stack([np.sin(angle), 0.0 * s, 1.0 - np.cos(angle)], axis=1)
+
+    with pytest.raises(ValueError, match="clamp both of them, as this is a ring"):
+        simulate(static(start=End.free(), end=End.free(), initial=Initial(centreline=ring)))
+
+
 def test_two_sliders_across_each_other_hold_a_rod_in_place() -> None:
     across = End((FREE, FIXED, FIXED), (FIXED,) * 3, "lab")
     assert last(static(start=ALONG_LAB, end=across)).r[-1] == pytest.approx([0.0, 0.0, LENGTH])

@@ -177,12 +177,11 @@ def largest_displacement(p: Array, since: Array) -> float:
 
 
 @kernel
-def foresee(w: Array, slack: Array, steps: float, least: float, most: float) -> None:
-    """Let each point go as far as it comes within `steps` (s) at its velocity w (M, 3), but at `least` and at the
-    `most` (m)."""
+def foresee(w: Array, whole: Array, slack: Array, steps: float, least: float, most: float) -> None:
+    """Let each point go as far as it comes within `steps` (s) at its velocity w (M, 3) less that of the rod as a
+    `whole` there, but at `least` and at the `most` (m)."""
     for i in range(len(slack)):
-        speed = np.sqrt(w[i, 0] ** 2 + w[i, 1] ** 2 + w[i, 2] ** 2)
-        slack[i] = min(max(steps * speed, least), most)
+        slack[i] = min(max(steps * np.sqrt(_between(w, whole, i)), least), most)
 
 
 @kernel

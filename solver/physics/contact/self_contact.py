@@ -16,6 +16,7 @@ from solver.physics.contact.links import links_meet, links_reach
 from solver.physics.contact.points import Points, contact_points, place_points
 from solver.physics.contact.recipe import IN_MOTION, NOTHING, Foreseen, Hardness, held, spaced
 from solver.physics.contact.search import Pairs
+from solver.physics.contact.whole import carry_as_a_whole, velocity_as_a_whole
 from solver.scene.contact import Contact
 from solver.scene.rod import Rod
 
@@ -31,6 +32,9 @@ BENT = 0.6
 LARGEST_PASSAGE = 0.35
 """Part of its distance that a pair may move in a step: too little to leap from where the force is weak to where the
 aperture hides it (points nearer to each other than they are spaced see each other along the rod)."""
+NOT_SHORT = 4.0
+"""Steps that may follow within what the last search has looked at, from which on nobody asks how the rod moves as a
+whole."""
 LARGEST_SHIFT = 0.4
 """Part of its slack that a point may go in a step at its present speed; 0.5 is left before each step."""
 TIME_TO_TOUCH = 0.2
@@ -67,6 +71,10 @@ class SelfContact:
         self._share = float(np.abs(points.weights).sum(axis=1).max())
         self.rest, self._points_at_rest = np.zeros((len(s), 3)), np.zeros_like(points.p)
         """Velocities of nodes that do not move."""
+        self._whole = np.zeros((len(s), 3)), np.zeros_like(points.p)
+        """Where nodes and points would be, or how fast, had the rod moved as a whole: see `whole`."""
+        self._dt = 0.0
+        """The step under way (s)."""
         self._skip, self._straight = self._law.skip, 0.0
         """The arc (m) up to which the last search has left out pairs; and that in intervals, as its bending has to stay
         harmless for that; none where it is the law's own."""
@@ -89,19 +97,19 @@ class SelfContact:
 
     def prepare(self, bending: float, r: Array, velocity: Array, dt: float, anew: bool = False) -> None:
         """Before a step of dt (s) from a state: make the list of pairs good for it; `anew`: also if it is yet."""
-        self.placed = 0
+        self.placed, self._dt = 0, dt
         if bending < self._not_to_be_searched:
             if self._looked:
                 self.touch.pairs.counts[:] = 0
                 self._looked, self._slack, self._straight = False, 0.0, 0.0
             return
         bent = anew or self._is_bent(r, 0.5 * (1.0 + BENT))
-        if not bent and self._share * search.largest_displacement(r, self._checked) < 0.5 * self._slack:
+        if not bent and self._strayed(r) < 0.5 * self._slack:
             return
         points = self._placed(r, velocity)
-        if bent or not self._looked or search.used(points.p, points.checked, points.slack) > 0.5:
+        if bent or not self._looked or self._used(r) > 0.5:
             self._checked[:] = r
-            self._search(dt)
+            self._search(velocity, dt)
         points.start[:] = points.p
 
     def refusal(self, bending: float, nodes: Callable[[], tuple[Array, Array]]) -> str:
@@ -112,24 +120,52 @@ class SelfContact:
         r, velocity = nodes()
         if self._is_bent(r, 1.0):
             return "the rod bent more than the contact search foresaw"
-        if self._share * search.largest_displacement(r, self._checked) < self._slack:
-            speed = self._share * search.largest_displacement(velocity, self.rest)
-            self.step_limit = LARGEST_SHIFT * self._slack / speed if speed > 0.0 else inf
+        if self._strayed(r) < self._slack:
+            self.step_limit = self._until_used(lambda at: self._share * search.largest_displacement(velocity, at[0])
+                                               / self._slack, r, velocity)  # fmt: skip
             return ""
         points, pairs = self._placed(r, velocity), self.touch.pairs
         if not self._looked:
             near = search.smallest_distance(points, self._law.skip, self._farthest, 0.0) <= self._reach
             return "the rod came near itself within one step" if near else ""
-        if search.used(points.p, points.checked, points.slack) > 1.0:
+        if self._used(r) > 1.0:
             return "the rod moved farther than the contact search looked"
         approach, time_to_touch = approaches(points, pairs)
-        part = search.used(points.w, self._points_at_rest, points.slack)  # in a second
-        self.step_limit = min(TIME_TO_TOUCH * time_to_touch, LARGEST_SHIFT / part if part > 0.0 else inf)
+        until_used = self._until_used(lambda at: search.used(points.w, at[1], points.slack), r, velocity)
+        self.step_limit = min(TIME_TO_TOUCH * time_to_touch, until_used)
         if approach > LARGEST_PASSAGE:
             return "two parts of the rod could have passed through each other"
         if links_meet(points, pairs):
             return "two parts of the rod slipped into each other between contact points"
         return ""
+
+    def _strayed(self, r: Array) -> float:
+        """How far (m) a point has gone since the last search, where nobody was near: from where it was, or from where
+        it would be if the rod had moved as a whole."""
+        far = self._share * search.largest_displacement(r, self._checked)
+        if not 0.5 * self._slack <= far or self._slack == 0.0:
+            return far
+        none = self._points_at_rest[:0]
+        carry_as_a_whole(self._checked, r, self._whole[0], none, none)
+        return min(far, self._share * search.largest_displacement(r, self._whole[0]))
+
+    def _used(self, r: Array) -> float:
+        """The largest part of its slack that a point, which is placed, has used up, likewise."""
+        points = self.touch.points
+        part = search.used(points.p, points.checked, points.slack)
+        if part <= 0.5:
+            return part
+        carry_as_a_whole(self._checked, r, self._whole[0], points.checked, self._whole[1])
+        return min(part, search.used(points.p, self._whole[1], points.slack))
+
+    def _until_used(self, part: Callable[[tuple[Array, Array]], float], r: Array, velocity: Array) -> float:
+        """How long (s) a step may be, of which `part` says how much of the slack is used up in a second, beside given
+        velocities of nodes and points; where that is short, beside those of the rod as a whole."""
+        used = part((self.rest, self._points_at_rest))
+        if used * NOT_SHORT * self._dt > LARGEST_SHIFT:
+            velocity_as_a_whole(r, velocity, self._whole[0], self.touch.points.p, self._whole[1])
+            used = min(used, part(self._whole))
+        return LARGEST_SHIFT / used if used > 0.0 else inf
 
     def _placed(self, r: Array, velocity: Array) -> Points:
         """The points, on a rod with nodes r that move at `velocity`."""
@@ -158,13 +194,14 @@ class SelfContact:
         """Have every kernel compiled that a run in contact needs."""
         points = self.touch.points
         place_points(points, self.rest, self.rest)
-        self._search(0.0)
+        self._search(self.rest, 0.0)
         points, pairs = self.touch.points, self.touch.pairs
+        carry_as_a_whole(self._checked, self.rest, self._whole[0], points.checked, self._whole[1])
         search.smallest_distance(points, self._law.skip, inf, 0.5)
         approaches(points, pairs), links_meet(points, pairs)
         search.used(points.p, points.checked, points.slack), search.most_bent(self._checked, 1.0)
 
-    def _search(self, dt: float) -> None:
+    def _search(self, velocity: Array, dt: float) -> None:
         """List the pairs as far as some steps of dt (s) reach; where there are none, know how far the nearest are."""
         points, reach = self.touch.points, self._reach
         points.checked[:] = points.p
@@ -172,9 +209,10 @@ class SelfContact:
         self._leave_out()
         skip = self._skip
         self._slack = 0.0
-        fastest = search.largest_displacement(points.w, self._points_at_rest)
+        velocity_as_a_whole(self._checked, velocity, self._whole[0], points.p, self._whole[1])
+        fastest = search.largest_displacement(points.w, self._whole[1])
         least = min(max(FORESEEN * fastest * dt, SKIN[0] * reach), SKIN[1] * reach)
-        search.foresee(points.w, points.slack, FORESEEN * dt, least, SKIN[2] * reach)
+        search.foresee(points.w, self._whole[1], points.slack, FORESEEN * dt, least, SKIN[2] * reach)
         search.find_pairs(points, skip, reach, self.touch.pairs)
         if self.touch.pairs.counts[1] > 0:
             self._make_room(points, 2 * int(self.touch.pairs.counts.sum()))

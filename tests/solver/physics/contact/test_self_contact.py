@@ -9,6 +9,7 @@ from math import isnan, pi
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
+from scipy.spatial.transform import Rotation
 
 import solver.physics.contact.search as search
 from solver import (
@@ -152,7 +153,7 @@ def bent(contact: Contact | None) -> Scene:
 
 
 def test_no_pair_is_searched_while_the_bending_bound_holds(monkeypatch: pytest.MonkeyPatch) -> None:
-    warm()
+    list(simulate(bent(CONTACT)))  # which compiles what it needs
     calls = Calls(monkeypatch)
     simulation = simulate(bent(CONTACT))
     frames = list(simulation)
@@ -202,10 +203,32 @@ def test_a_fine_thread_lists_no_neighbours_along_itself_however_coarse_the_mesh(
     radius = 0.8 / turn
     curl = np.column_stack([radius * np.cos(turn * s), radius * np.sin(turn * s), 0.6 * s])
     contact = SelfContact(Contact(), Rod.circular(LENGTH, 8e-5, 4e9, 1.2e9, 1300.0), s, stages=1)
-    contact.prepare(2.0 * pi * turns, curl, np.ones_like(curl), 1e-3)
+    swung = np.cos(40.0 * s)[:, None] * np.ones(3)
+    contact.prepare(2.0 * pi * turns, curl, swung, 1e-3)
     assert contact.touch.points.slack.max() > 10.0 * 8e-5 / 2.0
     assert contact.touch.pairs.counts.tolist() == [0, 0]
-    assert refusal_of(contact, 2.0 * pi * turns, curl, np.ones_like(curl)) == ""
+    assert refusal_of(contact, 2.0 * pi * turns, curl, swung) == ""
+
+
+def test_a_rod_that_moves_as_a_whole_is_searched_once_and_its_steps_may_be_as_long_as_they_like() -> None:
+    """A hook that turns about an axis by half a radian a step, and flies on: no two parts of it come nearer."""
+    s = np.linspace(0.0, LENGTH, 49)
+    angle = 1.5 * pi * s / LENGTH
+    hook = LENGTH / 6.0 * np.column_stack([np.sin(angle), 1.0 - np.cos(angle), angle])
+    spin, flight = np.array([0.0, 0.0, 50.0]), np.array([40.0, 0.0, 0.0])
+    contact = SelfContact(Contact(), Rod.circular(LENGTH, 1e-3, 4e9, 1.2e9, 1300.0), s, stages=1)
+
+    def at(t: float) -> tuple[Array, Array]:
+        turned = Rotation.from_rotvec(spin * t).apply(hook)
+        return turned + flight * t, np.cross(spin, turned) + flight
+
+    contact.prepare(1.5 * pi, *at(0.0), 0.01)
+    searched = contact.touch.points.checked.copy()
+    for i in range(1, 4):
+        assert contact.refusal(1.5 * pi, lambda t=0.01 * i: at(t)) == ""  # type: ignore[misc]
+        assert contact.step_limit > 10.0
+        contact.prepare(1.5 * pi, *at(0.01 * i), 0.01)
+    assert np.array_equal(contact.touch.points.checked, searched)
 
 
 def test_the_smallest_gap_is_between_surfaces() -> None:

@@ -42,6 +42,10 @@ FRAME, FRAME_NODE = 100e-6, 4e-6
 WRITHE = 1.5e-9
 POINT, PAIR = 1e-7, 5e-9
 VERIFIED = 5
+ELSEWHERE = 1.1
+"""How many times longer a run to a tolerance is said to take than on the EPYC that the outlook was fitted to: an Intel
+Xeon takes 1.37 times as long. Of the 204 scenes of the bank 92 % are so within a factor of 3 on the one, 94 on the
+other."""
 MOST_HALVED = 2.0**22
 """How often steps may be halved."""
 COMPONENTS = {output.name: output.components for output in OUTPUTS}
@@ -63,7 +67,7 @@ def estimate(spec: CaseSpec) -> Cost:
     cost, tolerance = by_size(spec), spec.numerics.tolerance
     if tolerance is None:
         return cost
-    likely = likely_seconds(build_scene(spec))
+    likely = ELSEWHERE * likely_seconds(build_scene(spec))
     if spec.analysis == "static":
         return replace(cost, seconds=likely * _finer(tolerance) ** 0.5)
     return replace(cost, seconds=max(cost.seconds, min(likely * _finer(tolerance), max(likely, MOST))))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
@@ -21,6 +21,7 @@ def rod(rng: np.random.Generator) -> tuple[Array, Array]:
 
 
 @given(seeds)
+@settings(max_examples=40, deadline=None)
 def test_a_rigid_motion_is_found(seed: int) -> None:
     rng = np.random.default_rng(seed)
     (before, p), turn, shift = rod(rng), Rotation.from_rotvec(rng.uniform(-0.5, 0.5, 3)), 100.0 * rng.normal(size=3)
@@ -31,6 +32,7 @@ def test_a_rigid_motion_is_found(seed: int) -> None:
 
 
 @given(seeds)
+@settings(max_examples=40, deadline=None)
 def test_whatever_the_rod_does_its_points_keep_their_distances(seed: int) -> None:
     """Even of a motion that no rigid one is near."""
     rng = np.random.default_rng(seed)
@@ -43,6 +45,7 @@ def test_whatever_the_rod_does_its_points_keep_their_distances(seed: int) -> Non
 
 @pytest.mark.parametrize("straight", [False, True])
 @given(seeds)
+@settings(max_examples=40, deadline=None)
 def test_the_velocities_of_a_rigid_body_are_found_and_no_others(straight: bool, seed: int) -> None:
     rng = np.random.default_rng(seed)
     r, p = rod(rng)

@@ -27,8 +27,8 @@ def test_a_rigid_motion_is_found(seed: int) -> None:
     (before, p), turn, shift = rod(rng), Rotation.from_rotvec(rng.uniform(-0.5, 0.5, 3)), 100.0 * rng.normal(size=3)
     nodes, points = np.empty_like(before), np.empty_like(p)
     carry_as_a_whole(before, turn.apply(before) + shift, nodes, p, points)
-    assert_allclose(nodes, turn.apply(before) + shift, atol=1e-5)
-    assert_allclose(points, turn.apply(p) + shift, atol=1e-5)
+    assert_allclose(nodes, turn.apply(before) + shift, atol=1e-9)
+    assert_allclose(points, turn.apply(p) + shift, atol=1e-9)
 
 
 @given(seeds)

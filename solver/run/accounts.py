@@ -15,6 +15,7 @@ from solver.measures.topology import writhe_of_rod
 from solver.methods.method import Ahead, Method
 from solver.physics.elasticity import elasticity_of, principal
 from solver.physics.ends import ABOUT_A3
+from solver.run.fading import Fading
 from solver.run.linking import LinkingNumber
 from solver.scene.scene import Scene
 
@@ -35,7 +36,8 @@ class Accounts:
         self._totals = np.zeros(4)
         self._dt, self._iterations = 0.0, 0
         self._energy_at_start: float | None = None
-        self._t, self._balance, self._missing = 0.0, 0.0, 0.0
+        self._t, self._balance, self._missing, self._astray = 0.0, 0.0, 0.0, 0.0
+        self._fading = Fading(scene)
         self._entries: tuple[float, ...] = ()
         """Of the last frame: the energies, and what has flowed."""
         self._settled = False
@@ -114,16 +116,18 @@ class Accounts:
 
     @property
     def lost(self) -> float:
-        """Energy that went nowhere until the last frame, over the largest that motion, strain and contact ever had."""
-        return max(-self._missing, 0.0) / (self._there + self._lost_at_rest)
+        """Energy that went nowhere until the last frame, but for what would have been damped since, over the largest
+        that motion, strain and contact ever had."""
+        return max(-self._astray, 0.0) / (self._there + self._lost_at_rest)
 
     def _settle(self, t: float, energy: Energies) -> None:
         """Enter the balance (J) at the end t of the last step, where the rod has this energy."""
         work_ends, work_loads, dissipation, contact = self._totals.tolist()
         balance = sum(energy) + contact - (self._energy_at_start or 0.0) - work_ends - work_loads + dissipation
         self._settled, change = True, balance - self._balance
-        if change > 0.0 or not any(self._t <= jolt <= t for jolt in self._jolts):
-            self._missing += change
+        counts = change > 0.0 or not any(self._t <= jolt <= t for jolt in self._jolts)
+        self._missing += change if counts else 0.0
+        self._astray = self._fading.left(self._astray, change if counts else 0.0, t - self._t, self._dt)
         self._t, self._balance = t, balance
 
     def _linking_number(self, t: float, Tw: float, Wr: float, ahead: Ahead, orientation: Array) -> float:

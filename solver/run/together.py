@@ -11,6 +11,7 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, excess, sizes
+from solver.run.fading import Fading
 from solver.run.first_mesh import first_intervals
 from solver.run.plan import FAR_FROM_IT, WORTH, Excess
 from solver.run.recording import (
@@ -196,14 +197,18 @@ class Together:
 
     @cached_property
     def _lost(self) -> Array:
-        """The energy (J) that the finest attempt had lost by each frame in waves that no attempt follows: at rest none.
-        """
+        """The energy (J) that the finest attempt had lost by each frame in waves that no attempt follows, and that are
+        not damped by then: at rest none."""
         if self._at_rest:
             return np.zeros(self.frames)
         rows = self._recorded[self._chosen.finest]
         rounded = [ROUNDING * max(abs(number_of(row, index)) for index in TURNED_OVER) for row in rows]
         balances = [max(abs(number_of(row, BALANCE)) - least, 0.0) for row, least in zip(rows, rounded, strict=True)]
-        return np.asarray(self._unfollowed * np.maximum.accumulate(balances))
+        fading, left = Fading(self._scene), np.maximum.accumulate(balances)
+        gone = np.diff(left)
+        for k, (before, row) in enumerate(pairwise(rows)):
+            left[k + 1] = fading.left(left[k], gone[k], row[0] - before[0], number_of(row, STEP))
+        return np.asarray(self._unfollowed * left)
 
     @cached_property
     def _unfollowed(self) -> float:

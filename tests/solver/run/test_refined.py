@@ -336,7 +336,7 @@ def test_the_coarsest_mesh_has_a_node_at_a_point_load_if_few_enough_have() -> No
 
 
 def test_energies_are_as_uncertain_as_what_went_nowhere() -> None:
-    run = Refined(tolerated(1e-2))
+    run = Refined(replace(tolerated(1e-2), damping=0.0))  # what is damped is not missed: see test_fading
     frames = list(run)
     together = run._together
     lost = max(abs(number_of(row, BALANCE)) for row in together._recorded[together._chosen.finest])

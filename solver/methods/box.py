@@ -88,7 +88,7 @@ class BoxMethod(Method):
         self._divisible = DIVISIBLE * self.h * float(twisting.mean())
         """Step (s) that is not shortened for an end: what it does within it is made up for in those that follow."""
         self._F_rate = np.zeros((len(self.s), 3))
-        self._flows = Flows.empty(len(self.s))
+        self._flows, self._R = Flows.empty(len(self.s)), np.zeros((len(self.s), 3, 3))
         self._handed = Reference.to(self._records)
 
     @classmethod
@@ -191,7 +191,7 @@ class BoxMethod(Method):
 
     def energies(self) -> Energies:
         """The energies of the state, but for contact."""
-        return energies(self._hand_over(), self.state, self.h)
+        return energies(self._hand_over(), self.state, self.h, self._R)
 
     def twist(self) -> float:
         """Tw of the state, in turns."""

@@ -15,7 +15,7 @@ from solver.measures.topology import writhe_of_rod
 from solver.methods.method import Ahead, Method
 from solver.physics.elasticity import elasticity_of, principal
 from solver.physics.ends import ABOUT_A3
-from solver.run.fading import Fading
+from solver.run.astray import Astray
 from solver.run.linking import LinkingNumber
 from solver.scene.scene import Scene
 
@@ -36,8 +36,9 @@ class Accounts:
         self._totals = np.zeros(4)
         self._dt, self._iterations = 0.0, 0
         self._energy_at_start: float | None = None
-        self._t, self._balance, self._missing, self._astray = 0.0, 0.0, 0.0, 0.0
-        self._fading = Fading(scene)
+        self._t, self._balance, self._missing = 0.0, 0.0, 0.0
+        self._astray, self._lost = Astray(scene), Astray(scene)
+        """Of the whole balance, and of that without what an end's jolt took."""
         self._entries: tuple[float, ...] = ()
         """Of the last frame: the energies, and what has flowed."""
         self._settled = False
@@ -55,11 +56,13 @@ class Accounts:
         """Whether the linking number changes by how the ends' tangents move."""
         self._follow_ends()
 
-    def after_step(self, dt: float, iterations: int, flowed: Array) -> None:
-        """Enter the step just taken, and the energy (4,) that flowed in it: see `Method.take_step`."""
+    def after_step(self, t: float, dt: float, iterations: int, flowed: Array) -> None:
+        """Enter the step just taken, which ends at t, and the energy (4,) that flowed in it: see `Method.take_step`."""
         self._totals += flowed
         self._settled = False
         self._dt, self._iterations = dt, iterations
+        if self._astray.is_due(t - self._t):
+            self._settle(t, self._method.energies())
         self._follow_ends()
 
     def _follow_ends(self) -> None:
@@ -100,7 +103,7 @@ class Accounts:
         return Frame(
             t=t, **named, energy_contact=contact,
             work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
-            energy_balance=self._balance,
+            energy_balance=self._balance, energy_astray=self._astray.most,
             Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr, ahead, fields.orientation), min_gap=method.smallest_gap(),
             contacts=method.pressing(), dt=self._dt, newton_iterations=self._iterations,
         )  # fmt: skip
@@ -118,7 +121,7 @@ class Accounts:
     def lost(self) -> float:
         """Energy that went nowhere until the last frame, but for what would have been damped since, over the largest
         that motion, strain and contact ever had."""
-        return max(-self._astray, 0.0) / (self._there + self._lost_at_rest)
+        return max(-self._lost.energy, 0.0) / (self._there + self._lost_at_rest)
 
     def _settle(self, t: float, energy: Energies) -> None:
         """Enter the balance (J) at the end t of the last step, where the rod has this energy."""
@@ -127,7 +130,8 @@ class Accounts:
         self._settled, change = True, balance - self._balance
         counts = change > 0.0 or not any(self._t <= jolt <= t for jolt in self._jolts)
         self._missing += change if counts else 0.0
-        self._astray = self._fading.left(self._astray, change if counts else 0.0, t - self._t, self._dt)
+        self._astray.enter(change, t - self._t, self._dt)
+        self._lost.enter(change if counts else 0.0, t - self._t, self._dt)
         self._t, self._balance = t, balance
 
     def _linking_number(self, t: float, Tw: float, Wr: float, ahead: Ahead, orientation: Array) -> float:

@@ -185,6 +185,6 @@ class Simulation(Run):
         flowed = self._method.take_step(t, dt)
         self._turn = self._trial_turn
         self.statistics.steps += 1
-        self._accounts.after_step(dt, iterations, flowed)
+        self._accounts.after_step(t + dt, dt, iterations, flowed)
         if self._scene.topology and self._scene.contact is not None:
             self._watch.follow(self._method.centreline())

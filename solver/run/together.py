@@ -11,14 +11,15 @@ import numpy as np
 
 from solver.arrays import Array
 from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, excess, sizes
-from solver.run.fading import Fading
 from solver.run.first_mesh import first_intervals
 from solver.run.plan import FAR_FROM_IT, WORTH, Excess
 from solver.run.recording import (
     ADDED_MASS,
+    ASTRAY,
     BALANCE,
     BENDING,
     CURVATURE,
+    DISSIPATION,
     FORCE,
     JUDGED,
     JUDGED_KAPPA,
@@ -129,7 +130,9 @@ class Together:
         numbers = np.maximum(np.maximum(error.numbers, part * unseen.numbers), lost * self._in_waves)
         curvature = float(np.linalg.norm(along[:, KAPPA], axis=-1).max())
         numbers[0, CURVATURE] = max(numbers[0, CURVATURE], curvature)
-        numbers[0, BALANCE] = max(numbers[0, BALANCE], abs(value.numbers[0, BALANCE]))  # of the solution it is none
+        missed = abs(value.numbers[0, BALANCE])  # of the solution it is none
+        numbers[0, BALANCE] = max(numbers[0, BALANCE], missed)
+        numbers[0, DISSIPATION] = max(numbers[0, DISSIPATION], self._unfollowed * missed)  # of what is damped since too
         numbers = np.where(UNVERIFIED, value.numbers, numbers)
         return VerifiedFrame(**vars(frame_of(t, value)), error=frame_of(t, Columns(along, numbers)))
 
@@ -203,12 +206,8 @@ class Together:
             return np.zeros(self.frames)
         rows = self._recorded[self._chosen.finest]
         rounded = [ROUNDING * max(abs(number_of(row, index)) for index in TURNED_OVER) for row in rows]
-        balances = [max(abs(number_of(row, BALANCE)) - least, 0.0) for row, least in zip(rows, rounded, strict=True)]
-        fading, left = Fading(self._scene), np.maximum.accumulate(balances)
-        gone = np.diff(left)
-        for k, (before, row) in enumerate(pairwise(rows)):
-            left[k + 1] = fading.left(left[k], gone[k], row[0] - before[0], number_of(row, STEP))
-        return np.asarray(self._unfollowed * left)
+        astray = [max(number_of(row, ASTRAY) - least, 0.0) for row, least in zip(rows, rounded, strict=True)]
+        return self._unfollowed * np.array(astray)
 
     @cached_property
     def _unfollowed(self) -> float:

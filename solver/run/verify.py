@@ -18,8 +18,8 @@ from solver.run.run import Run
 from solver.scene.rod import Rod
 from solver.scene.scene import Scene
 
-OF_WAVES, OF_SOUND = ("energy_bending", "energy_torsion", "energy_kinetic", "dissipation"), ("energy_stretching",)
-"""Outputs that are wrong by as much energy (J) as waves lose that no run follows; and of rods that can stretch."""
+OF_WAVES, OF_SOUND = ("energy_bending", "energy_torsion", "energy_kinetic"), ("energy_stretching",)
+"""Outputs that are wrong by as much energy (J) as may be in waves that no run follows; and of rods that can stretch."""
 SHORTEST = 1e-300
 """A step (s) that stands for none, as at t = 0."""
 NAMES = tuple(field.name for field in fields(Frame))
@@ -43,7 +43,6 @@ class Verified(Run):
         self._runs = [kind(resolved, self.statistics) for resolved in (single, refine(single))]
         self.remarks = self._runs[0].remarks
         self._waiting: list[list[Any]] = []  # the values of frames, because a checkpoint holds no frames
-        self._lost = 0.0
 
     @property
     def s(self) -> Array:
@@ -67,9 +66,9 @@ class Verified(Run):
             return None
         coarse, fine = (Frame(**dict(zip(NAMES, values, strict=True))) for values in self._waiting)
         self._waiting.clear()
-        self._lost = float(np.fmax(self._lost, abs(fine.energy_balance)))
-        least = unseen(self._scene.rod, self.s, self._lost, fine.dt)
-        return extrapolate(coarse, fine, {**least, **dict.fromkeys(of_waves(self._scene.rod), self._lost)})
+        lost, missed = float(np.fmax(fine.energy_astray, 0.0)), float(np.fmax(abs(fine.energy_balance), 0.0))
+        least = unseen(self._scene.rod, self.s, lost, fine.dt) | dict.fromkeys(of_waves(self._scene.rod), lost)
+        return extrapolate(coarse, fine, least | {"dissipation": missed})
 
 
 def refine(scene: Scene) -> Scene:

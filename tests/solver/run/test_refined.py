@@ -29,6 +29,7 @@ from solver.run.accuracy import ENERGIES, QUANTITIES, errors_of, sizes
 from solver.run.first_mesh import LARGEST_TURN, first_intervals
 from solver.run.plan import Excess
 from solver.run.recording import (
+    ASTRAY,
     BALANCE,
     BENDING,
     CURVATURE,
@@ -336,7 +337,7 @@ def test_the_coarsest_mesh_has_a_node_at_a_point_load_if_few_enough_have() -> No
 
 
 def test_energies_are_as_uncertain_as_what_went_nowhere() -> None:
-    run = Refined(replace(tolerated(1e-2), damping=0.0))  # what is damped is not missed: see test_fading
+    run = Refined(replace(tolerated(1e-2), damping=0.0))  # what is damped is not missed: see test_astray
     frames = list(run)
     together = run._together
     lost = max(abs(number_of(row, BALANCE)) for row in together._recorded[together._chosen.finest])
@@ -344,7 +345,7 @@ def test_energies_are_as_uncertain_as_what_went_nowhere() -> None:
     assert lost > 0.0
     assert run.errors_of_frames[-1, ENERGIES] >= 0.9 * together._unfollowed * lost / largest
     for row in together._recorded[together._chosen.finest]:
-        row[1 + BALANCE] = 0.5 * largest  # as if it had lost so much
+        row[1 + ASTRAY] = 0.5 * largest  # as if it had lost so much
     assert run._together.errors()[-1, ENERGIES] >= 0.4 * run._together._unfollowed
 
 

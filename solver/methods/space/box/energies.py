@@ -24,9 +24,9 @@ from solver.physics.loads.load import energy, entrained, entrained_energy, has_e
 from solver.physics.loads.registry import Loads
 
 
-def energies(reference: Reference, state: State, h: float) -> Energies:
-    """The energies at a state."""
-    return _integrate(reference, state, h, np.empty((len(state.r), 3, 3)), np.zeros(2))
+def energies(reference: Reference, state: State, h: float, R: Array) -> Energies:
+    """The energies at a state, whose rotations are written into R (n, 3, 3)."""
+    return _integrate(reference, state, h, R, np.zeros(2))
 
 
 @kernel

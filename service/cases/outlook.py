@@ -59,7 +59,8 @@ SECONDS = {
 STATIC, STATIC_START, STATIC_DOUBLED = 0.008, 30, 1.5
 """CPU seconds of a frame of a static analysis, how many frames the start counts for, and how many times more for every
 doubling of the first mesh."""
-DEARER = {"wound up": 4.0, "on solids": 4.0, "limp": 4.0, "stressed at the start": 1.5, "touching": 3.0}
+DEARER = {"wound up": 4.0, "on solids": 4.0, "limp and on no solids": 4.0, "stressed at the start": 1.5,
+          "touching": 3.0, "snapping through": 4.0}  # fmt: skip
 """How many times more a static analysis takes."""
 FRAMES, FOLLOWED, BY_FRAMES, MOST = 60, 0.5, 0.3, 10.0
 """Frames of a run of those seconds. More take as many times longer where they are below FOLLOWED, for the steps follow
@@ -144,11 +145,12 @@ def likely_seconds(scene: Scene) -> float:
 def _at_rest(scene: Scene) -> float:
     driven = Driven.of(scene)
     urged = Urged.of(scene, driven)
+    on_solids = any(isinstance(load, solids.Given) for load in scene.loads)
     dear = {
-        "wound up": driven.turned > WINDS * critical_twist(scene),
-        "on solids": any(isinstance(load, solids.Given) for load in scene.loads),
-        "limp": urged.weight_across > LAYERED, "stressed at the start": urged.stress > STRESSED,
-        "touching": scene.contact is not None,
+        "wound up": driven.turned > WINDS * critical_twist(scene), "on solids": on_solids,
+        "limp and on no solids": urged.weight_across > LAYERED and not on_solids,
+        "stressed at the start": urged.stress > STRESSED,
+        "touching": scene.contact is not None, "snapping through": urged.bent > SMALL and _snaps(scene, urged),
     }  # fmt: skip
     seconds = STATIC * (len(scene.outputs) + STATIC_START) * STATIC_DOUBLED ** first_mesh(scene, pressed=False)
     return float(np.prod([seconds, *(DEARER[what] for what, is_so in dear.items() if is_so)]))
@@ -172,7 +174,8 @@ def _kind(scene: Scene, driven: Driven) -> str:
         return "overdamped and wound up" if overdamped else "wound up"
     if scene.contact is not None and urged.bent > TIED and urged.at_once and not overdamped:
         return "lies on itself"
-    if scene.contact is not None and (urged.stress_at_free_end > BOWED or (urged.bent > BOWED and urged.force > SMALL)):
+    unbends = urged.stress_at_free_end > BOWED or (urged.bent > BOWED and urged.force > SMALL)
+    if scene.contact is not None and unbends and not overdamped:
         return "may spring onto itself"
     on_solids = any(isinstance(load, solids.Given) for load in scene.loads)
     rings = urged.struck > STRUCK * frequency and damping < DEADENED * frequency
@@ -237,8 +240,7 @@ def _kind(scene: Scene, driven: Driven) -> str:
     if len(scene.points) >= MANY:
         return "under many loads"
     between_holds = distances(scene) is not None
-    snaps = between_holds and urged.pushed > SNAPS * urged.bent
-    if snaps and (urged.bent > SMALL or not urged.at_once):
+    if _snaps(scene, urged) and (urged.bent > SMALL or not urged.at_once):
         return "snapping through"
     if urged.at_once:
         gentle = max(urged.stress, urged.force) < SMALL and urged.weight < GENTLE and damping > DAMPED * frequency
@@ -315,6 +317,11 @@ class Urged:
     def springs(self) -> bool:
         """Whether it has stress that is not borne by its ends."""
         return self.stress > SMALL and self.imbalance > BALANCED * self.stress
+
+
+def _snaps(scene: Scene, urged: Urged) -> bool:
+    """Whether a force pushes a rod that is held at both ends to their other side."""
+    return distances(scene) is not None and urged.pushed > SNAPS * urged.bent
 
 
 def heavy_part(scene: Scene) -> NDArray[np.bool_]:

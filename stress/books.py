@@ -32,7 +32,7 @@ STORES = ("energy_bending", "energy_torsion", "energy_kinetic", "energy_added_ma
 FLOWS = ("work_ends", "work_loads", "dissipation")
 MAY_LACK = ("Wr", "Lk", "min_gap", "parameter")
 """Not a number where it was not asked for, or does not exist."""
-STATIC_LACKS = (*FLOWS, "energy_balance")
+STATIC_LACKS = (*FLOWS, "energy_balance", "astray")
 
 
 class Books:

@@ -44,7 +44,7 @@ class Frame(Fields):
     Works and dissipation are accumulated from t = 0;
     `energy_balance` = (sum of energies) - (its value at t = 0) - work_ends - work_loads + dissipation; where a step
     passes the frame, that at the step's end; and without what the mesh does not show of the energy of bending.
-    `energy_astray`: the size of the balance, the largest until then, less what damping or a viscous fluid has taken
+    `astray`: the size of the balance, the largest until then, less what damping or a viscous fluid has taken
     since.
     `Wr`, `Lk` are NaN if not asked for. `min_gap`: of points more than the contact's skip of arc apart (NaN without
     contact, and while the total curvature proves that none are within its cutoff).
@@ -65,9 +65,7 @@ class Frame(Fields):
     work_loads: Annotated[float, Output("J", "work of the loads since the start")]
     dissipation: Annotated[float, Output("J", "energy dissipated since the start")]
     energy_balance: Annotated[float, Output("J", "energy gained less work done plus energy dissipated, zero if exact")]
-    energy_astray: Annotated[
-        float, Output("J", "energy that the balance lacks, unless it was damped since", verified=False)
-    ] = nan
+    astray: Annotated[float, Output("J", "energy that the balance lacks, unless damped since", verified=False)] = nan
     Tw: Annotated[float, Output("turn", "twist")]
     Wr: Annotated[float, Output("turn", "writhe of the centreline continued by straight rays")]
     Lk: Annotated[float, Output("turn", "linking number, the relative rotation of the ends")]

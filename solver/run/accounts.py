@@ -103,7 +103,7 @@ class Accounts:
         return Frame(
             t=t, **named, energy_contact=contact,
             work_ends=work_ends, work_loads=work_loads, dissipation=dissipation,
-            energy_balance=self._balance, energy_astray=self._astray.most,
+            energy_balance=self._balance, astray=self._astray.most,
             Tw=Tw, Wr=Wr, Lk=self._linking_number(t, Tw, Wr, ahead, fields.orientation), min_gap=method.smallest_gap(),
             contacts=method.pressing(), dt=self._dt, newton_iterations=self._iterations,
         )  # fmt: skip

@@ -45,7 +45,7 @@ JUDGED_R, JUDGED_KAPPA = slice(0, 3), slice(3, 6)
 """Where they stand among these."""
 OMEGA, FORCE, MOMENT = column("omega"), column("f"), column("q")
 TWIST, WRITHE = number("Tw"), number("Wr")
-BALANCE, ASTRAY, DISSIPATION = number("energy_balance"), number("energy_astray"), number("dissipation")
+BALANCE, ASTRAY, DISSIPATION = number("energy_balance"), number("astray"), number("dissipation")
 CURVATURE, STEP = number("max_curvature"), number("dt")
 BENDING, TORSION, STRETCHING = (number(f"energy_{name}") for name in ("bending", "torsion", "stretching"))
 KINETIC, ADDED_MASS = number("energy_kinetic"), number("energy_added_mass")

@@ -66,7 +66,7 @@ class Verified(Run):
             return None
         coarse, fine = (Frame(**dict(zip(NAMES, values, strict=True))) for values in self._waiting)
         self._waiting.clear()
-        lost, missed = float(np.fmax(fine.energy_astray, 0.0)), float(np.fmax(abs(fine.energy_balance), 0.0))
+        lost, missed = float(np.fmax(fine.astray, 0.0)), float(np.fmax(abs(fine.energy_balance), 0.0))
         least = unseen(self._scene.rod, self.s, lost, fine.dt) | dict.fromkeys(of_waves(self._scene.rod), lost)
         return extrapolate(coarse, fine, least | {"dissipation": missed})
 

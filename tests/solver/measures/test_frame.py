@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from solver import Curve, End, Frame, Initial, Numerics, Scene, VerifiedFrame, simulate
+from solver.measures.energies import Energies
 from solver.measures.frame import OUTPUTS, Fields
 from tests.solver.bent import bent_cantilever
 from tests.solver.scenes import BEND, LENGTH, ROD, arc, last
@@ -64,3 +65,10 @@ def test_values_have_the_declared_shape_and_type(scene):
             components = (output.components,) if output.axes else ()
             assert value.shape == ((7,) if output.along_rod else ()) + components, output.name
             assert value.dtype.kind == {"f8": "f", "i4": "i"}[output.type], output.name
+
+
+def test_outputs_that_begin_with_energy_are_what_is_stored_and_the_balance() -> None:
+    """Users add them up, as the command's summary does."""
+    names = {output.name for output in OUTPUTS if output.name.startswith("energy_")}
+    stored = {f"energy_{name}" for name in (*Energies._fields, "contact")}
+    assert names == stored | {"energy_balance"}

@@ -138,7 +138,7 @@ def test_the_solution_is_that_in_space(scene: Scene, monkeypatch: pytest.MonkeyP
     theirs, its_cost = run(scene, monkeypatch, in_space=True)
     assert (cost.steps, cost.failed_steps) == (its_cost.steps, its_cost.failed_steps)
     energy = largest([np.array([f.energy_bending, f.energy_torsion, f.energy_kinetic]) for f in theirs])
-    works = dict.fromkeys(("work_ends", "work_loads", "dissipation"), energy)
+    works = dict.fromkeys(("work_ends", "work_loads", "dissipation", "astray"), energy)
     scales = {"Tw": 1.0, "Wr": 1.0, "Lk": 1.0, "v": 0.1, "omega": 0.1, "q": EJ / LENGTH, "f": FORCE,
               "max_curvature": 1.0 / LENGTH, **works}  # fmt: skip
     for field in fields(Frame):

@@ -13,8 +13,8 @@ import numpy as np
 
 from solver.scene.scene import Scene
 
-FADED = 1.0
-"""Powers of e by which waves fade in the time after which the books are looked at again."""
+FADED = 3.0
+"""Powers of e by which waves fade in the time after which the books are looked at again: more often costs more."""
 
 
 class Astray:
